@@ -1,4 +1,4 @@
-"""Registers everything in rank order and takes it back in exact reverse."""
+"""Registers everything in rank order, and unregisters it in exact reverse order."""
 
 import bpy
 
@@ -30,7 +30,7 @@ def unregister():
 
 
 def _say_what_is_wrong():
-    """A library that cannot be used is one sentence on the console; the preferences show the same one."""
+    """Prints one sentence if the library cannot be used; the preferences show the same sentence."""
     problem = ui.library_state.problem()
     if problem:
         print(f"Velour: {problem}", flush=True)

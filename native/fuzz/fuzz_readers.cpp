@@ -1,5 +1,5 @@
-// libFuzzer's entry: gives bytes as a file to the reader that the environment variable VELOUR_FUZZ names. A reader may
-// refuse them with an Error and nothing else.
+// libFuzzer's entry point: passes the bytes as a file to the reader named by the environment variable VELOUR_FUZZ. A
+// reader may reject them only with an Error.
 #include <fcntl.h>
 #include <unistd.h>
 
@@ -30,7 +30,7 @@ void read_btf(const std::string& path) {
   btf->read_pairs(0, 1, values);
 }
 
-/// By itself: other measurements take most of the time of their common reader.
+/// A reader of its own, because other formats would take most of the time of the common reader.
 void read_bsdf_xml(const std::string& path) {
   Provenance provenance;
   provenance.path = path;
@@ -44,7 +44,7 @@ void read_bsdf_xml(const std::string& path) {
 using Reader = void (*)(const std::string& path);
 struct Named {
   const char* name;
-  const char* extension;  // where that decides who reads it
+  const char* extension;  // if it selects the reader
   Reader read;
 };
 
@@ -72,7 +72,7 @@ const Named& chosen() {
   std::exit(2);
 }
 
-/// In memory; the path stays the same.
+/// A file in memory whose path stays the same.
 class File {
  public:
   explicit File(const char* extension)
@@ -105,7 +105,7 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* bytes, size_t count) {
   static velour::File file(reader.extension);
   try {
     reader.read(file.with(bytes, count));
-  } catch (const velour::Error&) {  // a sentence: what it is for
+  } catch (const velour::Error&) {  // the expected way to reject a file
   }
   return 0;
 }

@@ -1,4 +1,4 @@
-"""What of Blender's own shaders comes closest to a model: the library's fits, as a Principled BSDF."""
+"""The closest match to a model among Blender's own shaders: the library's fits, as a Principled BSDF."""
 
 from __future__ import annotations
 
@@ -13,33 +13,33 @@ from .approximation_map import map_job, map_of, size_of
 from .normal_map import NormalMapJob
 from .read_job import ReadJob
 
-_GRAZING = math.cos(math.radians(82))  # where a metal's tint is told: [KHE21]
-_LEAST_DIFFUSE = 0.002  # albedo below which a base is not worth a node
+_GRAZING = math.cos(math.radians(82))  # cosine at which a metal's tint is specified [KHE21]
+_LEAST_DIFFUSE = 0.002  # a base with a smaller albedo is not worth a node
 
 
 class Approximation(NamedTuple):
-    """Colours are linear Rec. 709."""
+    """Colors are linear Rec. 709."""
 
-    # As the library's report: base_color, metallic, roughness, specular, specular_tint, coat, coat_roughness.
+    # Keys as in the report: base_color, metallic, roughness, specular, specular_tint, coat, coat_roughness.
     principled: dict
-    anisotropic: float = 0.0  # Blender's
+    anisotropic: float = 0.0  # Blender's anisotropic
     turned: bool = False  # the rougher direction is y
-    diffuse: tuple = (0.0, 0.0, 0.0)  # of a diffuse base that is added
-    color_map: np.ndarray | None = None  # RGBA of a tile in place of the base colour
+    diffuse: tuple = (0.0, 0.0, 0.0)  # color of an added diffuse base
+    color_map: np.ndarray | None = None  # RGBA of a tile, replaces the base color
     normal_map: np.ndarray | None = None  # unit normals along the tile; None: not worth it
     tile_metres: tuple | None = None
-    relative_l2: float | None = None  # against the model; None: it is no fit
+    relative_l2: float | None = None  # against the model; None: not fitted
     by_view_angle: dict = {}
 
     @property
     def color(self):
-        """All in one, for the viewport's Solid mode."""
+        """A single color for the viewport's Solid mode."""
         return tuple(
             min(a + b, 1.0) for a, b in zip(self.principled["base_color"], self.diffuse, strict=True)
         )
 
 
-# A grey: Blender's own, until there is a model.
+# Blender's default gray, used until there is a model.
 UNFITTED = Approximation(
     {
         "base_color": (0.8, 0.8, 0.8),
@@ -54,10 +54,10 @@ UNFITTED = Approximation(
 
 
 class Steps:
-    """The jobs of an approximation; each is to be run before the next one is asked for."""
+    """The jobs of an approximation. Run each one before requesting the next."""
 
     def __init__(self, model: Model, has_layers: bool):
-        """has_layers: the Principled BSDF has a coat and tints as the library knows them."""
+        """has_layers: this Blender's Principled BSDF has the coat and the tints of the library's."""
         self.result = None  # the Approximation, after the last job
         self._jobs = self._run(model, has_layers)
 
@@ -68,7 +68,7 @@ class Steps:
         info = model.info()
         isotropic = info.get("isotropic", True)
         peer = ("principled" if has_layers else "plain_principled") if isotropic else "ggx"
-        making = ReadJob(lambda: model_peer_job(model, peer))  # it tabulates the model
+        making = ReadJob(lambda: model_peer_job(model, peer))  # a ReadJob, because this tabulates the model
         yield making
         with making.result() as job:
             yield job
@@ -93,7 +93,7 @@ class Steps:
 
 
 def from_ggx(ggx: dict) -> dict:
-    """A GGX lobe over a diffuse base as a metal to which a diffuse surface is added."""
+    """A GGX lobe over a diffuse base, converted to a metal plus a diffuse surface."""
     smooth, rough = sorted(ggx["alpha"])
     return {
         "principled": {
@@ -111,6 +111,6 @@ def from_ggx(ggx: dict) -> dict:
 
 
 def _tint(f0: float, f90: float) -> float:
-    """What a metal's Fresnel term that rises to 1 is dimmed by near grazing, to rise to `f90`."""
+    """Factor near grazing that makes a metal's Fresnel term, which rises to 1, rise to `f90`."""
     rise = (1 - _GRAZING) ** 5
     return min(max((f0 + (f90 - f0) * rise) / (f0 + (1 - f0) * rise), 0.0), 1.0)

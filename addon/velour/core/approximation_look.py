@@ -1,4 +1,4 @@
-"""What an artist's tint, exposure and roughness make of the values of an approximation."""
+"""Applies an artist's tint, exposure and roughness to the values of an approximation."""
 
 from __future__ import annotations
 
@@ -6,22 +6,22 @@ from typing import NamedTuple
 
 
 class Look(NamedTuple):
-    """Neutral: as it was fitted."""
+    """The defaults leave the approximation as it was fitted."""
 
-    gain: tuple = (1.0, 1.0, 1.0)  # of what is reflected
-    roughness: float = 0.0  # the mirror that highlights are spread like: Blender's roughness
+    gain: tuple = (1.0, 1.0, 1.0)  # factor on reflected light
+    roughness: float = 0.0  # highlights are spread as a mirror would be by this Blender roughness
 
 
 def with_look(values: dict, look: Look) -> dict:
-    """`principled`, `anisotropic`, `diffuse` as an Approximation has them, colours in the space of the gain.
+    """Applies `look` to `principled`, `anisotropic`, `diffuse` of an Approximation, in the gain's space.
 
-    Colours and weights stay within 1: what is brighter than white is shown as white.
+    Colors and weights are clamped to 1: anything brighter than white becomes white.
     """
     given = values["principled"]
     brightness = sum(look.gain) / 3
     roughness, anisotropic = _spread(given["roughness"], values["anisotropic"], look.roughness)
     coat_roughness, _ = _spread(given["coat_roughness"], 0.0, look.roughness)
-    # A metal reflects its base colour, so its own tint, that of grazing views, says nothing of the gain.
+    # A metal's base color already has the gain; its own tint, for grazing views, is relative to that.
     metallic = given["metallic"]
     tints = (
         t * (metallic + (1 - metallic) * _over(g, brightness))
@@ -52,7 +52,7 @@ def _over(part, whole):
 
 
 def _spread(roughness, anisotropic, offset):
-    """Roughness and anisotropy of a highlight spread as a mirror is by `offset`: squares of alphas add."""
+    """Roughness and anisotropy of a highlight, spread as `offset` spreads a mirror: squared alphas add."""
     aspect = (1 - 0.9 * anisotropic) ** 0.5  # Blender's alphas are r^2 / aspect and r^2 aspect
     wide, narrow = ((roughness**4 * a + offset**4) ** 0.5 for a in (1 / aspect**2, aspect**2))
     if wide == 0:

@@ -1,4 +1,4 @@
-"""The colours of a model's tile, as one sees them from above under a white sky."""
+"""The colors of a model's tile, seen from above under a white environment."""
 
 from __future__ import annotations
 
@@ -8,12 +8,12 @@ from ..native import Job, Model, Scene, render_job
 
 _MOST_TEXELS = 4096  # along a side
 _SAMPLES = 64
-_CORNERS = np.array([(-1, -1, 0), (2, -1, 0), (2, 2, 0), (-1, 2, 0)], np.float32)  # tiles around the one seen
+_CORNERS = np.array([(-1, -1, 0), (2, -1, 0), (2, 2, 0), (-1, 2, 0)], np.float32)  # a tile and its neighbors
 _TRIANGLES = np.array([(0, 1, 2), (0, 2, 3)], np.uint32)
 
 
 def size_of(info: dict) -> tuple[int, int] | None:
-    """Columns and rows of a model's map, by its info; None where all of its surface is alike."""
+    """Columns and rows of a model's map, from its info; None if its surface is uniform."""
     sizes = [info.get("texels"), info.get("shell", {}).get("points")]
     sizes = [size[:2] for size in sizes if size]
     if not sizes:
@@ -22,7 +22,7 @@ def size_of(info: dict) -> tuple[int, int] | None:
 
 
 def show_tile(scene: Scene, material: int) -> None:
-    """One tile of a material of an empty scene, seen from above, amid tiles that its outline may lean on."""
+    """Shows one tile of a material from above in an empty scene, with neighbors that its VOTF may overlap."""
     uvs = np.ascontiguousarray(_CORNERS[_TRIANGLES][..., :2])
     mesh, _dropped = scene.add_mesh(_CORNERS, _TRIANGLES, corner_uvs=uvs)
     scene.add_instance(mesh, np.eye(4), [material])
@@ -32,14 +32,14 @@ def show_tile(scene: Scene, material: int) -> None:
 
 
 def tile_job(scene: Scene, size: tuple[int, int], samples: int) -> Job:
-    """A picture of the tile of a committed scene, each texel a pixel."""
+    """Renders the tile of a committed scene, one pixel per texel."""
     return render_job(
         scene, width=size[0], height=size[1], spp=samples, bounces=0, strategy="cosine", transparent=1
     )
 
 
 def map_job(model: Model, size: tuple[int, int]) -> Job:
-    """A picture of one tile: its albedo, premultiplied, and how much of it is there."""
+    """Renders one tile: its premultiplied albedo and its coverage."""
     with Scene() as scene:
         show_tile(scene, scene.add_model_material(model))
         scene.set_world_color((1.0, 1.0, 1.0))
@@ -50,7 +50,8 @@ def map_job(model: Model, size: tuple[int, int]) -> Job:
 def map_of(picture: np.ndarray, base_color) -> np.ndarray:
     """RGBA [rows x columns x 4], not premultiplied, from the picture of a map_job().
 
-    Its mean is `base_color`, the fit to the mean of the tile, so that its highlights are not counted twice.
+    It is scaled to the mean `base_color`, which was fitted to the tile's mean, because its albedo includes
+    the highlights, which would be counted twice.
     """
     alpha = np.clip(picture[..., 3:], 0.0, 1.0)
     albedo = picture[..., :3] / np.maximum(alpha, 1e-6)

@@ -1,4 +1,4 @@
-"""A ball in a studio: how materials are shown beside each other, in asset browsers and in comparisons."""
+"""A ball in a studio: shows materials side by side, in asset browsers and comparisons."""
 
 from __future__ import annotations
 
@@ -9,14 +9,14 @@ import numpy as np
 
 from ..native import Job, Scene, render_job
 
-ROWS = 12  # tiles from pole to pole, of twice as many around
-_FACETS = 8  # of a tile
-_FIELD_OF_VIEW = 0.3
-_ELEVATION = 0.3  # of the camera
-_HEIGHT = 256  # of the studio's picture
+ROWS = 12  # tiles from pole to pole; twice as many around
+_FACETS = 8  # per side of a tile
+_FIELD_OF_VIEW = 0.3  # radians
+_ELEVATION = 0.3  # camera elevation, radians
+_HEIGHT = 256  # rows of the studio's picture
 
-# Soft boxes: azimuth and elevation of the middle, degrees (the camera stands at azimuth -90), half width and
-# half height, radiance. Metals show nothing else: there must be something bright, something dark, and edges.
+# Soft boxes: azimuth and elevation of the center (the camera is at azimuth -90), half width and half height,
+# all in degrees; radiance. Metals show nothing else, so they need bright parts, dark parts, and edges.
 _BOXES = (
     (-140, 38, 32, 24, 5.0),  # key, left
     (-30, 20, 10, 40, 4.0),  # strip, right
@@ -24,8 +24,8 @@ _BOXES = (
 )
 _COLORS = np.array([(1.0, 0.95, 0.88), (0.94, 0.97, 1.0), (1.0, 1.0, 1.0)])
 _WALL = np.array([0.42, 0.41, 0.4])
-_FLOOR = np.array([0.2, 0.165, 0.13])  # of wood
-_SKIRTING = 0.12  # the share of the wall's light that is left where it meets the floor
+_FLOOR = np.array([0.2, 0.165, 0.13])  # wood
+_SKIRTING = 0.12  # share of the wall's light that remains where it meets the floor
 
 
 def studio() -> np.ndarray:
@@ -49,8 +49,8 @@ def _edge(degrees: np.ndarray) -> np.ndarray:
 
 
 def ball_mesh(rows: int = ROWS) -> dict[str, np.ndarray]:
-    """Of radius 1 about the origin, the axis along z; keywords of Scene.add_mesh. Texture coordinates count
-    tiles."""
+    """A ball of radius 1 about the origin with its axis along z, as keywords of Scene.add_mesh. Texture
+    coordinates count tiles."""
     columns, bands = 2 * rows * _FACETS, rows * _FACETS
     u, v = np.meshgrid(np.arange(columns + 1), np.arange(bands + 1))
     longitude, latitude = u * (2 * np.pi / columns), v * (np.pi / bands) - np.pi / 2
@@ -62,7 +62,7 @@ def ball_mesh(rows: int = ROWS) -> dict[str, np.ndarray]:
     opposite = first + columns + 2
     lower = np.stack((first, first + 1, opposite), axis=-1)
     upper = np.stack((first, opposite, opposite - 1), axis=-1)
-    corners = np.concatenate((lower[columns:], upper[:-columns]))  # one triangle a quad at the poles
+    corners = np.concatenate((lower[columns:], upper[:-columns]))  # one triangle per quad at the poles
     return {
         "positions": points,
         "triangles": corners.astype(np.uint32),
@@ -72,7 +72,7 @@ def ball_mesh(rows: int = ROWS) -> dict[str, np.ndarray]:
 
 
 def ball_scene(add: Callable[[Scene], int], rows: int = ROWS) -> Scene:
-    """The studio with a ball of the material whose number `add` returns; committed."""
+    """The committed scene of the studio and a ball of the material whose number `add` returns."""
     scene = Scene()
     try:
         material = add(scene)
@@ -90,21 +90,21 @@ def ball_scene(add: Callable[[Scene], int], rows: int = ROWS) -> Scene:
 
 
 def ball_job(scene: Scene, side: int, spp: int, threads: int = 0) -> Job:
-    """Renders `side` x `side` pixels, transparent beside the ball; of all materials with the same numbers."""
+    """Renders `side` x `side` pixels, transparent around the ball, with one seed for all materials."""
     options = {"width": side, "height": side, "spp": spp, "bounces": 3, "transparent": 1, "seed": 1}
     return render_job(scene, strategy="mis", threads=threads, **options)
 
 
 def shown(linear: np.ndarray) -> np.ndarray:
-    """A picture of ball_job() as previews have it: sRGB, opaque, over a backdrop that grows darker upwards.
+    """A picture of ball_job() for previews: sRGB, opaque, over a backdrop that darkens upwards.
 
-    [side x side x 4] float32, row 0 at the bottom. Highlights roll off, colours keep their hue."""
+    [side x side x 4] float32, row 0 at the bottom. Highlights roll off, colors keep their hue."""
     side = linear.shape[0]
     backdrop = np.linspace(0.22, 0.05, side)[:, None, None]
     color = linear[..., :3] + (1 - linear[..., 3:]) * backdrop
     peak = color.max(axis=-1, keepdims=True)
     rolled = np.where(peak > 0.6, 0.6 + 0.4 * np.tanh((peak - 0.6) / 1.2), peak)
-    # What is brighter than white loses some of its colour, as on film.
+    # Colors brighter than white desaturate, as on film.
     pale = np.clip((peak - 1.5) / 8, 0, 0.6)
     color = color * (rolled / np.maximum(peak, 1e-6)) * (1 - pale) + rolled * pale
     encoded = np.where(

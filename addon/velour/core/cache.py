@@ -1,4 +1,4 @@
-"""Where results are kept that can always be made again."""
+"""The cache folder, for results that can always be recomputed."""
 
 from __future__ import annotations
 
@@ -9,13 +9,13 @@ _instead: Path | None = None
 
 
 def keep_in(folder: str | os.PathLike) -> None:
-    """The folder for the rest of this process: extensions of Blender have one of their own."""
+    """Sets the folder for the rest of this process: extensions of Blender have one of their own."""
     global _instead
     _instead = Path(folder)
 
 
 def user_cache_folder() -> Path:
-    """${XDG_CACHE_HOME:-~/.cache}/velour, or what keep_in() was told; it need not exist."""
+    """${XDG_CACHE_HOME:-~/.cache}/velour, or the folder given to keep_in(); it may not exist."""
     if _instead is not None:
         return _instead
     base = os.environ.get("XDG_CACHE_HOME", "")

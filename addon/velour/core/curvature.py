@@ -1,4 +1,4 @@
-"""How strongly a surface bends, by its corner normals."""
+"""Curvature of a surface, from its corner normals."""
 
 from __future__ import annotations
 
@@ -6,10 +6,10 @@ import numpy as np
 
 
 def curvature_range(corners: np.ndarray, normals: np.ndarray) -> tuple[float, float]:
-    """Least and largest normal curvature along the edges of triangles, one over the corners' unit.
+    """Smallest and largest normal curvature along the edges of triangles, in 1 / the unit of the corners.
 
     Convex is positive. `corners`, `normals` [n x 3 x 3]: triangle, corner, x y z; normals are unit. Edges
-    without length are left out; (0, 0) where none is left.
+    of length 0 are left out; (0, 0) if no edge remains.
     """
     edges = np.roll(corners, -1, axis=1) - corners
     turns = np.roll(normals, -1, axis=1) - normals

@@ -1,8 +1,8 @@
-"""When a model that was reduced to what scenes show may be used: one rule for all who render."""
+"""When a scene model may be used: one rule for all renders."""
 
-LARGEST_SHARE = 1e-3  # of the weight of what a frame shows of a material, outside of its model's domain
+LARGEST_SHARE = 1e-3  # share, by weight, of a frame's use of a material that its model was not fitted for
 
 
 def inside(share: float) -> bool:
-    """Whether a frame with that share outside may be rendered with the reduced model."""
+    """Whether a frame with this share outside may be rendered with the scene model."""
     return share <= LARGEST_SHARE

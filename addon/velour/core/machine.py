@@ -1,4 +1,4 @@
-"""What a measurement was taken on, and from what: a number without that says little."""
+"""Describes the machine of a benchmark, without which its numbers mean little."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from pathlib import Path
 
 
 def machine() -> str:
-    """Processor, threads that this process may use, memory, system."""
+    """Processor, threads that this process may use, memory, operating system."""
     return f"{_processor()}, {threads()} threads, {_memory_gib():.0f} GiB, {_system()}"
 
 

@@ -1,4 +1,4 @@
-"""How much memory the system or a batch engine lets this process have."""
+"""Memory limit that the system or a batch engine sets for this process."""
 
 from __future__ import annotations
 
@@ -6,16 +6,16 @@ from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import NamedTuple
 
-_NO_LIMIT = 1 << 60  # what version 1 of cgroups says where there is none is a little below 2^63
+_NO_LIMIT = 1 << 60  # cgroups v1 reports a value slightly below 2^63 if there is no limit
 
 
 class Limit(NamedTuple):
     size: int  # bytes
-    of: str  # who says so
+    of: str  # source of the limit, for messages
 
 
 def memory_limit(environment: Mapping[str, str], root: Path = Path("/")) -> Limit | None:
-    """The least of the limits of the process' cgroups and its Slurm job; None: nobody gives one."""
+    """The smallest limit of the process's cgroups and its Slurm job; None: there is no limit."""
     return min([*_of_cgroups(root), *_of_slurm(environment)], default=None)
 
 
@@ -29,7 +29,7 @@ def _of_cgroups(root: Path) -> Iterator[Limit]:
 
 
 def _of_folders(mount: Path, path: str, name: str) -> Iterator[Limit]:
-    """A group has the limits of those around it, too. In a container `path` may be one of the host's."""
+    """Limits of a group and its parents, which all apply. In a container `path` may be one of the host's."""
     group = mount / path.lstrip("/")
     for folder in [group, *group.parents]:
         text = _text(folder / name).strip()
@@ -40,7 +40,7 @@ def _of_folders(mount: Path, path: str, name: str) -> Iterator[Limit]:
 
 
 def _of_slurm(environment: Mapping[str, str]) -> Iterator[Limit]:
-    """MiB; 0: all that the node has."""
+    """Slurm states MiB; 0 means all of the node's memory."""
     node, cpu = (environment.get(f"SLURM_MEM_PER_{per}", "") for per in ("NODE", "CPU"))
     cpus = environment.get("SLURM_CPUS_ON_NODE", "")
     if node.isdigit() and int(node) > 0:

@@ -8,7 +8,7 @@ import numpy as np
 
 
 class MeshArrays(NamedTuple):
-    """The keywords of Scene.add_mesh; triangles name corners."""
+    """Keywords of Scene.add_mesh; the triangles index corners."""
 
     positions: np.ndarray
     triangles: np.ndarray
@@ -31,11 +31,11 @@ class MeshArrays(NamedTuple):
 
     @property
     def slot_count(self):
-        """Up to the last that a triangle is of."""
+        """Number of slots up to the last one that a triangle uses."""
         return 1 if self.material_slots is None else 1 + int(self.material_slots.max())
 
     def vertices(self, triangles):
-        """[n x 3] Of some of the triangles."""
+        """[n x 3] Vertices of some triangles."""
         return self.corner_vertices[self.triangles[triangles]]
 
     def uvs(self, triangles):
@@ -43,7 +43,7 @@ class MeshArrays(NamedTuple):
         return self.corner_uvs[self.triangles[triangles]]
 
     def normals(self, triangles):
-        """[n x 3 x 3] Of flat triangles without area 0."""
+        """[n x 3 x 3] Corner normals; 0 for flat triangles without area."""
         if self.corner_normals is not None:
             return self.corner_normals[self.triangles[triangles]]
         if self.vertex_normals is None:

@@ -1,6 +1,7 @@
-"""What reading a file of a mesh, and tracing it, will take: told from counts, before the mesh is read.
+"""Estimates the memory to read and trace a mesh file from counts, before the mesh is read.
 
-The factors are those of measured peaks. What cannot be counted is left to the reader, which says why.
+The factors come from measured peaks. A file that cannot be counted is estimated by its size; the reader will
+say what is wrong with it.
 """
 
 from __future__ import annotations
@@ -11,14 +12,14 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import BinaryIO
 
-# Bytes: positions as read and kept; for each corner its vertex, and its normal and texture coordinates where
-# there are any; for a triangle its corners twice, three normals, the hierarchy.
+# Bytes per vertex: its position as read and as kept; per corner: its vertex; per triangle: its corners twice,
+# three normals, the BVH; per corner and vertex, where there are any: normal and texture coordinates.
 _VERTEX, _CORNER, _TRIANGLE = 24, 4, 132
 _NORMAL, _TEXCOORD = 12, 8
-_SECOND_NORMALS = 24  # of a triangle without normals that has texture coordinates
-_TEXT_CORNER = 24  # more: numbers of vertex, texture coordinates and normal
-_SMOOTH_CORNER = 20  # more, where smoothing groups make normals
-_TEXT = 6.5  # a byte of a text that was not counted
+_SECOND_NORMALS = 24  # per triangle that has texture coordinates but no normals
+_TEXT_CORNER = 24  # more per corner of a text: indices of vertex, texture coordinates and normal
+_SMOOTH_CORNER = 20  # more per corner where smoothing groups make normals
+_TEXT = 6.5  # per byte of a file that cannot be counted
 
 _HEAD, _BLOCK = 1 << 16, 1 << 24
 _SIZES = {"char": 1, "uchar": 1, "short": 2, "ushort": 2, "int": 4, "uint": 4, "float": 4, "double": 8}
@@ -48,7 +49,7 @@ class _Counts:
 
 
 def mesh_memory(path: str) -> int:
-    """Bytes at the peak, beside what the process had before."""
+    """Peak memory in bytes, in addition to what the process had before."""
     size = os.path.getsize(path)
     with open(path, "rb") as file:
         head = file.read(_HEAD)
@@ -60,7 +61,7 @@ def mesh_memory(path: str) -> int:
 
 
 def _obj(file: BinaryIO, head: bytes, _size: int) -> _Counts:
-    """Corners are the blanks that vertices and what else stands in lines of numbers do not need."""
+    """Corners are the blanks in the file minus those of vertices, texture coordinates and normals."""
     first = next(re.finditer(rb"^v[ \t].*$", head.replace(b"\r", b"\n"), re.MULTILINE)).group()
     of_vertex = len(first.split()) - 1  # colors may follow
     starts = (b"\nv ", b"\nv\t", b"\nvt", b"\nvn", b"\nf", b"\ns")
@@ -92,7 +93,7 @@ def _ply(file: BinaryIO, head: bytes, size: int) -> _Counts:
 
 
 def _ply_elements(head: str) -> dict[str, tuple[int, list[list[str]]]]:
-    """{name: (how many, words of its properties)}"""
+    """{name: (count, words of its properties)}"""
     elements: dict[str, tuple[int, list[list[str]]]] = {}
     for words in map(str.split, head.splitlines()):
         if words[:1] == ["element"]:
@@ -104,7 +105,7 @@ def _ply_elements(head: str) -> dict[str, tuple[int, list[list[str]]]]:
 
 
 def _totals(file: BinaryIO, begin: int, needles: tuple[bytes, ...]) -> list[int]:
-    """How often each of `needles` stands in a text from `begin` on; ends of lines are \\n."""
+    """Counts each of `needles` in a file from `begin` on; line ends are read as \\n."""
     longest = max(map(len, needles))
     totals, last = [0] * len(needles), b"\n"
     for block in _blocks(file, begin):

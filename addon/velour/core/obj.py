@@ -12,7 +12,7 @@ from . import files
 
 
 def write_obj(path: str | os.PathLike, mesh: TileMesh, materials: list[dict]) -> None:
-    """`materials` of the slots: name, base_color (linear Rec. 709), metallic, roughness; in NAME.mtl."""
+    """`materials`, written to NAME.mtl, by slot: name, base_color (linear Rec. 709), metallic, roughness."""
     path = Path(path)
     library = path.with_suffix(".mtl")
     files.write_text(library, "".join(map(_material_text, materials)))

@@ -4,20 +4,21 @@ from __future__ import annotations
 
 import numpy as np
 
-_DARKEST = 1 / 4  # of a texel's pictures, left out as shadows; all that are black
-_KEPT = 1 / 3  # of the others, the darkest: the rest may be highlights
-_LEAST_UP = 0.17  # cosine from the vertical: what seems steeper is an edge or a hole
-_LEAST_VOLUME = 1e-3  # determinant of the mean of l l^T: below it the lights kept lie in a plane
-_SHADOW = 1e-3  # of a texel's brightest picture
-_BLACK = 1e-3  # of the mean of all texels
-_TEXELS = 1 << 14  # that are solved at once
+_DARKEST = 1 / 4  # share of a texel's pictures left out as shadows; black ones always are
+_KEPT = 1 / 3  # share of the others that is kept, the darkest: the rest may be highlights
+_LEAST_UP = 0.17  # cosine to the vertical; steeper normals are edges or holes
+_LEAST_VOLUME = 1e-3  # determinant of the mean of l l^T; below it the kept lights lie in a plane
+_SHADOW = 1e-3  # black, relative to a texel's brightest picture
+_BLACK = 1e-3  # black, relative to the mean of all texels
+_TEXELS = 1 << 14  # texels solved at once
 
 
 def normals_of(lights: np.ndarray, radiance: np.ndarray, coverage: np.ndarray) -> np.ndarray:
-    """Unit normals [rows x columns x 3] of a tile of which the mean is upright.
+    """Unit normals [rows x columns x 3] of a tile whose mean slope is 0.
 
-    lights: unit, towards them, [k x 3]; radiance [k x rows x columns], all of them as strong; coverage
-    [rows x columns], 0 where there is nothing. Where radiance tells nothing the normal is (0, 0, 1).
+    lights [k x 3]: unit directions towards the lights, which are equally strong; radiance [k x rows x
+    columns]; coverage [rows x columns], 0 where there is no surface. The normal is (0, 0, 1) where the
+    radiance is inconclusive.
     """
     columns = radiance.reshape(len(lights), -1)
     parts = [_scaled(lights, columns[:, t : t + _TEXELS]) for t in range(0, columns.shape[1], _TEXELS)]
@@ -34,7 +35,7 @@ def root_mean_square_slope(normals: np.ndarray) -> float:
 
 
 def _scaled(lights: np.ndarray, radiance: np.ndarray) -> np.ndarray:
-    """rho n [t x 3] of radiance [k x t] = rho n . l [Woo80], by least squares over what is kept."""
+    """rho n [t x 3] from radiance [k x t] = rho n . l [Woo80], by least squares over the kept pictures."""
     ranked = np.argsort(radiance, axis=0, kind="stable")
     values, places = np.take_along_axis(radiance, ranked, axis=0), np.arange(len(lights))[:, None]
     black = (values <= _SHADOW * values[-1]).sum(axis=0)
@@ -49,7 +50,7 @@ def _scaled(lights: np.ndarray, radiance: np.ndarray) -> np.ndarray:
 
 
 def _upright(slopes: np.ndarray, weights: np.ndarray) -> np.ndarray:
-    """The slopes of a surface that repeats sum up to nothing: what is left of their mean is not its own."""
+    """Subtracts the mean of the slopes: those of a periodic surface sum to zero, so any mean is an error."""
     mean = (slopes * weights[..., None]).sum((0, 1)) / max(float(weights.sum()), 1e-30)
     slopes = np.where(weights[..., None] > 0, slopes - mean, 0.0)
     normals = np.dstack([slopes, np.ones(slopes.shape[:2])])

@@ -1,6 +1,6 @@
-"""How a tiled texture lies on a mesh: the map of its coordinates, and the sizes that come of it.
+"""Placement of a tiled texture on a mesh: the map of its coordinates, and the resulting sizes.
 
-A map [2 x 3] takes (u, v, 1) of the mesh to tiles: the texture repeats with every whole number.
+A map [2 x 3] takes the mesh's (u, v, 1) to tile coordinates: the texture repeats at every integer.
 """
 
 from __future__ import annotations
@@ -9,16 +9,16 @@ from typing import NamedTuple
 
 import numpy as np
 
-LARGEST_STRETCH = 2.0  # that is not worth a warning
-LEAST_SHARE = 0.01  # of the surface: smaller spots do not show
+LARGEST_STRETCH = 2.0  # largest ratio that is not worth a warning
+LEAST_SHARE = 0.01  # share of the surface; smaller spots are not noticeable
 
 
 def texture_map(repeats, rotation=0.0, offset=(0.0, 0.0), metric=(1.0, 1.0)) -> np.ndarray:
-    """A tile's lower left corner lies at `offset` (u, v) and the tile is turned there, counter-clockwise by
-    `rotation` (radians); `repeats` of them fit a unit along the tile's own x and y.
+    """The map that puts a tile's lower left corner at `offset` (u, v) and rotates the tile there
+    counter-clockwise by `rotation` (radians); `repeats` tiles fit a unit along the tile's own x and y.
 
-    metric: how long u and v are in that unit. (1, 1): it is that of u and v themselves, so that a rotation on
-    a mesh whose u and v are not equally long shears.
+    metric: lengths of u and v in that unit. (1, 1): the unit is that of u and v, so that a rotation shears
+    on a mesh whose u and v differ in length.
     """
     c, s = np.cos(rotation), np.sin(rotation)
     linear = np.diag(repeats) @ ((c, s), (-s, c)) @ np.diag(metric)
@@ -26,7 +26,7 @@ def texture_map(repeats, rotation=0.0, offset=(0.0, 0.0), metric=(1.0, 1.0)) -> 
 
 
 class Surface(NamedTuple):
-    """Triangles with texture coordinates: two edges of each."""
+    """Triangles with texture coordinates, as two edges each."""
 
     edges: np.ndarray  # [n x 2 x 3]
     uv_edges: np.ndarray  # [n x 2 x 2]
@@ -42,18 +42,18 @@ class Surface(NamedTuple):
 
 
 class UvMetric(NamedTuple):
-    """Of each triangle: products of the gradients of u and v, 1/m^2; all 0 without extent."""
+    """Dot products of the gradients of u and v of each triangle, in 1/m^2; all 0 without extent."""
 
     area: np.ndarray  # [n] m^2
     gram: np.ndarray  # [3 x n] u u, u v, v v
 
     @classmethod
     def of(cls, surface: Surface, to_metres: np.ndarray) -> UvMetric:
-        """`to_metres` [3 x 3] takes the mesh's own space to metres."""
+        """`to_metres` [3 x 3] takes the mesh's own space to meters."""
         a, b = surface.edges.transpose(1, 0, 2) @ np.asarray(to_metres, np.float64).T
         p, q = surface.uv_edges.astype(np.float64).transpose(1, 2, 0)
         aa, ab, bb = (np.einsum("ni,ni->n", x, y) for x, y in ((a, a), (a, b), (b, b)))
-        square = aa * bb - ab * ab  # of twice the area
+        square = aa * bb - ab * ab  # square of twice the area
         # The metric of the surface in the basis of its edges is [[aa, ab], [ab, bb]]: this is its inverse.
         gram = np.stack(
             [
@@ -68,7 +68,7 @@ class UvMetric(NamedTuple):
         return cls(np.where(good, 0.5 * np.sqrt(np.maximum(square, 0)), 0), gram)
 
     def placed(self, uv_map: np.ndarray) -> UvMetric:
-        """The same of the coordinates that a map makes."""
+        """The metric of the coordinates that a map produces."""
         (a, b), (c, d) = np.asarray(uv_map)[:, :2]
         uu, uv, vv = self.gram
         return UvMetric(
@@ -84,11 +84,11 @@ class UvMetric(NamedTuple):
 
     @property
     def is_flat(self) -> bool:
-        """True where texture coordinates have no extent on any part of the surface."""
+        """True if texture coordinates have no extent on any part of the surface."""
         return not (self._determinants() > 0).any()
 
     def density(self) -> tuple[float, float]:
-        """Median over the surface of how fast u and v grow, 1/m."""
+        """Median over the surface of the lengths of the gradients of u and v, in 1/m."""
         good = self._determinants() > 0
         return tuple(
             float(quantiles(np.sqrt(square[good]), self.area[good], (0.5,))[0])
@@ -96,14 +96,14 @@ class UvMetric(NamedTuple):
         )
 
     def scales(self) -> np.ndarray:
-        """[n] of each triangle: the geometric mean over directions of tiles (or units of u, v) a metre."""
+        """[n] Tiles (or units of u, v) per meter on each triangle: the geometric mean over directions."""
         return self._determinants() ** 0.25
 
     def stretches(self) -> np.ndarray:
-        """[n] of each triangle: the longest direction over the shortest; infinite without extent."""
+        """[n] Ratio of the longest to the shortest direction of each triangle; infinite without extent."""
         uu, uv, vv = self.gram
         largest = 0.5 * (uu + vv) + np.hypot(0.5 * (uu - vv), uv)
-        # Largest times least eigenvalue is the determinant; the difference of the two terms would cancel.
+        # The determinant is the product of both eigenvalues; a difference for the smaller one would cancel.
         root = np.sqrt(self._determinants())
         return np.divide(largest, root, out=np.full_like(root, np.inf), where=root > 0)
 
@@ -113,12 +113,12 @@ class UvMetric(NamedTuple):
 
 
 class Lie(NamedTuple):
-    """What a placement comes to on a surface. Quantiles are by area."""
+    """Statistics of a placement on a surface. Quantiles are by area."""
 
-    scale: float  # tiles a metre, median
-    spread: tuple[float, float]  # of tiles' size over its median: 10 % are smaller, 10 % larger
+    scale: float  # tiles per meter, median
+    spread: tuple[float, float]  # 10 % and 90 % quantiles of the tiles' size over its median
     stretched: float  # share of the surface where tiles are stretched by more than LARGEST_STRETCH
-    stretch: float  # that 1 % of the surface exceeds
+    stretch: float  # 99 % quantile
     worst: int  # the most stretched triangle
 
     @property
@@ -127,7 +127,7 @@ class Lie(NamedTuple):
 
 
 def lie_of(tiles: UvMetric) -> Lie:
-    """`tiles`: placed, in units that are squares where a tile is not stretched. Not of a flat one."""
+    """`tiles`: placed, in units that are square where a tile is not stretched; it must not be flat."""
     scales, stretches = tiles.scales(), tiles.stretches()
     good = scales > 0
     low, scale, high = quantiles(scales[good], tiles.area[good], (0.1, 0.5, 0.9))

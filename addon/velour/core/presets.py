@@ -1,4 +1,4 @@
-"""The library of presets: where it lies, and what it is called in users' preferences."""
+"""The preset library: its files, and its name in the user's preferences."""
 
 from __future__ import annotations
 
@@ -10,11 +10,11 @@ LIBRARY_FILE = "velour_presets.blend"
 CATALOG_FILE = "blender_assets.cats.txt"
 LICENCE_FILE = "LICENSE.txt"
 AUTHOR, LICENCE = "The Velour authors", "CC0-1.0"
-MOST_BYTES = 20_000_000  # of all files
+MOST_BYTES = 20_000_000  # total size of all files
 
 
 def folder() -> Path:
-    """Of the add-on's own copy; it need not be there."""
+    """Folder of the add-on's own copy; it may not exist."""
     return Path(__file__).resolve().parents[1] / "presets"
 
 

@@ -2,15 +2,15 @@
 
 import numpy as np
 
-# Of axes that faces face equally rounding would choose another one for each face.
+# Breaks ties: of axes that a face faces equally, rounding would choose a different one for each face.
 _PREFERENCE = np.array((1, 1 + 1e-4, 1 + 2e-4))
 
 
 def box_projection(positions: np.ndarray, normals: np.ndarray) -> np.ndarray:
-    """[n x 2] of points [n x 3] on faces of these normals [n x 3], in the unit of the points.
+    """[n x 2] for points [n x 3] on faces with these normals [n x 3], in the unit of the points.
 
-    Each face is seen along the axis that it faces most, from outside: u to the right and v up, of what faces
-    up or down along y. Nothing is mirrored.
+    Each face is projected along its dominant axis, seen from outside: u points right and v up, or along y
+    if the face points up or down. Nothing is mirrored.
     """
     axis = np.argmax(np.abs(normals) * _PREFERENCE, axis=1)
     x, y, z = positions.T

@@ -1,4 +1,4 @@
-"""Meshes as artists edit them: of quads where two triangles are halves of one."""
+"""Joins triangles that are halves of a quad, for meshes that artists edit."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from ..native.tile import TileMesh
 
 class Faces(NamedTuple):
     corners: list[list[int]]  # vertices of each face, three or four
-    uvs: np.ndarray  # [corners in all x 2], in the order of the faces
+    uvs: np.ndarray  # [total of corners x 2], in the order of the faces
     slots: np.ndarray  # [faces]
 
 

@@ -1,8 +1,8 @@
-"""Keeps the threads that read out of Python for a while.
+"""Keeps reader threads out of Python for a while.
 
-Blender looks up what temp_override() has set through Python, also while it runs an operator, for whose time
-Python has let go of its lock. Up to Python 3.11 Blender takes a thread that holds the lock then for itself,
-goes on without it, and crashes.
+Blender looks up the members of temp_override() through Python, even while an operator runs and Python has
+released its lock. Up to Python 3.11 Blender then mistakes a thread that holds the lock for its own, continues
+without the lock, and crashes.
 """
 
 from __future__ import annotations
@@ -11,16 +11,16 @@ import contextlib
 import threading
 from collections.abc import Iterator
 
-_PATIENCE = 1.0  # seconds for threads to come to their next pause; one that waits for a file server may never
+_PATIENCE = 1.0  # seconds for threads to reach pause(); one that waits for a file server may never do so
 
 _changed = threading.Condition()
-_inside = 0  # threads in Python
-_closed = 0  # of closed() that last
+_inside = 0  # number of reader threads in Python
+_closed = 0  # number of active closed() blocks
 
 
 @contextlib.contextmanager
 def inside() -> Iterator[None]:
-    """What a thread does that reads."""
+    """The block in which a reader thread works."""
     _enter()
     try:
         yield
@@ -29,7 +29,7 @@ def inside() -> Iterator[None]:
 
 
 def pause() -> None:
-    """Of a thread that is inside(): here it waits while the gate is closed."""
+    """Call within inside(): waits while the gate is closed."""
     if _closed:
         _leave()
         _enter()
@@ -37,8 +37,8 @@ def pause() -> None:
 
 @contextlib.contextmanager
 def closed() -> Iterator[None]:
-    """For the main thread: until its end no thread that reads is in Python, but for one that has come to no
-    pause within a second."""
+    """For the main thread: no reader thread is in Python within this block, except one that did not reach
+    pause() within a second."""
     _count(1)
     try:
         _wait()
@@ -49,7 +49,7 @@ def closed() -> Iterator[None]:
 
 @contextlib.contextmanager
 def opened() -> Iterator[None]:
-    """In the midst of closed(): what waits for a thread lets it go on."""
+    """Within closed(): lets reader threads continue while the caller waits for one."""
     before = _closed
     _count(-before)
     try:
@@ -74,7 +74,7 @@ def _leave() -> None:
 
 
 def _count(more: int) -> None:
-    """Of closed() that last."""
+    """Adds to the number of active closed() blocks."""
     global _closed
     if more:
         with _changed:
@@ -83,6 +83,6 @@ def _count(more: int) -> None:
 
 
 def _wait() -> None:
-    """Until no thread is inside, if there is to be none."""
+    """Waits until no thread is inside, if the gate is closed; at most _PATIENCE."""
     with _changed:
         _changed.wait_for(lambda: not (_closed and _inside), _PATIENCE)

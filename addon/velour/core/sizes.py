@@ -1,4 +1,4 @@
-"""Numbers of bytes as people read them."""
+"""Human-readable numbers of bytes."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ _DECIMAL = ("bytes", "kB", "MB", "GB", "TB")
 
 
 def data_size(count: float) -> str:
-    """Of files and what they hold: powers of a thousand, three digits."""
+    """Size of files and their contents: powers of 1000, three digits."""
     size, unit = float(count), 0
     while size >= 999.5 and unit + 1 < len(_DECIMAL):
         size, unit = size / 1000, unit + 1
@@ -15,7 +15,7 @@ def data_size(count: float) -> str:
 
 
 def limit_size(size: float) -> str:
-    """Of memory beside its limit: powers of 1024, in which systems and batch queues give those."""
+    """Size of memory: powers of 1024, in which systems and batch queues state their limits."""
     for unit in ("bytes", "KiB", "MiB"):
         if size < 1024:
             return f"{size:.0f} {unit}"

@@ -1,4 +1,4 @@
-"""SIGTERM, by which systems and batch engines end what takes too long."""
+"""Handles SIGTERM, with which systems and batch engines end processes that take too long."""
 
 from __future__ import annotations
 
@@ -9,12 +9,12 @@ import time
 
 from ..native import Job
 
-_ONE_SIGNAL = 1.0  # seconds: engines send it to a whole group, of which one hands it on to another
+_ONE_SIGNAL = 1.0  # seconds: engines signal a whole group, whose members pass it on: this counts once
 
 
 class Stopping:
-    """From hold() to release() SIGTERM ends the render that runs, at a whole pass, and a second one the
-    process. So what is rendered is not lost while it is written: a signal that comes then is remembered.
+    """From hold() to release(), SIGTERM ends the running render after a whole pass; a second one ends the
+    process. A signal during writing is remembered, so that what was rendered is not lost.
     """
 
     def __init__(self):
@@ -24,14 +24,14 @@ class Stopping:
         self._holds = False
 
     def hold(self) -> None:
-        """In the main thread; again does nothing."""
+        """Call in the main thread. Repeated calls do nothing."""
         if not self._holds:
             self._earlier = signal.signal(signal.SIGTERM, self._stop)
             self._holds, self._first = True, None
 
     @contextlib.contextmanager
     def rendering(self, job: Job):
-        """`job`, which has begun, is what the signal ends meanwhile; at once if it came before."""
+        """Within this block the signal ends `job`, which has started; at once if it came before."""
         self._job = job
         try:
             if self._first is not None:
@@ -41,7 +41,7 @@ class Stopping:
             self._job = None
 
     def release(self, obey: bool = False) -> None:
-        """With `obey` the process ends now by a signal that came."""
+        """With `obey`, a signal that was remembered ends the process now."""
         if not self._holds:
             return
         signal.signal(signal.SIGTERM, self._earlier or signal.SIG_DFL)
@@ -61,7 +61,7 @@ class Stopping:
 
 @contextlib.contextmanager
 def stopping(job: Job):
-    """Of one render, which has begun, until what it made is written."""
+    """Holds the signal for one render, which has started, until its result is written."""
     held = Stopping()
     held.hold()
     try:

@@ -1,4 +1,4 @@
-"""The engine as Blender knows it."""
+"""The engine that is registered with Blender."""
 
 import logging
 
@@ -21,7 +21,7 @@ class VelourRenderEngine(bpy.types.RenderEngine):
     bl_idname = "VELOUR"
     bl_label = "Velour"
     bl_use_preview = True
-    bl_use_shading_nodes_custom = False  # the stock shader editor stays as it is for Cycles
+    bl_use_shading_nodes_custom = False  # keeps the shader editor of Cycles
     bl_use_eevee_viewport = True  # Material Preview shows the Principled approximation
     bl_use_spherical_stereo = False
 
@@ -32,7 +32,7 @@ class VelourRenderEngine(bpy.types.RenderEngine):
         self.kept_scene = KeptScene()
 
     def __del__(self):
-        # Asked for as attributes they raise where Blender has freed its own half before, as when it ends.
+        # Plain attribute access raises if Blender has freed its half already, as it does on exit.
         own = object.__getattribute__(self, "__dict__")
         for name in ("_viewport", "kept_scene"):
             if own.get(name):
@@ -43,15 +43,15 @@ class VelourRenderEngine(bpy.types.RenderEngine):
 
     def render(self, depsgraph):
         try:
-            # Previews are rendered by other threads meanwhile: a visitor is none of their business.
+            # Other threads may be rendering previews, which must not get the visitor.
             visit = None if self.is_preview else visitor.current()
             with viewport_clock.paused():
                 (visit or render_final)(self, depsgraph)
         except RenderCancelledError:
-            pass  # Blender knows: it asked
+            pass  # requested by Blender
         except (ExportError, UnfinishedError, VelourError) as error:
             self._fail(str(error))
-        except KeyboardInterrupt:  # of Blender as a module: writing the file, it crashes if this goes up
+        except KeyboardInterrupt:  # Blender as a module crashes on writing the file if this propagates
             self._fail("The render was interrupted.")
         except Exception as error:  # an exception alone would leave a black picture and exit status 0
             log.exception("render failed")
@@ -72,6 +72,6 @@ class VelourRenderEngine(bpy.types.RenderEngine):
 
     def _fail(self, sentence):
         if self.is_preview:
-            self.error_set(sentence)  # a preview is no job of anyone: say it in its corner
+            self.error_set(sentence)  # nobody reads reports of a preview: show it in its corner
         else:
             self.report({"ERROR"}, sentence)

@@ -1,13 +1,13 @@
-"""The engine of a viewport, for as long as Blender has it."""
+"""A reference to the engine of a viewport for as long as Blender has it."""
 
 import weakref
 
 
 def engine_reference(engine):
-    """A function: the engine, or None once Blender has freed it.
+    """A function that returns the engine, or None once Blender has freed it.
 
-    Its Python half may live on: in the frames of an exception that a log keeps, for one. Whatever is asked
-    of that raises ReferenceError.
+    Its Python half may live on, for example in the frames of an exception kept by a log. Any access to it
+    raises ReferenceError.
     """
     found = weakref.ref(engine)
 

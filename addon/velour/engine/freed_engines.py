@@ -1,5 +1,5 @@
-"""Ends viewports of engines that Blender has freed, whoever keeps their Python half: what has come to rest is
-on no other clock."""
+"""Closes viewports whose engine Blender has freed, even if its Python half lives on; idle viewports have no
+other clock."""
 
 import weakref
 

@@ -1,6 +1,6 @@
-"""Persistent Data: the scene of a final render is kept for the next frame, which takes what has changed.
+"""Persistent Data: keeps the scene of a final render for the next frame, which updates what has changed.
 
-With it Blender keeps the engine and the depsgraph, too, whose updates then are those since the frame before.
+Blender then also keeps the engine and the depsgraph, whose updates are those since the previous frame.
 """
 
 import contextlib
@@ -31,21 +31,21 @@ class KeptScene:
 
     @contextlib.contextmanager
     def frame(self, depsgraph, strict, asked):
-        """The SceneExport of a frame; what goes wrong, or is cancelled, leaves nothing to go on with."""
+        """The SceneExport of a frame, which is not kept after an error or a cancel."""
         export = self._followed(depsgraph, strict, asked) or SceneExport(Notes(), strict, asked)
         try:
             yield export
         except BaseException:
             export.close()
             raise
-        # A model for the scene takes a material's place in one frame, and maybe not in the next.
+        # A scene model may replace a material in one frame but not in the next.
         if strict and _is_persistent(depsgraph) and not export.materials.reduced:
             self._export, self._key = export, _key(depsgraph, asked)
         else:
             export.close()
 
     def _followed(self, depsgraph, strict, asked):
-        """What was kept, if it can go on; it belongs to the caller then."""
+        """The kept export, updated, if it can be reused; the caller then owns it."""
         export, self._export = self._export, None
         is_stale, self.is_stale = self.is_stale, False
         if export is None:
@@ -62,7 +62,7 @@ def _is_persistent(depsgraph):
 
 
 def _key(depsgraph, asked):
-    """What a scene that is kept cannot be changed in, or Blender does not always tell of."""
+    """State that a kept scene cannot update, or whose changes Blender does not always report."""
     world = shown_world(depsgraph)
     images = tuple(map(_image_key, bpy.data.images))
     materials = tuple(map(_material_key, bpy.data.materials))
@@ -75,7 +75,7 @@ def _image_key(image):
 
 
 def _material_key(material):
-    """A measured node is not linked, so nobody hears of another image in it."""
+    """Includes the image of the measured node, whose changes are not reported as the node is not linked."""
     node = velour_node(material)
     chosen = node and node.image and node.image.name_full
     return material.name_full, material.pass_index, chosen
@@ -83,9 +83,9 @@ def _material_key(material):
 
 @bpy.app.handlers.persistent
 def _forget(*_arguments):
-    """After undo, redo and loading, datablocks of other things may lie where those lay that were exported."""
+    """After undo, redo and loading, other datablocks may lie at the addresses of exported ones."""
     for kept in tuple(_all):
-        kept.is_stale = True  # a render may be at it, in a thread of its own
+        kept.is_stale = True  # not closed: a render thread may be using it
 
 
 def _handlers():

@@ -1,11 +1,11 @@
-"""Another image chosen in a measured node, of which Blender tells no material: the node is not linked."""
+"""Tags materials whose measured node gets another image; Blender does not, as the node is not linked."""
 
 import bpy
 
 from ..export.nodes import velour_node
 
 _owner = object()
-_chosen = {}  # names of images by names of materials
+_chosen = {}  # {name of material: name of image}
 
 
 def attach():
@@ -20,7 +20,7 @@ def detach():
 
 @bpy.app.handlers.persistent
 def _listen(*_arguments):
-    """Anew in each file: what listens is left behind in the last one."""
+    """Subscribes again in each file, as loading drops subscriptions."""
     bpy.msgbus.clear_by_owner(_owner)
     _chosen.clear()
     bpy.msgbus.subscribe_rna(key=(bpy.types.ShaderNodeTexImage, "image"), owner=_owner, args=(), notify=_tell)

@@ -5,7 +5,7 @@ from ..export.film import hides_world
 from ..export.world import layer_world
 from .denoising import missing
 
-_WITHOUT_END = 1 << 24  # light directions a pixel: more than anybody waits for
+_WITHOUT_END = 1 << 24  # light directions per pixel, more than anybody waits for
 
 
 def final_options(depsgraph, view, is_preview):
@@ -32,7 +32,7 @@ def viewport_options(depsgraph, view):
 
 
 def viewport_threads(scene):
-    """One is left to the interface."""
+    """All but one, which is left to the interface."""
     return max(1, scene.render.threads - 1)
 
 

@@ -1,4 +1,4 @@
-"""From the film's passes to Blender's render result."""
+"""Copies the film's passes to Blender's render result."""
 
 import json
 from typing import NamedTuple
@@ -11,7 +11,7 @@ from ..export.layer_passes import COMBINED, CRYPTOMATTES, layer_passes
 from ..native import cryptomatte_id
 
 _OF_LIGHT = ("Combined", "Noisy Image", "Error")
-_ALONG_CAMERA = ("Denoising Normal",)  # as Cycles has it; Normal itself is along the world's axes
+_ALONG_CAMERA = ("Denoising Normal",)  # as in Cycles; Normal itself is in world axes
 
 
 def register_passes(engine, scene, layer):
@@ -21,21 +21,21 @@ def register_passes(engine, scene, layer):
 
 
 def add_passes(engine, layer, shown):
-    """Before begin_result: what Blender does not make by itself; it leaves out what is there."""
+    """Call before begin_result(). Adds the passes that Blender does not make; it ignores those that exist."""
     for each in shown:
         if each.name != COMBINED.name:
             engine.add_pass(each.name, each.channels, each.letters, layer=layer.name)
 
 
 class Delivery(NamedTuple):
-    """From a job's film to Blender's result."""
+    """Copies a job's film to Blender's result."""
 
     result: bpy.types.RenderResult
     view: View
-    exposure: float  # what light is multiplied by
+    exposure: float  # factor on light
 
     def write(self, job, shown):
-        """As far as both have the LayerPasses `shown`."""
+        """Copies those of the LayerPasses `shown` that the result has."""
         by_name = {each.name: each for each in shown}
         for target in self.result.layers[0].passes:
             found = by_name.get(target.name)
@@ -54,7 +54,7 @@ class Delivery(NamedTuple):
 
 
 def _fill(rect, pixels):
-    """Blender 3.4 to 4.x take [pixels x channels], 5.x the same values flat; neither takes the other."""
+    """Blender 3.4 to 4.x take [pixels x channels], 5.x takes them flat; neither accepts the other."""
     try:
         rect.foreach_set(pixels)
     except TypeError:
@@ -62,7 +62,7 @@ def _fill(rect, pixels):
 
 
 def stamp_cryptomattes(result, layer, names):
-    """Metadata by which compositors find the names of ids (Cryptomatte specification); by kind `names`."""
+    """Adds metadata with the names of ids (Cryptomatte specification). `names`: by kind of Cryptomatte."""
     for kind, passes in CRYPTOMATTES.items():
         if getattr(layer, f"use_pass_cryptomatte_{kind}"):
             for field, value in _fields(f"{layer.name}.{passes}", names[kind]).items():

@@ -1,4 +1,4 @@
-"""Why a viewport is not in real time though it should be, and when that is worth another look."""
+"""Why a viewport cannot show the scene in real time, and when to try again."""
 
 import bpy
 
@@ -10,7 +10,7 @@ _MATERIALS = (bpy.types.Material, bpy.types.NodeTree)
 
 
 class Refusal:
-    """`is_curable`: by the scene; else by choosing the mode anew alone."""
+    """`is_curable`: a change of the scene may end it; otherwise only choosing the mode again does."""
 
     def __init__(self, reason, is_curable, depsgraph):
         self.sentence = f"Not in real time: {reason}"
@@ -19,10 +19,10 @@ class Refusal:
             self._numbers, self._measurements = _numbers(depsgraph), _measurements(depsgraph)
 
     def may_be_over(self, depsgraph):
-        """Of a changed scene: whether it has another number of objects or lamps, or another measurement.
+        """Whether a changed scene has another number of objects or lights, or another measurement.
 
-        What moves or is coloured cures nothing, and is not tried in real time at each step; nor counted, for
-        that looks at each instance.
+        Movements and colors end no refusal, so they cause neither a try in real time at each step nor a
+        count, which would visit each instance.
         """
         if not self._is_curable:
             return False
@@ -37,14 +37,14 @@ class Refusal:
 
 
 def _may_come_or_go(update):
-    """Whether there may be other objects or instances since."""
+    """Whether the update may have added or removed objects or instances."""
     if isinstance(update.id, bpy.types.Object):
         return update.is_updated_geometry and update.id.type != "LIGHT"
     return isinstance(update.id, (bpy.types.Scene, bpy.types.Collection))
 
 
 def _numbers(depsgraph):
-    """Of lamps and of all instances."""
+    """Numbers of lights and of all instances."""
     lamps = instances = 0
     for instance in depsgraph.object_instances:
         lamps += instance.object.type == "LIGHT"

@@ -1,4 +1,4 @@
-"""What a picture says in its metadata of how it was made: farms look at it before a frame counts as done."""
+"""Metadata of a picture on how it was made; farms check it before a frame counts as done."""
 
 import json
 
@@ -8,19 +8,18 @@ from ..native.version import version_text
 
 
 class Stamps:
-    """Of one engine, which Blender has render the view layers of a frame one after the other."""
+    """Stamps of one engine, which renders the view layers of a frame one after the other."""
 
     def __init__(self):
         self._frame = None
         self._models = {}  # {view layer: {material: hashes}}
 
     def add(self, result, depsgraph, models, notes_of_models, fields):
-        """Writes the fields once a view layer is rendered.
+        """Writes the fields after a view layer is rendered.
 
-        Of this layer are `models`, {material: hashes of the files it is rendered from}, and
-        `notes_of_models`, {material: what to say of its model for the scene}; `fields`, of the picture:
-        samples (the range of each pixel's that it has, where it has not all), denoised (what is known of its
-        error), biased_by (names of options); empty ones are left out.
+        Of this layer: `models`, {material: hashes of the files it is rendered from}, and `notes_of_models`,
+        {material: note on its scene model}. Of the picture: `fields`, namely samples (its range, if it has
+        not all), denoised (text on its error), biased_by (names of options); empty ones are left out.
         """
         layer, frame = depsgraph.view_layer_eval.name, depsgraph.scene_eval.frame_current
         if frame != self._frame:

@@ -1,7 +1,7 @@
-"""The rendered viewport: what one 3D viewport shows of the scene while it is looked at and changed.
+"""The rendered viewport: one 3D viewport that shows the scene while it is changed.
 
-The main thread exports and draws; a job of the library renders. A change stops the job, goes into the
-library's scene, and the job starts anew, coarse first.
+The main thread exports and draws; a job of the library renders. A change stops the job and is applied to the
+library's scene; then the job starts again, coarse first.
 """
 
 import functools
@@ -27,8 +27,8 @@ from .viewport_job import ViewportJob
 
 log = logging.getLogger(__package__)
 
-_PATIENCE = 0.04  # seconds that a change holds Blender up for the first picture of the change before
-_PROMPT = 0.04  # and for its own, which then is in the redraw at hand: another takes Blender longer than that
+_PATIENCE = 0.04  # seconds that a change blocks Blender for the first picture of the previous change
+_PROMPT = 0.04  # seconds for its own first picture, to show it in this redraw: another one would take longer
 
 _all = weakref.WeakSet()
 
@@ -37,15 +37,13 @@ class Viewport:
     def __init__(self, engine):
         self._engine = engine_reference(engine)
         self._live = None  # LiveExport
-        self._changes = Changes()  # that it has not taken up yet
+        self._changes = Changes()  # not yet applied to it
         self._job = ViewportJob()
-        self._key = (
-            None  # of the view that the job shows; None: of none, or of a scene before its last change
-        )
-        self._place = None  # in the region
+        self._key = None  # key of the view that the job shows; None: no view, or the scene has changed since
+        self._place = None  # the picture's place in the region
         self._scene_error = self._view_error = ""
-        self._real_time = None  # RealtimeViewport, where that shows the scene
-        self._refusal = None  # why it does not, though it should
+        self._real_time = None  # RealtimeViewport, if it shows the scene
+        self._refusal = None  # why it cannot
         _all.add(self)
         freed_engines.watch(self)
 
@@ -53,15 +51,15 @@ class Viewport:
         viewport_clock.forget(self)
         self._drop_real_time()
         self._close_job()
-        self._job = ViewportJob()  # whose picture nobody sees
+        self._job = ViewportJob()  # without the last picture
         self._drop_scene()
 
     def is_freed(self):
-        """Whether Blender has no engine of it any more."""
+        """Whether Blender has freed the engine."""
         return self._engine() is None
 
     def update(self, context, depsgraph):
-        """The scene has changed, or is shown for the first time."""
+        """Called when the scene has changed or is shown for the first time."""
         if self._refusal and self._refusal.may_be_over(depsgraph):
             self._refusal = None
         if self._is_real_time(depsgraph, lambda shown: shown.update(context, depsgraph)):
@@ -92,14 +90,14 @@ class Viewport:
 
     def _draw_real_time(self, context, depsgraph, shown):
         line = shown.draw(context, depsgraph)
-        if not shown.has_picture():  # the ray tracer's stays meanwhile
+        if not shown.has_picture():  # keeps the ray tracer's meanwhile
             self._draw_picture(depsgraph.scene_eval)
         return line
 
     def _is_real_time(self, depsgraph, show):
-        """Whether it is to be, and could be: `show` has been called with a RealtimeViewport.
+        """Whether real time is chosen and works: `show` has been called with a RealtimeViewport.
 
-        What real time cannot show, the ray tracer does, with a sentence, until the Refusal may be over.
+        The ray tracer shows what real time cannot, with a sentence, until the Refusal may be over.
         """
         if depsgraph.scene.velour.viewport_mode != "REAL_TIME":
             self._drop_real_time()
@@ -127,7 +125,7 @@ class Viewport:
         self._real_time = None
 
     def forget_scene(self):
-        """Nothing of what was exported may be taken for what is there now."""
+        """Drops the exported scene, which must not be mistaken for the current one."""
         if self._real_time:
             self._real_time.forget_scene()
         self._close_job()
@@ -137,11 +135,11 @@ class Viewport:
             engine.tag_redraw()
 
     def pause(self):
-        """Called from any thread; turn() goes on later."""
+        """May be called from any thread; turn() continues later."""
         self._job.pause()
 
     def turn(self):
-        """Between redraws. False: there is nothing to wait for."""
+        """Called between redraws. False: there is nothing to wait for."""
         engine = self._engine()
         if engine is None:
             self.close()
@@ -150,7 +148,7 @@ class Viewport:
         if viewport_clock.is_paused():
             self.pause()
             return True
-        if self._key is None or (self._changes and not self._job.must_be_seen()):  # draw() takes that up
+        if self._key is None or (self._changes and not self._job.must_be_seen()):  # draw() handles it
             engine.tag_redraw()
             return True
         is_due, has_more = self._job.turn()
@@ -159,7 +157,7 @@ class Viewport:
         return has_more
 
     def _take_up(self, context, depsgraph, is_told):
-        """`is_told`: the depsgraph says what has changed."""
+        """Applies changes of the scene. `is_told`: the depsgraph says what has changed."""
         try:
             look = Look(context, depsgraph)
             if self._live is None:
@@ -169,7 +167,7 @@ class Viewport:
                 self._changes.add(self._live.changes(depsgraph, look))
                 if self._changes:
                     self._job.await_first(_PATIENCE)
-            if self._changes and not self._job.must_be_seen():  # else turn() comes back to them
+            if self._changes and not self._job.must_be_seen():  # otherwise turn() returns to them
                 self._change(depsgraph, look)
         except Exception as error:
             self._scene_error = _sentence(error)
@@ -191,7 +189,7 @@ class Viewport:
             self._live.update(changes, depsgraph, look)
 
     def _follow(self, context, depsgraph):
-        """Takes up what the viewport looks through, and how it is rendered."""
+        """Applies changes of the view and of the render options."""
         if self._live is None:
             return
         self._job.raise_failure()
@@ -205,7 +203,7 @@ class Viewport:
         if is_same and frame.key() == self._key:
             return
         if is_same and self._key is not None and self._job.is_unseen():
-            return  # turn() comes back to it: else a view that turns on and on would never be seen
+            return  # turn() returns to it: otherwise a view in constant motion would show nothing
         self._restart(frame, options)
 
     def _restart(self, frame, options):
@@ -242,7 +240,7 @@ class Viewport:
 
 
 def _sentence(error):
-    """One line in the viewport."""
+    """The error as one line for the viewport."""
     if isinstance(error, (ExportError, VelourError)):
         return str(error)
     log.error("viewport failed", exc_info=error)
@@ -251,7 +249,7 @@ def _sentence(error):
 
 @bpy.app.handlers.persistent
 def _forget_scenes(*_arguments):
-    """After undo, redo and loading, datablocks of other things may lie where those lay that were exported."""
+    """After undo, redo and loading, other datablocks may lie at the addresses of exported ones."""
     for viewport in tuple(_all):
         viewport.forget_scene()
 

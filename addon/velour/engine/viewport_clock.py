@@ -1,7 +1,7 @@
-"""What goes on in rendered viewports between redraws: one timer for all, and a stop while Blender renders.
+"""One timer for all rendered viewports, which runs them between redraws, and a pause while Blender renders.
 
-Nothing calls from the library into Python, so the timer looks for new pictures. It ends when no viewport
-has anything to wait for.
+The library never calls into Python, so the timer looks for new pictures. It ends when no viewport has
+anything to wait for.
 """
 
 import contextlib
@@ -12,12 +12,12 @@ import bpy
 _SECONDS = 0.02
 
 _viewports = []
-_lock = threading.Lock()  # of the next: renders have threads of their own
+_lock = threading.Lock()  # guards _renders: renders have threads of their own
 _renders = 0
 
 
 def watch(viewport):
-    """From the main thread. Calls viewport.turn() until it is false, or until forget()."""
+    """Call in the main thread. Calls viewport.turn() until it returns False, or until forget()."""
     if viewport not in _viewports:
         _viewports.append(viewport)
     if not bpy.app.timers.is_registered(_turn):
@@ -30,7 +30,7 @@ def forget(viewport):
 
 
 def viewports():
-    """Those that have anything to wait for."""
+    """The viewports that have anything to wait for."""
     return tuple(_viewports)
 
 
@@ -40,7 +40,7 @@ def is_paused():
 
 @contextlib.contextmanager
 def paused():
-    """Viewports leave the processor to a render meanwhile, then go on where they were. From any thread."""
+    """Pauses viewports during a render; they continue where they were. May be called from any thread."""
     global _renders
     with _lock:
         _renders += 1

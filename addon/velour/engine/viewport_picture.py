@@ -12,16 +12,16 @@ class ViewportPicture:
 
     def __init__(self):
         self._pixels = np.empty(0, np.float32)
-        self._size = None  # of what was taken last
-        self._is_fresh = False  # it is not on the screen yet
-        self._version = 0  # the job's
+        self._size = None  # size of the last picture taken
+        self._is_fresh = False  # the picture is not on the screen yet
+        self._version = 0  # version of the job's picture
         self._texture = None
-        self._exposure = 1.0  # that it has
+        self._exposure = 1.0  # exposure of the texture
         self.samples = 0
-        self.shown_at = self.seconds = 0.0  # when, and how long it took
+        self.shown_at = self.seconds = 0.0  # time of the last upload; time to take and upload the picture
 
     def begin(self):
-        """Another job; what is on the screen stays until that has something to show."""
+        """Prepares for another job; the screen keeps the picture until the job has one."""
         self._version = self.samples = 0
 
     def is_behind(self, job):
@@ -29,7 +29,7 @@ class ViewportPicture:
         return picture.width > 0 and picture.version != self._version
 
     def take(self, job):
-        """Copies what the job has to show, where that is new."""
+        """Copies the job's picture if it is new."""
         if not self.is_behind(job):
             return
         begin = time.monotonic()
@@ -42,7 +42,7 @@ class ViewportPicture:
         self.seconds = time.monotonic() - begin
 
     def draw(self, engine, scene, place, exposure):
-        import gpu  # nothing headless comes here
+        import gpu  # missing without a window, where nothing is drawn
         from gpu_extras.presets import draw_texture_2d
 
         if self._is_fresh:
@@ -62,7 +62,7 @@ class ViewportPicture:
 
     def _upload(self, gpu, exposure):
         values = self._pixels[: 4 * self._size[0] * self._size[1]]
-        if exposure != 1.0:  # the pixels stay: another may be asked for
+        if exposure != 1.0:  # a copy: the exposure may change
             values = (values.reshape(-1, 4) * np.float32((exposure, exposure, exposure, 1))).reshape(-1)
         values = np.clip(values, -_HALF_MAX, _HALF_MAX)
         buffer = gpu.types.Buffer("FLOAT", values.size, values)

@@ -1,4 +1,4 @@
-"""From Blender's evaluated depsgraph to the library's scene."""
+"""Export of Blender's evaluated depsgraph to the library's scene."""
 
 from .notes import ExportError, Notes
 from .scene import export_scene

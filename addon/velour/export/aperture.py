@@ -4,11 +4,11 @@ _LEAST_STOP, _LEAST_FOCUS = 1e-5, 1e-5
 
 
 def aperture(camera, depsgraph):
-    """The keywords of Scene.set_camera for an evaluated camera; none where all is sharp."""
+    """Aperture keywords of Scene.set_camera for an evaluated camera; empty without depth of field."""
     dof = camera.data.dof
     if not dof.use_dof:
         return {}
-    # An orthographic camera has no focal length: as in Cycles, its lens counts as one of a metre.
+    # Orthographic cameras have no focal length; like Cycles, assume 1 m.
     focal_length = 1.0 if camera.data.type == "ORTHO" else camera.data.lens * 1e-3
     return {
         "aperture": focal_length / (2.0 * max(dof.aperture_fstop, _LEAST_STOP)),
@@ -20,7 +20,7 @@ def aperture(camera, depsgraph):
 
 
 def _focus(camera, dof, depsgraph):
-    """Along the line of sight."""
+    """Focus distance along the line of sight."""
     if dof.focus_object is None:
         return dof.focus_distance
     target = dof.focus_object.evaluated_get(depsgraph)

@@ -1,6 +1,6 @@
-"""Blender's matrices as the library wants them.
+"""Converts Blender's matrices for the library.
 
-Both are right-handed, +z up, in metres; cameras and lights look along -z.
+Both are right-handed, +z up, in meters; cameras and lights look along -z.
 """
 
 import numpy as np
@@ -12,7 +12,7 @@ def affine(matrix):
 
 
 def unscaled(matrix):
-    """`affine` with axes of length 1, as Blender's cameras and lights stand: mirrored, sheared, unscaled."""
+    """`affine` with unit axes: Blender's cameras and lights keep mirroring and shear, but ignore scale."""
     out = affine(matrix)
     lengths = np.linalg.norm(out[:, :3], axis=0)
     if lengths.min() > 0:
@@ -23,5 +23,5 @@ def unscaled(matrix):
 
 
 def column_lengths(matrix):
-    """How much the matrix stretches the local x, y and z axes."""
+    """Scale factors of the local x, y and z axes."""
     return tuple(matrix.col[axis].to_3d().length for axis in range(3))

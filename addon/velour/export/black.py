@@ -1,4 +1,4 @@
-"""Pictures that can only be black: refused with the reason, unless they may be meant."""
+"""Refuses renders that can only be black, unless they may be intended."""
 
 from .film import hides_world
 from .layer_passes import shows_more_than_light
@@ -16,7 +16,7 @@ _NOTHING_SEEN = (
 
 
 def refuse_black(depsgraph, objects, materials, world_shines, notes):
-    """Of the ObjectExport and MaterialTable of what `depsgraph` shows."""
+    """Refuses or notes a black render. `objects`: ObjectExport, `materials`: MaterialTable of `depsgraph`."""
     scene = depsgraph.scene_eval
     if scene.render.film_transparent:
         return
@@ -35,7 +35,7 @@ def refuse_black(depsgraph, objects, materials, world_shines, notes):
 
 
 def may_be_meant(depsgraph):
-    """Whether somebody may want a black picture: it is part of another, or is not looked at for light."""
+    """Whether a black image may be intended: it is composited, or rendered for passes other than light."""
     scene = depsgraph.scene
     layers = [other for other in scene.view_layers if other.use]
     composited = scene.render.use_compositing and _compositor(scene)
@@ -49,7 +49,7 @@ def _compositor(scene):
 
 
 def is_animated(block):
-    """Whether a datablock, its nodes or its shapes may be others in another frame."""
+    """Whether a datablock, its nodes or its shape keys are animated."""
     blocks = (block, getattr(block, "node_tree", None), getattr(block, "shape_keys", None))
     return any(_has_animation(each) for each in blocks if each is not None)
 
@@ -73,7 +73,7 @@ def _may_shine_later(obj):
 
 
 def _faces_may_change(obj):
-    """Modifiers and particles may have nothing to show in this frame alone."""
+    """Whether the object may have faces in other frames; modifiers and particles may be empty in this one."""
     if obj.type in ("LIGHT", "CAMERA", "SPEAKER", "LIGHT_PROBE"):
         return False
     blocks = [block for block in (obj, obj.data) if block is not None]
@@ -81,7 +81,7 @@ def _faces_may_change(obj):
 
 
 def refuse_dark_inside(depsgraph, pixels, surroundings):
-    """A black picture of the inside of a thing that nothing lights; of a flight through it, frames may be."""
+    """Refuses a black image from inside an unlit object; frames of an animation may pass through one."""
     scene = depsgraph.scene
     is_part = scene.render.use_border or any(map(is_animated, scene.objects)) or may_be_meant(depsgraph)
     if surroundings and not is_part and not pixels[..., :3].any():

@@ -1,4 +1,4 @@
-"""Where this Blender's add-on keeps what can always be made again."""
+"""Folder for cached data that can always be recreated."""
 
 import bpy
 
@@ -6,9 +6,9 @@ from ..core.cache import user_cache_folder
 
 
 def cache_folder():
-    """An extension's own folder where there are extensions, else the user's cache."""
+    """The extension's own folder if Blender supports extensions, otherwise the user's cache folder."""
     package = __package__.rpartition(".")[0]
     try:
         return bpy.utils.extension_path_user(package, path="cache")
-    except (AttributeError, ValueError):  # Blender before 4.2; installed as a plain add-on
+    except (AttributeError, ValueError):  # Blender before 4.2, or installed as a legacy add-on
         return user_cache_folder()

@@ -1,4 +1,4 @@
-"""Blender's camera as a window: left, right, bottom, top of the picture."""
+"""Blender's camera as a screen window: left, right, bottom, top."""
 
 from typing import NamedTuple
 
@@ -11,7 +11,7 @@ from .notes import ExportError
 
 
 class View(NamedTuple):
-    """The keywords of Scene.set_camera, and the size of the picture."""
+    """Keywords of Scene.set_camera, and the image size in pixels."""
 
     kind: str
     camera_to_world: np.ndarray
@@ -20,20 +20,20 @@ class View(NamedTuple):
     clip_end: float
     width: int
     height: int
-    lens: dict  # keywords of the aperture; empty: all is sharp
+    lens: dict  # aperture keywords; empty: no depth of field
 
     def add_to(self, scene):
         clips = {"clip_start": self.clip_start, "clip_end": self.clip_end}
         scene.set_camera(self.kind, self.camera_to_world, self.window, **clips, **self.lens)
 
     def along_axes(self, directions):
-        """[n x 3] of the world, along the camera's own axes: to the right, up and into the scene."""
+        """World directions [n x 3] along the camera's axes: right, up and into the scene."""
         axes = self.camera_to_world[:, :3] * np.array((1, 1, -1), np.float32)
-        return directions @ np.linalg.pinv(axes).T  # axes of a squashed camera may lie in a plane
+        return directions @ np.linalg.pinv(axes).T  # a flattened camera's axes may be coplanar
 
 
 def final_view(depsgraph, notes, whole=False):
-    """The view of a final render: the scene's camera, film size and, unless `whole`, render border."""
+    """View of a final render: the scene's camera, film size and, unless `whole`, render border."""
     scene = depsgraph.scene_eval
     if scene.camera is None:
         raise ExportError(
@@ -62,7 +62,7 @@ def final_view(depsgraph, notes, whole=False):
 
 
 def _full_size(render):
-    """In whole numbers: 100 times 0.57 is a little less than 57."""
+    """Image size in integer arithmetic, because 100 * 0.57 is slightly less than 57."""
     percentage = render.resolution_percentage
     return tuple(max(1, side * percentage // 100) for side in (render.resolution_x, render.resolution_y))
 
@@ -74,13 +74,13 @@ def _projection(camera, depsgraph, render, size):
 
 
 def perspective_window(projection):
-    """At distance 1: inverts x_ndc = (P00 x + P02 z) / -z at z = -1 for x_ndc = -1 and 1, likewise for y."""
+    """Window at z = -1; inverts x_ndc = (P00 x + P02 z) / -z for x_ndc = -1 and 1, likewise for y."""
     x, y = projection[0], projection[1]
     return (x[2] - 1) / x[0], (x[2] + 1) / x[0], (y[2] - 1) / y[1], (y[2] + 1) / y[1]
 
 
 def orthographic_window(projection):
-    """In metres: inverts x_ndc = P00 x + P03."""
+    """Window in meters; inverts x_ndc = P00 x + P03."""
     x, y = projection[0], projection[1]
     return (-1 - x[3]) / x[0], (1 - x[3]) / x[0], (-1 - y[3]) / y[1], (1 - y[3]) / y[1]
 
@@ -89,10 +89,10 @@ _WINDOWS = {"PERSP": perspective_window, "ORTHO": orthographic_window}
 
 
 def _inside_border(window, size, render):
-    """The part of window and film that a render border leaves, cut at whole pixels as Blender cuts."""
+    """Window and film size cropped to the render border, rounded to whole pixels like Blender."""
     if not render.use_border:
         return window, size
-    # In float32, as Blender does: 0.9 of 120 pixels are 108, though a float 0.9 is a little less than that.
+    # In float32, like Blender: 0.9 * 120 then gives 108, although a float 0.9 is slightly less than 0.9.
     x0, x1 = (int(np.float32(b) * np.float32(size[0])) for b in (render.border_min_x, render.border_max_x))
     y0, y1 = (int(np.float32(b) * np.float32(size[1])) for b in (render.border_min_y, render.border_max_y))
     if x1 <= x0 or y1 <= y0:
@@ -101,7 +101,7 @@ def _inside_border(window, size, render):
 
 
 def inside(window, size, x0, y0, x1, y1):
-    """The part of a window of `size` pixels that lies between pixels, and its size."""
+    """Crops a window of `size` pixels to a range of pixels; returns the new window and size."""
     left, right, bottom, top = window
     dx, dy = (right - left) / size[0], (top - bottom) / size[1]
     return (left + x0 * dx, left + x1 * dx, bottom + y0 * dy, bottom + y1 * dy), (x1 - x0, y1 - y0)

@@ -1,4 +1,4 @@
-"""How large texels are in the scene's camera: rays of a coarse grid, since what is hidden does not count."""
+"""Texel size in the scene camera, found with a coarse grid of rays so that hidden parts do not count."""
 
 import numpy as np
 from mathutils import Vector
@@ -6,14 +6,14 @@ from mathutils import Vector
 from .camera import final_view
 from .notes import Notes
 
-_RAYS = 32  # each way, over the part of the picture that the object may be in
+_RAYS = 32  # per axis, over the image region that may contain the object
 
 
 def texels_per_pixel(depsgraph, obj, texels_per_unit):
-    """The least and the median number of texels along a pixel's width, or None where the object is not seen.
+    """Minimum and median number of texels across a pixel's width; None if the object is not visible.
 
-    `texels_per_unit`: of each face, a Blender unit of the world; NaN: another material. Surfaces count as if
-    they faced the camera: at an angle there are more. Raises ExportError without a camera.
+    `texels_per_unit`: per face, texels per Blender unit in world space; NaN: face of another material.
+    Surfaces are assumed to face the camera; tilted ones have more. Raises ExportError without a camera.
     """
     view = final_view(depsgraph, Notes(), whole=True)
     found = []
@@ -27,7 +27,7 @@ def texels_per_pixel(depsgraph, obj, texels_per_unit):
 
 
 def _places(view, obj):
-    """Of the grid: parts of the picture's width and height, from the lower left."""
+    """Grid points as fractions of the image's width and height, from the lower left."""
     low, high = _frame_of(view, obj)
     steps = (np.arange(_RAYS) + 0.5) / _RAYS
     for y in low[1] + steps * (high[1] - low[1]):
@@ -36,7 +36,7 @@ def _places(view, obj):
 
 
 def _frame_of(view, obj):
-    """Corners of the part of the picture that the object's bounding box is in; all if it reaches the eye."""
+    """Corners of the image region of the object's bounding box; the whole image if it reaches the eye."""
     corners = [_local(view, obj.matrix_world @ Vector(corner)) for corner in obj.bound_box]
     left, right, bottom, top = view.window
     if view.kind == "perspective":
@@ -53,7 +53,7 @@ def _frame_of(view, obj):
 
 
 def _local(view, point):
-    """In the camera's axes; it looks along -z."""
+    """`point` in camera space; the camera looks along -z."""
     return view.camera_to_world[:, :3].T @ (np.array(point) - view.camera_to_world[:, 3])
 
 
@@ -67,7 +67,7 @@ def _ray(view, place):
 
 
 def _pixel(view, location):
-    """Width of a pixel there, in Blender's units."""
+    """Width of a pixel at `location`, in Blender units."""
     left, right = view.window[:2]
     depth = -_local(view, location)[2] if view.kind == "perspective" else 1.0
     return depth * (right - left) / view.width

@@ -1,8 +1,9 @@
-"""What a viewport's scene has to take up of what Blender says has changed."""
+"""Changes reported by Blender that a viewport's scene must apply."""
 
 import bpy
 
-# Of objects and worlds that show them more is said; that a datablock was looked at says nothing.
+# Ignored: the objects and worlds that use these report their own changes, and an update may only mean that
+# the datablock was evaluated.
 _SAID_ELSEWHERE = (
     bpy.types.Camera,
     bpy.types.Mesh,
@@ -16,7 +17,7 @@ _SAID_ELSEWHERE = (
     bpy.types.NodeTree,
     bpy.types.Scene,
 )
-# What no picture shows; some are of newer Blenders.
+# Types that are never rendered; some exist only in newer Blender versions.
 _NEVER_SHOWN = tuple(
     getattr(bpy.types, name)
     for name in (
@@ -26,7 +27,7 @@ _NEVER_SHOWN = tuple(
     if hasattr(bpy.types, name)
 )
 _WITHOUT_A_PICTURE = ("CAMERA", "SPEAKER", "LIGHT_PROBE", "ARMATURE", "LATTICE")
-# Nor these, as they are: geometry nodes may make meshes of them, and instances.
+# Not rendered themselves either, but geometry nodes may turn them into meshes and instances.
 _LEFT_OUT = ("GPENCIL", "GREASEPENCIL", "CURVES", "POINTCLOUD", "VOLUME")
 
 
@@ -36,8 +37,8 @@ def may_be_shown(obj):
 
 
 class Changes:
-    """Of a depsgraph's updates. Datablocks are pointers of the .blend's: those that Blender evaluates may be
-    gone when what was changed is taken up."""
+    """Changes from a depsgraph's updates. Datablocks are stored as pointers of the originals, since evaluated
+    copies may be gone when the changes are applied."""
 
     def __init__(self, updates=()):
         self.everything = self.objects = self.lights = self.world = self.scene = False
@@ -47,12 +48,12 @@ class Changes:
             self._add(update)
 
     def add(self, later):
-        """Other Changes, made after these."""
+        """Merges Changes made after these."""
         for name, value in vars(later).items():
             setattr(self, name, getattr(self, name) | value)
 
     def changed_materials(self, depsgraph):
-        """As the depsgraph evaluates them now."""
+        """Changed materials as currently evaluated by the depsgraph."""
         if not self.materials:
             return []
         changed = (block for block in bpy.data.materials if block.as_pointer() in self.materials)

@@ -1,4 +1,4 @@
-"""Colour spaces between Blender's scene-linear and the library's Rec. 709."""
+"""Color conversion between Blender's scene-linear space and the library's Rec. 709."""
 
 import numpy as np
 from mathutils import Color
@@ -14,45 +14,45 @@ def rec709_to_working():
 
 
 def working_to_rec709(color):
-    """A colour of the working space, alpha or not, as three numbers in linear Rec. 709."""
+    """Converts a working-space color, with or without alpha, to a linear Rec. 709 triple."""
     matrix = rec709_to_working()
-    if np.allclose(matrix, np.eye(3), atol=1e-4):  # but for what Blender rounds
+    if np.allclose(matrix, np.eye(3), atol=1e-4):  # up to Blender's rounding
         return tuple(color[:3])
     return tuple(float(c) for c in np.linalg.inv(matrix) @ np.array(color[:3]))
 
 
 def rec709_pixels_to_working(pixels):
-    """[... x channels] of linear Rec. 709, alpha or not, in Blender's scene-linear working space."""
+    """Converts linear Rec. 709 [... x channels], with or without alpha, to Blender's scene-linear space."""
     rgb = pixels[..., :3] @ rec709_to_working().T.astype(np.float32)
     return np.concatenate((rgb, pixels[..., 3:]), axis=-1)
 
 
 def set_working_space(scene):
-    """Tells the library's `scene` in which space its colours are, where that is not Rec. 709."""
+    """Sets the working color space of the library's `scene` unless it is Rec. 709."""
     working = rec709_to_working()
     if not np.allclose(working, np.eye(3), atol=1e-6):
         scene.set_working_space(working.astype(np.float32))
 
 
 def luminance_weights():
-    """[3] float32: luminance of a colour of the working space."""
+    """[3] float32 weights of the luminance of a working-space color."""
     return (np.array((0.2126, 0.7152, 0.0722)) @ np.linalg.inv(rec709_to_working())).astype(np.float32)
 
 
 def is_linear_rec709(space_name):
-    """True where a file in this colour space holds linear Rec. 709, and that is also the working space."""
+    """Whether the named color space is linear Rec. 709 and that is also the working space."""
     return space_name in _LINEAR_REC709 and np.allclose(rec709_to_working(), np.eye(3), atol=1e-4)
 
 
 def is_data(space_name):
-    """Whether values in this colour space are no colours."""
+    """Whether the named color space holds non-color data."""
     return space_name in _DATA
 
 
 def bytes_to_working(pixels, space_name):
-    """Working-space values of an 8-bit image's [... x channels] pixels, which Blender hands out undecoded.
+    """Working-space values of an 8-bit image's pixels [... x channels], which Blender returns undecoded.
 
-    The second value is False where the colour space is not known here and sRGB was assumed.
+    The second value is False if the color space is unknown and sRGB was assumed.
     """
     if is_data(space_name):
         return pixels, True

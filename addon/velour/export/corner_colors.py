@@ -1,4 +1,4 @@
-"""Attributes of meshes as the colours of their corners."""
+"""Mesh attributes as corner colors."""
 
 from typing import NamedTuple
 
@@ -9,10 +9,10 @@ from .image_nodes import UnsupportedError
 from .newer import UNKNOWN
 
 MOST_SETS = 4  # VLR_MOST_COLOR_SETS
-# Types that Cycles reads: the property of an element, and how many numbers it has.
+# Attribute types that Cycles reads: property of an element, and number of components.
 _READ = {
     "FLOAT_COLOR": ("color", 4),
-    "BYTE_COLOR": ("color", 4),  # which Blender hands out decoded
+    "BYTE_COLOR": ("color", 4),  # Blender returns it decoded
     "FLOAT": ("value", 1),
     "INT": ("value", 1),
     "BOOLEAN": ("value", 1),
@@ -22,16 +22,16 @@ _READ = {
 
 
 class CornerColors(NamedTuple):
-    """What a node shows of an attribute."""
+    """Output of a shader node that reads an attribute."""
 
-    name: str | None  # None: the colour attribute that renders
+    name: str | None  # None: the active render color attribute
     part: str  # the node's output: Color, Vector, Fac or Alpha
-    is_number: bool  # it is linked to a number; on the corners it then is a grey
-    otherwise: float = 0.0  # on meshes without the attribute
+    is_number: bool  # linked to a float input; stored as gray on the corners
+    otherwise: float = 0.0  # value on meshes without the attribute
 
 
 def corner_colors_of(plug, is_number):
-    """At the output of a node that shows an attribute, as an input that is a number or a colour takes it."""
+    """CornerColors of an attribute node's output. `is_number`: it is linked to a float input, not a color."""
     node, part = plug.node, plug.socket.name
     if node.bl_idname == "ShaderNodeVertexColor":
         return CornerColors(node.layer_name or None, part, is_number)
@@ -44,7 +44,7 @@ def corner_colors_of(plug, is_number):
 
 
 def shader_colors(owner, sources, notes):
-    """The sets that a material asks for, of the pictures and CornerColors in its layers."""
+    """The distinct CornerColors among the sources of a material's layers, at most MOST_SETS."""
     asked = tuple(dict.fromkeys(source for source in sources if isinstance(source, CornerColors)))
     if len(asked) > MOST_SETS:
         notes.add(
@@ -55,14 +55,14 @@ def shader_colors(owner, sources, notes):
 
 
 def colors_of_slots(colors):
-    """What object_arrays() takes, of the sets that the slots of a mesh ask for."""
+    """The `colors` argument of object_arrays() for the sets of each slot of a mesh."""
     return colors if any(colors) else ()
 
 
 def corner_colors(mesh, arrays, colors):
-    """[sets x corners x 3], None of none. `arrays`: MeshArrays; `colors`: of each slot its CornerColors.
+    """[sets x corners x 3]; None without sets. `arrays`: MeshArrays; `colors`: CornerColors of each slot.
 
-    The last slot stands for all beyond. Where a mesh has no such attribute it is what Cycles shows.
+    The last slot stands for all further ones. Missing attributes get the value that Cycles uses.
     """
     count = max(map(len, colors), default=0)
     if count == 0:
@@ -82,7 +82,7 @@ def has_attribute(mesh, asked):
 
 
 def missing_colors(obj, asked, material_name):
-    """The sentence for an object that has_attribute() is false of."""
+    """Note for an object without the attribute."""
     what = "colour attribute" if asked.name is None else f"colours or numbers '{asked.name}'"
     return (
         f"Object '{obj.name}': it has no {what} for material '{material_name}', which shows"
@@ -93,19 +93,19 @@ def missing_colors(obj, asked, material_name):
 class _Attribute(NamedTuple):
     data: object  # Blender's collection of elements
     domain: str
-    field: str  # an element's property
-    size: int  # how many numbers it has
+    field: str  # property of an element
+    size: int  # number of components
 
 
 def _attribute(mesh, name):
-    """The _Attribute of that name; None: there is none that can be read."""
+    """The _Attribute of that name; None if it is missing or cannot be read."""
     if name is None:
         colors = getattr(mesh, "color_attributes", ())
         index = colors.render_color_index if len(colors) else -1
         found = colors[index] if 0 <= index < len(colors) else None
     else:
         found = mesh.attributes.get(name)
-        if found is None and name in mesh.uv_layers:  # before Blender 3.5 these are no attributes
+        if found is None and name in mesh.uv_layers:  # not attributes before Blender 3.5
             return _Attribute(mesh.uv_layers[name].data, "CORNER", "uv", 2)
     if found is None or found.data_type not in _READ or found.domain not in _SPREAD:
         return None
@@ -123,7 +123,7 @@ def _corner_values(mesh, arrays, asked):
 
 
 def _shown(values, asked):
-    """[elements x 3] What the output of a node gives, [elements x 1 to 4] of the attribute."""
+    """Node output [elements x 3] for attribute values [elements x 1 to 4]."""
     size = values.shape[1]
     color = np.pad(values, ((0, 0), (0, 1))) if size == 2 else values[:, :3]
     if asked.part == "Alpha":

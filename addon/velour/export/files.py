@@ -19,7 +19,7 @@ FIND = "put it back, or use File > External Data > Find Missing Files"
 
 
 def absolute_path(image):
-    """The file that an image datablock names, in the reader's file system; "" where it names none."""
+    """Absolute path of an image datablock's file; "" if it has none."""
     path = image.filepath
     return os.path.normpath(bpy.path.abspath(path, library=image.library)) if path else ""
 
@@ -31,17 +31,17 @@ def packed_bytes(image):
 
 
 class ChangedFileError(ExportError):
-    """The file is another one than that which was chosen, and can be accepted."""
+    """The file has changed since it was chosen; the user can accept it."""
 
 
 class StoredFile(NamedTuple):
-    """What is to be read of an image datablock, which undo may replace meanwhile: any thread may read it."""
+    """File of an image datablock. Any thread may read it, even after undo has replaced the datablock."""
 
-    owner: str  # begins the sentence when it cannot be had
-    name: str  # of the image
+    owner: str  # start of error messages
+    name: str  # name of the image
     path: str
     packed: bytes | None
-    expected: str  # the SHA-256 of what was loaded or fitted; "" where any content will do
+    expected: str  # SHA-256 of the file that was loaded or fitted; "": accept any content
 
     @classmethod
     def of(cls, image, owner):
@@ -60,7 +60,7 @@ class StoredFile(NamedTuple):
             ) from error
 
     def model_and_digest(self):
-        """The model in it, and the file's SHA-256; refuses a content that is not the expected one."""
+        """The model and the file's SHA-256; raises ChangedFileError if that is not the expected one."""
         data = self.content()
         digest = sha256(data)
         self.refuse_other(digest)
@@ -73,7 +73,7 @@ class StoredFile(NamedTuple):
         return self.model_and_digest()[0]
 
     def model_info(self):
-        """What panels show of that model; and the SHA-256 of its file, as "file_sha256"."""
+        """The model's info for panels, with the SHA-256 of its file as "file_sha256"."""
         model, digest = self.model_and_digest()
         with model:
             return {**model.info(), "file_sha256": digest}
@@ -84,7 +84,7 @@ class StoredFile(NamedTuple):
 
     @contextlib.contextmanager
     def readable_path(self):
-        """A path of it, which exists; packed bytes are written to a temporary file first."""
+        """An existing path of the file; packed bytes are written to a temporary file first."""
         if self.packed is None:
             if not os.path.exists(self.path):  # some BTFs are folders
                 raise ExportError(f"{self.owner}: the measurement {self.named} is missing; {FIND}.")
@@ -97,7 +97,7 @@ class StoredFile(NamedTuple):
             yield path
 
     def raw_info(self):
-        """What the library knows of the measurement or BTF in it; its "kind" says which it is."""
+        """The library's info on the measurement or BTF; "kind" tells which it is."""
         try:
             with self.readable_path() as path:
                 return library.file_info(path)
@@ -105,13 +105,13 @@ class StoredFile(NamedTuple):
             raise ExportError(f"{self.owner}: {error}") from error
 
     def chosen_raw_info(self):
-        """As raw_info(); refuses a content that is not the expected one."""
+        """Like raw_info(); raises ChangedFileError if the content is not the expected one."""
         info = self.raw_info()
         self.refuse_other(info["sha256"])
         return info
 
     def raw(self, kind):
-        """The Measurement or the Btf (`kind`) in it; refuses a content that is not the expected one."""
+        """Loads the file as `kind`, Measurement or Btf; raises ChangedFileError if it has changed."""
         try:
             with self.readable_path() as path:
                 raw = kind.load(path)
@@ -129,12 +129,12 @@ class StoredFile(NamedTuple):
 
 
 def content(image, owner):
-    """The bytes of the file that `image` stands for. `owner` begins the sentence when they cannot be had."""
+    """The bytes of the file that `image` stands for. `owner` starts error messages."""
     return StoredFile.of(image, owner).content()
 
 
 def file_stamp(path):
-    """Another one for another file, or another content; None: there is none."""
+    """A value that differs for another file or changed content; None if there is no file."""
     try:
         found = os.stat(path)
     except OSError:
@@ -143,7 +143,7 @@ def file_stamp(path):
 
 
 def stamp_of(image):
-    """Of what `image` (or None) stands for: another one where that may be something else."""
+    """A value that differs when the file that `image` (or None) stands for may have changed."""
     if image is None:
         return None
     packed = image.packed_file
@@ -158,25 +158,25 @@ def is_there(image):
 
 
 def read_model(image, owner):
-    """The model in `image`; refuses one that is not the file it was when it was loaded or fitted."""
+    """The model in `image`; raises ChangedFileError if the file changed since it was loaded or fitted."""
     return StoredFile.of(image, owner).model()
 
 
 def read_measurement(image, owner):
-    """As read_model, for raw measurements of BRDFs."""
+    """Like read_model(), for raw BRDF measurements."""
     return StoredFile.of(image, owner).raw(Measurement)
 
 
 def read_btf(image, owner):
-    """As read_model, for captured and measured BTFs."""
+    """Like read_model(), for captured and measured BTFs."""
     return StoredFile.of(image, owner).raw(Btf)
 
 
 class MeasurementReading:
-    """A job, to be used as one, that reads what read_measurement() does.
+    """Job with the interface of Job that reads like read_measurement().
 
-    Waiting for it raises nothing but a cancel: what is wrong with the file is said by result(). `may_differ`:
-    whether another content will do than that which was chosen.
+    wait() raises only on cancellation; result() raises errors of the file. `may_differ`: accept content that
+    has changed since it was chosen.
     """
 
     def __init__(self, image, owner, may_differ=False):
@@ -185,7 +185,7 @@ class MeasurementReading:
             self._stored = self._stored._replace(expected="")
         with contextlib.ExitStack() as until_read:
             path = until_read.enter_context(self._stored.readable_path())
-            self._stored = self._stored._replace(packed=None)  # they are in a file now
+            self._stored = self._stored._replace(packed=None)  # the bytes are in a file now
             self._job = measurement_job(path)
             self._opened = until_read.pop_all()
 
@@ -200,7 +200,7 @@ class MeasurementReading:
         self._job.cancel()
 
     def wait(self, progress=None, timeout=None):
-        """As Job.wait()."""
+        """Like Job.wait()."""
         try:
             return self._job.wait(progress, timeout)
         except VelourError as error:
@@ -229,5 +229,5 @@ class MeasurementReading:
 
 
 def measurement_info(image, owner):
-    """As StoredFile.raw_info()."""
+    """StoredFile.raw_info() of `image`."""
     return StoredFile.of(image, owner).raw_info()

@@ -1,13 +1,13 @@
-"""Settings of the film and of what it shows that Blender keeps with Cycles; read while that is enabled."""
+"""Film settings that Blender stores with Cycles; available only while Cycles is enabled."""
 
 
 def film_exposure(scene):
-    """What light is multiplied by."""
+    """Exposure factor of the film; 1 without Cycles."""
     cycles = getattr(scene, "cycles", None)
     return getattr(cycles, "film_exposure", 1.0)
 
 
 def hides_world(world):
-    """Whether the camera sees black in the place of the world."""
+    """Whether the camera sees black instead of the world."""
     visibility = getattr(world, "cycles_visibility", None)
     return not getattr(visibility, "camera", True)

@@ -1,4 +1,4 @@
-"""Image Texture nodes that stand for a number of a material."""
+"""Image Texture nodes that drive a material parameter."""
 
 from typing import NamedTuple
 
@@ -13,15 +13,15 @@ _SOURCES = ("FILE", "GENERATED")
 
 
 class Picture(NamedTuple):
-    """What the library needs of a node, less the pixels."""
+    """Data of an Image Texture node, without the pixels."""
 
     image: object  # bpy.types.Image
-    alpha: bool  # its alpha, not its colour
-    beside_alpha: bool  # something looks at the node's alpha
+    alpha: bool  # use alpha instead of color
+    beside_alpha: bool  # the node's alpha output is linked
     wrap: str
     filter: str
-    uv_map: np.ndarray  # [2 x 3]: (u, v, 1) of the mesh to the picture's coordinates
-    coordinates: str  # name of the mesh's UV map; empty: the one that renders
+    uv_map: np.ndarray  # [2 x 3]: maps the mesh's (u, v, 1) to image coordinates
+    coordinates: str  # name of the mesh's UV map; empty: the active render map
 
 
 class UnsupportedError(Exception):
@@ -29,7 +29,7 @@ class UnsupportedError(Exception):
 
 
 def picture_of(plug, owner, notes):
-    """The Picture at a node's output; raises UnsupportedError of any node but Image Texture."""
+    """The Picture at a node's output; raises UnsupportedError unless it is an Image Texture."""
     node = plug.node
     if node.bl_idname != "ShaderNodeTexImage":
         raise UnsupportedError(f"'{node.name}' is not an Image Texture")
@@ -56,7 +56,7 @@ def _check(node):
 
 
 def _uv_map(vector):
-    """`uv_map` and `coordinates` of what is linked to an Image Texture's vector; nothing: the mesh's own."""
+    """`uv_map` and `coordinates` of an Image Texture's Vector input; unlinked: the mesh's own."""
     fed = fed_by(vector)
     if fed is None:
         return np.eye(2, 3, dtype=np.float32), ""
@@ -83,7 +83,7 @@ def _mapping_matrix(plug):
         raise UnsupportedError(f"something is linked to '{node.name}'")
     rotation = Euler(node.inputs["Rotation"].default_value).to_matrix().to_4x4()
     scale = Matrix.Diagonal((*node.inputs["Scale"].default_value, 1.0))
-    location = node.inputs.get("Location")  # newer Blenders find it only where the type uses it
+    location = node.inputs.get("Location")  # newer Blender versions have it only for types that use it
     shift = Matrix.Translation(location.default_value) if location is not None else Matrix()
     kinds = {
         "POINT": lambda: shift @ rotation @ scale,

@@ -1,14 +1,14 @@
-"""Instances that differ in nothing but what and where they are, handed on together."""
+"""Batches of instances that differ only in mesh and transform."""
 
 from array import array
 
 import numpy as np
 
-_NOTHING = 2**32 - 1  # the number of no mesh
+_NOTHING = 2**32 - 1  # stands for a missing mesh
 
 
 class InstanceGroups:
-    """Collects them, and adds the instances of each group to `scene` by one call."""
+    """Collects instances and adds each group to `scene` with one call."""
 
     def __init__(self, scene, notes):
         self._scene = scene
@@ -16,7 +16,7 @@ class InstanceGroups:
         self._groups = {}
 
     def add(self, mesh, look, matrix, owner):
-        """`mesh`: its place in a MeshQueue; `look`: (materials, hidden, terminator) of Scene.add_instances.
+        """`mesh`: index in a MeshQueue; `look`: (materials, hidden, terminator) of Scene.add_instances.
 
         `owner`: the object's Owner.
         """
@@ -29,9 +29,9 @@ class InstanceGroups:
         rows.fromlist([*matrix[0], *matrix[1], *matrix[2]])
 
     def add_to_scene(self, numbers):
-        """The owners, in the order of the instances in the scene.
+        """Adds the groups; returns the owners in the order of the instances in the scene.
 
-        `numbers`: of the queue; instances of meshes that have none are left out.
+        `numbers`: scene mesh ids by queue index; instances of meshes without one are left out.
         """
         all_owners = []
         numbers = np.array([_NOTHING if number is None else number for number in numbers], np.uint32)

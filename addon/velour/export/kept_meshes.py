@@ -1,4 +1,4 @@
-"""The meshes of an export that goes on: what has not changed is not looked at again."""
+"""Mesh cache of a live export: unchanged meshes are not exported again."""
 
 from ..core.mesh_queue import MeshQueue
 
@@ -6,31 +6,31 @@ _MOST_REMOVED = 4096
 
 
 class KeptMeshes(dict):
-    """What ObjectExport makes of a mesh, by its key; of a single export no more than that."""
+    """Results of ObjectExport by mesh key. A single export uses it as a plain dictionary."""
 
     def __init__(self):
         super().__init__()
         self._changed = frozenset()
         self._used = set()
-        self._replaced = []  # by other geometry of the same objects
+        self._replaced = []  # entries whose objects have new geometry
         self._queue = None
         self._removed = 0
 
     def queue(self, scene, notes):
-        """The MeshQueue of all exports, which are into the same scene."""
+        """The MeshQueue that all exports share; they go into the same scene."""
         if self._queue is None:
             self._queue = MeshQueue(scene, notes)
         return self._queue
 
     def begin(self, changed):
-        """Another export; `changed`: pointers of objects of the .blend whose geometry may be another one."""
+        """Starts an export. `changed`: pointers of original objects whose geometry may have changed."""
         self._changed = changed
         self._used = set()
 
     def has(self, key, obj):
-        """Whether what is kept under `key` is the mesh of the evaluated object `obj` that shows it now.
+        """Whether the entry under `key` is the current mesh of the evaluated object `obj`.
 
-        Memory of evaluated meshes is used again, so the key alone does not tell.
+        Blender reuses the memory of evaluated meshes, so the key alone is not enough.
         """
         is_known = key in self and (key in self._used or obj.original.as_pointer() not in self._changed)
         self._used.add(key)
@@ -39,7 +39,7 @@ class KeptMeshes(dict):
         return is_known
 
     def remove_unused(self, scene):
-        """From the library's scene, what no object shows since begin()."""
+        """Removes meshes that no object has used since begin() from the library's scene."""
         dropped = self._replaced + [self.pop(key) for key in set(self) - self._used]
         self._replaced = []
         numbers = [self._queue.numbers()[mesh.place] for mesh in dropped if mesh]
@@ -50,5 +50,5 @@ class KeptMeshes(dict):
 
     @property
     def are_worn(self):
-        """Whether so many were removed, whose numbers stay in the scene, that all had better begin anew."""
+        """Whether so many meshes were removed, whose ids stay allocated, that a full export is due."""
         return self._removed > _MOST_REMOVED

@@ -1,4 +1,4 @@
-"""The passes that a view layer asks for, as Cycles names them."""
+"""Passes enabled in a view layer, named as in Cycles."""
 
 from typing import NamedTuple
 
@@ -9,22 +9,22 @@ from .notes import listed
 
 class LayerPass(NamedTuple):
     name: str
-    letters: str  # of its channels
-    kind: str  # of the compositor's socket
-    source: str | None  # the library's pass that it shows; None: nothing moves, it is 0
-    asks: str | None = None  # of table.PASSES; None: every film has it
+    letters: str  # one per channel
+    kind: str  # type of the compositor's socket
+    source: str | None  # the library's pass; None: all zero, since motion is not supported
+    asks: str | None = None  # key in table.PASSES; None: every film has it
 
     @property
     def channels(self):
         return len(self.letters)
 
 
-# Blender 5.0 spells them out, and no property tells.
+# Blender 5.0 spells these names out, and no property reveals them.
 _INDEX_NAMES = ("IndexOB", "IndexMA") if bpy.app.version < (5, 0) else ("Object Index", "Material Index")
 _OBJECT_INDEX = LayerPass(_INDEX_NAMES[0], "X", "VALUE", "IndexOB", "object_index")
 _MATERIAL_INDEX = LayerPass(_INDEX_NAMES[1], "X", "VALUE", "IndexMA", "material_index")
 
-# The switches of a view layer, and what each switches on.
+# Switches of a view layer, and the passes that each enables.
 _SWITCHES = (
     ("use_pass_z", (LayerPass("Depth", "Z", "VALUE", "Depth"),)),
     ("use_pass_mist", (LayerPass("Mist", "Z", "VALUE", "Mist", "mist"),)),
@@ -35,7 +35,7 @@ _SWITCHES = (
     ("use_pass_object_index", (_OBJECT_INDEX,)),
     ("use_pass_material_index", (_MATERIAL_INDEX,)),
 )
-_OWN_SWITCHES = (  # of Velour's settings
+_OWN_SWITCHES = (  # in Velour's settings
     ("use_pass_albedo", (LayerPass("Albedo", "RGB", "COLOR", "Albedo", "albedo"),)),
     (
         "use_pass_denoising",
@@ -47,13 +47,13 @@ _OWN_SWITCHES = (  # of Velour's settings
     ("use_pass_error", (LayerPass("Error", "RGB", "COLOR", "Error", "error"),)),
     ("use_pass_sample_count", (LayerPass("Sample Count", "X", "VALUE", "Sample Count"),)),
 )
-_ALPHA_THRESHOLD = 0.5  # of a new view layer
-_SWITCHED_APART = {  # by Cycles, and by Velour
+_ALPHA_THRESHOLD = 0.5  # default of a view layer
+_SWITCHED_APART = {  # separate switches in Cycles and in Velour
     "Denoising": ("denoising_store_passes", "use_pass_denoising"),
     "Sample Count": ("pass_debug_sample_count", "use_pass_sample_count"),
 }
 CRYPTOMATTES = {"object": "CryptoObject", "material": "CryptoMaterial", "asset": "CryptoAsset"}
-# Ids are no colours: in small letters neither Blender halves their floats nor OpenEXR's DWA rounds them.
+# Ids are not colors. Lowercase channel names keep Blender from storing half floats and DWA from rounding.
 _IDS = "rgba"
 
 COMBINED = LayerPass("Combined", "RGBA", "COLOR", "Combined")
@@ -62,7 +62,7 @@ _NOISY = LayerPass("Noisy Image", "RGBA", "COLOR", "Combined")
 
 
 def layer_passes(scene, layer):
-    """The LayerPasses of a view layer of a scene."""
+    """The LayerPasses of a scene's view layer."""
     return [*([_DENOISED, _NOISY] if scene.velour.use_denoising else [COMBINED]), *_further_passes(layer)]
 
 
@@ -78,15 +78,15 @@ def _further_passes(layer):
 
 
 def as_rendered(shown):
-    """The same LayerPasses where the picture is not denoised, as it is but a part."""
+    """The LayerPasses of a partial image, which is not denoised."""
     return [COMBINED if each is _DENOISED else each for each in shown]
 
 
 def note_missing_passes(layer, notes):
-    """What other engines would make, and Velour does not."""
+    """Notes the enabled passes that Velour does not support."""
     known = {switch for switch, _ in _SWITCHES} | {f"use_pass_cryptomatte_{kind}" for kind in CRYPTOMATTES}
     known |= {"use_pass_combined", "use_pass_cryptomatte_accurate"}
-    known.add("use_pass_grease_pencil")  # 5.0 and newer: Blender makes it
+    known.add("use_pass_grease_pencil")  # 5.0 and newer: rendered by Blender
     owner = f"View layer '{layer.name}'"
     cycles = getattr(layer, "cycles", None)
     for name in (*_asked_passes(layer, known), *_asked_passes(cycles)):
@@ -104,7 +104,7 @@ def note_missing_passes(layer, notes):
 
 
 def _asked_passes(owner, known=()):
-    """Names of those that are on, but for `known` switches; `owner` None: there are none."""
+    """Names of the enabled passes except `known` switches; none if `owner` is None."""
     for each in owner.bl_rna.properties if owner else ():
         is_pass = each.identifier.startswith("use_pass_") and each.identifier not in known
         if is_pass and getattr(owner, each.identifier):
@@ -112,5 +112,5 @@ def _asked_passes(owner, known=()):
 
 
 def shows_more_than_light(layer):
-    """Whether it has passes that tell of the scene where no light falls; nearly every layer has depth."""
+    """Whether it has passes that need no light. Depth does not count, since nearly every layer has it."""
     return any(each.name != "Depth" for each in _further_passes(layer))

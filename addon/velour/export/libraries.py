@@ -1,4 +1,4 @@
-"""Linked .blend files that are not there."""
+"""Missing linked .blend files."""
 
 import os
 
@@ -10,7 +10,7 @@ from .world import layer_world
 
 
 def refuse_missing_libraries(scene):
-    """Refuses an original scene that shows something of a library that is gone: it would show less."""
+    """Raises ExportError if an original scene uses a missing library, whose data would not render."""
     missing = {library.as_pointer() for library in bpy.data.libraries if not _is_there(library)}
     for block in _shown_by(scene) if missing else ():
         library = block.library
@@ -28,7 +28,7 @@ def _path(library):
 
 
 def _shown_by(scene):
-    """Datablocks that a picture of the scene is made of, each once; what is gone has left a stand-in."""
+    """Datablocks that a render of the scene uses, each once; Blender keeps placeholders for missing ones."""
     worlds = [layer_world(scene, layer) for layer in scene.view_layers]
     waiting, seen = [scene.collection, *worlds], set()
     while waiting:

@@ -1,4 +1,4 @@
-"""What the shader nodes of a lamp say beside its own settings."""
+"""Shader nodes of lights."""
 
 from .newer import has_nodes
 from .nodes import active_output
@@ -10,8 +10,8 @@ _AS_IT_IS = (1.0, 1.0, 1.0)
 
 
 def emission_factor(lamp):
-    """The colour that a lamp's light is multiplied by, as in Cycles; None: its nodes are more than one
-    Emission of constant colour and strength."""
+    """Color factor on a light's emission, as in Cycles; None if its nodes are more than one Emission node
+    with constant color and strength."""
     if not has_nodes(lamp):
         return _AS_IT_IS
     output = active_output(lamp.node_tree, "ShaderNodeOutputLight")

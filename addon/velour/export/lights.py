@@ -1,4 +1,4 @@
-"""Blender's lamps in the library's units."""
+"""Blender's lights in the library's units."""
 
 import math
 
@@ -11,9 +11,9 @@ from .newer import choice
 from .notes import ExportError
 from .unused_settings import note_emitter
 
-# What lamps emit of their nominal power changed between 3.4 and 4.3, with the release that made spheres
-# of point lamps, and no property tells. Area lamps had a radiance of P / (4 A), a Lambert emitter's is
-# P / (pi A); suns were disks on a plane at distance 1, and are cones of even radiance.
+# The emission of a given nominal power changed between Blender 3.4 and 4.3, in the release that made point
+# lights spheres; no property reveals it. Area lights had a radiance of P / (4 A), while a Lambertian emitter
+# has P / (pi A); suns were disks on a plane at distance 1 and now are cones of constant radiance.
 _OLDER_LAMPS = bpy.app.version < (4, 0)
 _AREA_POWER = math.pi / 4 if _OLDER_LAMPS else 1.0
 
@@ -21,10 +21,10 @@ _FACTORS = ("diffuse_factor", "specular_factor", "volume_factor")
 
 
 def add_light(scene, obj, matrix, notes):
-    """Whether it shines. `obj`: an evaluated lamp object, `matrix`: where this instance of it stands."""
+    """Adds a light; returns whether it emits. `obj`: evaluated object, `matrix`: its instance's transform."""
     lamp = obj.data
     if lamp.type == "AREA" and getattr(getattr(lamp, "cycles", None), "is_portal", False):
-        return False  # no lamp: it only shows Cycles where the sky comes in
+        return False  # not a light: portals only guide Cycles' environment sampling
     owner = f"Light '{obj.name}'"
     emission = emission_factor(lamp)
     if emission is None:
@@ -48,13 +48,13 @@ def add_light(scene, obj, matrix, notes):
 
 
 def power(lamp, matrix):
-    """W, or W/m^2 of a sun: the nominal one times two to the exposure and, unless normalised, the area."""
-    watts = lamp.energy * 2.0 ** getattr(lamp, "exposure", 0.0)  # 4.5 and newer, as what follows
+    """Power in W, or W/m^2 for suns: nominal power times 2^exposure and, unless normalized, the area."""
+    watts = lamp.energy * 2.0 ** getattr(lamp, "exposure", 0.0)  # exposure and normalize: 4.5 and newer
     return watts if getattr(lamp, "normalize", True) else watts * lamp.area(matrix_world=matrix)
 
 
 def tinted(lamp):
-    """Its colour times that of a black body of its temperature."""
+    """The light's color times the blackbody color of its temperature."""
     tint = lamp.temperature_color if getattr(lamp, "use_temperature", False) else (1.0, 1.0, 1.0)
     return tuple(c * t for c, t in zip(lamp.color, tint, strict=True))
 
@@ -73,9 +73,9 @@ def _sun(lamp, _matrix):
 
 
 def _sun_factor(angle):
-    """Irradiance of a facing plane over Blender's strength; 1 for a small sun.
+    """Irradiance on a facing plane divided by Blender's strength; 1 for a small sun.
 
-    Of older suns it is the mean cosine over a disk seen under `angle`, uniform on the plane at distance 1.
+    For older suns, the mean cosine over a disk that subtends `angle`, uniform on the plane at distance 1.
     """
     if angle < 1e-3 or not _OLDER_LAMPS:
         return 1.0
@@ -84,7 +84,7 @@ def _sun_factor(angle):
 
 
 def _point(lamp, _matrix):
-    # Before soft falloff became a choice all were disks that face what they light.
+    # Before soft falloff became an option, all were disks facing the shading point.
     sphere = not getattr(lamp, "use_soft_falloff", True)
     return "point", 1.0, {"size": (lamp.shadow_soft_size, 0.0), "sphere": int(sphere)}
 
@@ -98,7 +98,7 @@ def _spot(lamp, matrix):
 
 
 def cone_scale(matrix):
-    """How much wider a spot's cone is along its x and y; 1 where the scale is even, or zero along an axis."""
+    """Scale of a spot's cone along x and y; 1 if the object's scale is uniform, or zero along an axis."""
     x, y, z = column_lengths(matrix)
     return (x / z, y / z) if x * y * z > 0.0 else (1.0, 1.0)
 
@@ -114,7 +114,6 @@ _DESCRIBE = {"SUN": _sun, "POINT": _point, "SPOT": _spot, "AREA": _area}
 
 
 def _casts_shadow(lamp):
-    cycles = getattr(
-        lamp, "cycles", None
-    )  # the one stock switch that a ray tracer reads, while Cycles is enabled
+    # Older versions have a shadow switch for ray tracers in Cycles' settings, while that is enabled.
+    cycles = getattr(lamp, "cycles", None)
     return int(getattr(lamp, "use_shadow", True) and getattr(cycles, "cast_shadow", True))

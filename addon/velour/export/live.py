@@ -1,4 +1,4 @@
-"""The library's scene of what a viewport shows, kept up with the .blend: what changed alone is taken anew."""
+"""The library's scene for a viewport, updated incrementally with changes of the .blend."""
 
 import numpy as np
 from mathutils import Matrix
@@ -15,10 +15,10 @@ from .world_light import WorldLight
 
 
 class LiveExport:
-    """Not committed: whoever renders it does. The camera is for others to set."""
+    """The renderer commits the scene and sets its camera."""
 
     def __init__(self, depsgraph, look, scene=None):
-        """`scene`: another one than the library's that takes the same."""
+        """`scene`: replacement for the library's Scene with the same interface."""
         self.scene = Scene() if scene is None else scene
         try:
             set_working_space(self.scene)
@@ -36,7 +36,7 @@ class LiveExport:
         self.scene.close()
 
     def changes(self, depsgraph, look):
-        """What depsgraph and viewport say has changed; with `everything` another export is to be made."""
+        """Changes reported by depsgraph and viewport; `everything` asks for a new export."""
         changes = Changes(depsgraph.updates)
         objects, world, scene = look.key()
         changes.objects |= objects != self._look[0]
@@ -54,7 +54,7 @@ class LiveExport:
             self._add_world(depsgraph, look)
 
     def _renew(self, materials):
-        """Whether what shows them has to be looked at again: they look at other texture coordinates."""
+        """Updates materials; returns whether their objects must be exported again for texture coordinates."""
         return any([self._materials.renew(material) for material in materials])
 
     def _add_objects(self, depsgraph, look, changed=frozenset()):

@@ -1,4 +1,4 @@
-"""What a 3D viewport lets be seen of its scene: local view, and what lights it."""
+"""Visibility and lighting in a 3D viewport."""
 
 from typing import NamedTuple
 
@@ -12,11 +12,11 @@ _TYPE_SHOWN = "show_object_viewport_"
 class StudioLight(NamedTuple):
     path: str
     strength: float
-    turn: float  # of directions about z, radians
+    turn: float  # rotation of directions about z, radians
 
 
 class Look:
-    """Of the viewport that is drawn."""
+    """Visibility and lighting of the viewport being drawn."""
 
     def __init__(self, context, depsgraph):
         space = context.space_data
@@ -32,13 +32,13 @@ class Look:
         self._types = _shown_types(space)
 
     def key(self):
-        """Of the objects, the world and the scene: equal while no datablock of these changes."""
+        """Keys of viewport state that affects the objects, the world and the scene, apart from datablocks."""
         return (self._seen, self._types, self.has_lights), (self.studio_light, *self._world), self._scene
 
     def shows(self, instance):
-        """Whether an instance of the depsgraph is there.
+        """Whether an instance of the depsgraph is visible.
 
-        Blender looks at its own type, and at its parent for local view and local collections.
+        Blender checks its own type, and its parent for local view and local collections.
         """
         if not instance.show_self:
             return False
@@ -46,9 +46,9 @@ class Look:
         return obj.visible_in_viewport_get(self._space) and (self.has_lights or obj.type != "LIGHT")
 
     def _all_seen(self, depsgraph):
-        """Blender tells of a change of visibility no more than that the scene changes.
+        """Visible objects. Blender reports a change of visibility only as a change of the scene.
 
-        With its last modifier goes what geometry nodes made of an object that is left out without.
+        Removing the last modifier of an unsupported type also removes the geometry that its nodes made.
         """
         layer, space = depsgraph.view_layer, self._space
         return frozenset(
@@ -62,7 +62,7 @@ class Look:
 
 
 def _shown_types(space):
-    """The types of objects that the viewport shows: of instances nothing else tells."""
+    """Object types that the viewport shows; nothing else reports a change of these for instances."""
     names = (setting.identifier for setting in space.bl_rna.properties)
     return frozenset(name for name in names if name.startswith(_TYPE_SHOWN) and getattr(space, name))
 
@@ -75,7 +75,7 @@ def _studio_light(shading):
 
 
 def scene_key(depsgraph):
-    """What of the scene changes objects, beside themselves."""
+    """Scene settings that affect objects."""
     scene, layer = depsgraph.scene, depsgraph.view_layer
     override = layer.material_override
     units = scene.unit_settings

@@ -1,4 +1,4 @@
-"""Blender materials as numbers in the library's scene."""
+"""Blender materials by number in the library's scene."""
 
 from ..native import Shader, VelourError
 from .corner_colors import CornerColors, shader_colors
@@ -15,10 +15,10 @@ from .visibility import hidden_backs
 
 
 class MaterialTable:
-    """Adds each material once, with its full model; which of them may change to another one is in `reduced`.
+    """Adds each material once, with its full model; those that may switch to a scene model are in `reduced`.
 
-    `strict` refuses a measured material that cannot be had; else (previews, the viewport) it renders as its
-    Principled approximation, with a note.
+    `strict` refuses measured materials that cannot be read; otherwise (previews, the viewport) they render as
+    their Principled approximation, with a note.
     """
 
     def __init__(self, scene, notes, strict=True):
@@ -26,55 +26,55 @@ class MaterialTable:
         self._notes = notes
         self.strict = strict
         self._numbers = {}
-        self._labels = {}  # by number
+        self._labels = {}  # keys: material numbers
         self._uv_maps = {}
-        self._colors = {}  # the CornerColors that each asks for
-        self._tiles = {}  # of materials that repeat over surfaces
-        self._turns = {}  # of others that are anisotropic: radians
-        self._textured = set()  # of others: those with textures
+        self._colors = {}  # CornerColors of each
+        self._tiles = {}  # Tiles of repeating materials
+        self._turns = {}  # rotation of other anisotropic materials, radians
+        self._textured = set()  # materials with textures
         self._textures = TextureTable(scene, notes)
         self._measured = MeasuredMaterials(scene, notes)
-        self.models = {}  # hashes of the files of measured materials, by full name
-        self.glows = False  # one of them may shine by itself
-        self.beyond_reflection = []  # sentences: what of mixed materials no BTF can hold
+        self.models = {}  # file hashes of measured materials, by full name
+        self.glows = False  # whether any may emit light
+        self.beyond_reflection = []  # notes: parts of mixed materials that a BTF cannot represent
 
     @property
     def reduced(self):
         return self._measured.reduced
 
     def find(self, material):
-        """The number of a material of the .blend; None where nothing shows it."""
+        """Number of an original material; None if nothing uses it."""
         return self._numbers.get(material.as_pointer())
 
     def tile(self, material):
-        """The Tile of a material that has its number; None of one that has no tiles."""
+        """Tile of an added material; None if it does not repeat."""
         return self._tiles.get(_key(material))
 
     def turn(self, material):
-        """Radians, of an anisotropic material that has its number and no tiles; 0 of others."""
+        """Rotation in radians of an added anisotropic material without tiles; 0 for others."""
         return self._turns.get(_key(material), 0.0)
 
     def uv_maps(self, material):
-        """Its UvMaps; the material is added."""
+        """UvMaps of a material, which is added if needed."""
         self.number(material)
         return self._uv_maps[_key(material)]
 
     def colors(self, material):
-        """The CornerColors that it shows, in the order of their sets; the material is added."""
+        """CornerColors of a material in the order of their sets; the material is added if needed."""
         self.number(material)
         return self._colors.get(_key(material), ())
 
     def has_pictures(self, material):
-        """Whether a material that has its number shows any."""
+        """Whether an added material uses textures."""
         return _key(material) in self._textured
 
     def needs_coordinates(self, material):
-        """Whether a material that has its number looks at texture coordinates."""
+        """Whether an added material uses texture coordinates."""
         key = _key(material)
         return key in self._textured or key in self._tiles or key in self._turns
 
     def number(self, material):
-        """`material` may be None: Blender's default grey."""
+        """Number of a material, which is added if needed; None: Blender's default gray."""
         key = _key(material)
         if key not in self._numbers:
             self._uv_maps[key] = placed_map(material)
@@ -83,13 +83,13 @@ class MaterialTable:
         return self._numbers[key]
 
     def labels(self):
-        """By number the name, None where there is no material, and the index."""
+        """Name and pass index by number; the name is None for the default material."""
         return self._labels
 
     def renew(self, material):
-        """Takes up another look of a material, where it is shown.
+        """Updates a changed material if it is in use.
 
-        Whether what shows it has to be looked at again: texture coordinates and tiles are other ones.
+        Returns whether its objects must be exported again, because texture coordinates or tiles changed.
         """
         key = _key(material)
         if key not in self._numbers:
@@ -97,11 +97,11 @@ class MaterialTable:
         before = self._needs(key)
         if not self._adjust(material):
             self._add_anew(material)
-        # How tiles lie is told by settings of the material.
+        # Settings of the material determine how tiles are placed.
         return self._needs(key) != before or key in self._tiles
 
     def _adjust(self, material):
-        """Of a measured material, whether that is enough: its model is what it was."""
+        """Updates a measured material in place; False if that is not enough: its model has changed."""
         node, number = velour_node(material), self._numbers[_key(material)]
         info = node and self._measured.adjust(material, node, number)
         if not info:
@@ -168,7 +168,7 @@ class MaterialTable:
             return self._with_rays(self._scene.add_shader_material(shader), material)
 
     def _with_rays(self, number, material):
-        """The material, which rays are drawn to and meet as the artist wants it."""
+        """Sets backface culling and light sampling of a material; returns its number."""
         self._scene.hide_backs(number, hidden_backs(material))
         if not draws_rays(material):
             self._scene.set_drawn_to(number, False)
@@ -186,12 +186,12 @@ class MaterialTable:
             shader.weigh_layer(factor.kind, factor.value, *(slot or ()))
 
     def _slots(self, layer, material):
-        """TextureSlots of a Layer's pictures that can be read, and of its CornerColors."""
+        """TextureSlots of a Layer's readable images and of its CornerColors."""
         slots = {n: self._slot(picture, n == "base_color", material) for n, picture in layer.pictures.items()}
         return {name: slot for name, slot in slots.items() if slot}
 
     def _slot(self, picture, is_color, material):
-        """None: the value below the link is used."""
+        """TextureSlot of a picture; None: use the socket's own value."""
         if isinstance(picture, CornerColors):
             colors = self._colors[_key(material)]
             return self._textures.of_corners(colors.index(picture)) if picture in colors else None
@@ -202,7 +202,7 @@ class MaterialTable:
         return slot
 
     def _note_measured(self, material, info):
-        """What a measured material looks at of where it lies. `info`: of its model or measurement."""
+        """Records which coordinates a measured material needs. `info`: info of its model or measurement."""
         self.models[material.name_full] = model_hashes(material)
         tile, key = Tile.of(material, info), _key(material)
         if tile:
@@ -222,7 +222,7 @@ def _owner(material):
 
 
 def draws_rays(material):
-    """Whether Cycles draws rays to surfaces that glow; its settings are there only with Cycles."""
+    """Whether Cycles light-samples emissive surfaces; the setting exists only while Cycles is enabled."""
     settings = getattr(material, "cycles", None)
     if settings is None:
         return True
@@ -232,5 +232,5 @@ def draws_rays(material):
 
 
 def _key(material):
-    """Of the datablock in the .blend, whatever evaluated copy of it is given."""
+    """Pointer of the original datablock, for any evaluated copy of it."""
     return material.original.as_pointer() if material else None

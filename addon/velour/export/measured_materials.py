@@ -10,32 +10,35 @@ from .visibility import hidden_backs
 
 
 class Reduced(NamedTuple):
-    """A material that may render with its model for the scene."""
+    """A material that may render with its scene model."""
 
-    number: int  # of the material in the library's scene
+    number: int  # material number in the library's scene
     name: str
-    model: Model  # the one for the scene; the full one is in the library's scene
+    model: Model  # the scene model; the full one is in the library's scene
     neighbors: int
-    has_full: bool  # False: the full model is missing, and the other one is in its place
-    image: str  # name of the one that holds the model for the scene
+    has_full: bool  # False: the full model is missing, and the scene model replaces it
+    image: str  # name of the image that holds the scene model
 
 
 class _Known(NamedTuple):
-    source: tuple  # what its reflection was read from
-    info: dict  # of the model or measurement
+    source: tuple  # _source() at the time of reading
+    info: dict  # info of the model or measurement
 
 
 class MeasuredMaterials:
-    """Of one library scene. What their files hold is read once: a tint changes many times a second."""
+    """Measured materials of one library scene. Files are read once: a tint changes many times a second."""
 
     def __init__(self, scene, notes):
         self._scene = scene
         self._notes = notes
-        self._known = {}  # by pointers of materials of the .blend
+        self._known = {}  # keys: pointers of original materials
         self.reduced = []
 
     def add(self, material, node):
-        """Its number, and the info of its model or measurement. Raises ExportError or VelourError."""
+        """Adds a material; returns its number and its model's or measurement's info.
+
+        Raises ExportError or VelourError.
+        """
         source = _source(node)
         number, info = self._read(material, node)
         self._adjust(material, node, number, info)
@@ -43,9 +46,9 @@ class MeasuredMaterials:
         return number, info
 
     def adjust(self, material, node, number):
-        """Takes up what does not ask for its files, of a material that has its number.
+        """Applies settings of an added material that need none of its files.
 
-        The info as above; None: it shows another model, or another measurement, than what was added.
+        Returns the info as add() does; None if its model or measurement has been replaced.
         """
         known = self._known.get(material.original.as_pointer())
         if known is None or known.source != _source(node):
@@ -54,7 +57,7 @@ class MeasuredMaterials:
         return known.info
 
     def forget(self, material):
-        """Its number stands for something else from now on."""
+        """Forgets a material whose number is reused."""
         self._known.pop(material.original.as_pointer(), None)
 
     def drop_reduced(self, number):
@@ -89,7 +92,7 @@ class MeasuredMaterials:
             return self._scene.add_model_material(model, settings.neighbors), model.info()
 
     def _read_model(self, image, settings, owner):
-        """The model, as rough as the artist wants it."""
+        """The model with the roughness offset applied."""
         model = files.read_model(image, owner)
         if settings.roughness == 0 or self._note_roughness(settings, model.info(), owner):
             return model
@@ -97,7 +100,7 @@ class MeasuredMaterials:
             return model.roughened(settings.roughness)
 
     def _note_roughness(self, settings, info, owner):
-        """Whether the roughness offset cannot be had; it is noted where it is asked for."""
+        """Whether the roughness offset is unsupported; adds a note if one is set."""
         reason = roughness_reason(info, settings.use_reference)
         if reason and settings.roughness > 0:
             self._notes.add(f"{owner}: {reason}")
@@ -132,7 +135,7 @@ class MeasuredMaterials:
 
 
 def _source(node):
-    """What its reflection is read from: equal if and only if that would be the same."""
+    """Key of the files and settings of its reflectance: equal if and only if the reflectance is the same."""
     settings = node.velour
     other = settings.measurement if settings.use_reference else settings.scene_model
     is_other_used = settings.use_reference or settings.use_scene_model
@@ -141,5 +144,5 @@ def _source(node):
 
 
 def gain(settings):
-    """What a measured material's reflection is multiplied with: the artist's tint and exposure."""
+    """Factor on a measured material's reflectance, from tint and exposure."""
     return tuple(channel * 2.0**settings.exposure for channel in settings.tint)

@@ -10,7 +10,7 @@ from ..core.mesh_arrays import MeshArrays
 from ..core.projection import box_projection
 from .corner_colors import corner_colors, has_attribute
 
-# To ask each mesh for what it has not is slow.
+# Looking up a missing attribute on every mesh is slow.
 _HAS_DOMAINS = "normals_domain" in bpy.types.Mesh.bl_rna.properties  # 4.1 and newer
 
 
@@ -19,16 +19,16 @@ def _own(_name, count, dtype):
 
 
 def object_arrays(obj, uv_maps=(), colors=(), empty=_own, shows_uvs=False):
-    """MeshArrays of an evaluated object; None where it has no face.
+    """MeshArrays of an evaluated object; None if it has no faces.
 
-    `empty`: gives memory for a field, by its name, how many numbers and of which type.
+    `empty`: allocates a field, given its name, number of values and dtype.
 
-    `uv_maps`: for each material slot, of which the last stands for all beyond, the UvMaps of its faces.
-    Empty, or where there is none of a name: the one that renders. None: no texture coordinates, as on
-    meshes without UV maps, but for slots that project. `colors`: likewise the CornerColors that they show.
+    `uv_maps`: UvMaps of each material slot; the last one stands for all further slots. The active render map
+    replaces missing ones, and is used if `uv_maps` is empty. None: no texture coordinates. Meshes without UV
+    maps have none either, except for slots that project. `colors`: likewise the CornerColors of each slot.
 
-    `shows_uvs`: where there are UV maps, the one that renders is there in any case: as the first set where
-    `uv_maps` names none, else as the last.
+    `shows_uvs`: always include the active render map, if there is one: as the first set if `uv_maps` names
+    none, otherwise as the last.
     """
     if not _must_convert(obj):
         return mesh_arrays(obj.data, uv_maps, colors, empty, shows_uvs)
@@ -52,14 +52,14 @@ def has_colors(obj, asked):
 
 
 def triangle_faces(obj):
-    """[triangles] The face of an evaluated object that each triangle of object_arrays() is a part of."""
+    """[triangles] Face index of each triangle that object_arrays() returns for an evaluated object."""
     with _mesh_of(obj) as mesh:
         mesh.calc_loop_triangles()
         return _faces(mesh, len(mesh.loop_triangles))
 
 
 def _must_convert(obj):
-    """Only what is not a mesh yet, or is being edited, needs a copy."""
+    """Only objects of other types, and meshes in edit mode, need a converted copy."""
     return obj.type != "MESH" or obj.mode == "EDIT"
 
 
@@ -74,7 +74,7 @@ def _mesh_of(obj):
 
 
 def mesh_arrays(mesh, uv_maps=(), colors=(), empty=_own, shows_uvs=False):
-    """`mesh` in its local space, split into Blender's own triangles; None where it has no face."""
+    """MeshArrays of `mesh` in local space, with Blender's own triangulation; None if it has no faces."""
     mesh.calc_loop_triangles()
     count = len(mesh.loop_triangles)
     if count == 0:
@@ -84,7 +84,7 @@ def mesh_arrays(mesh, uv_maps=(), colors=(), empty=_own, shows_uvs=False):
     arrays = MeshArrays(
         _fill(empty("positions", 3 * len(vertices), np.float32), vertices, "co").reshape(-1, 3),
         corners.reshape(-1, 3),
-        # What triangles say of vertices and materials they look up one by one, many times slower.
+        # Reading vertices and materials from triangles looks them up one by one and is many times slower.
         _fill(empty("corner_vertices", len(loops), np.uint32), loops, "vertex_index"),
         _material_slots(mesh, count, empty),
         *_normals(mesh, count, empty),
@@ -97,7 +97,7 @@ def mesh_arrays(mesh, uv_maps=(), colors=(), empty=_own, shows_uvs=False):
 
 
 def _material_slots(mesh, count, empty):
-    """[triangles]; None: without an attribute that says otherwise all faces are of the first slot."""
+    """[triangles]; None: all faces use the first slot, as there is no attribute."""
     if len(mesh.materials) <= 1 and "material_index" not in mesh.attributes:
         return None
     of_faces = _read(mesh.polygons, "material_index", (len(mesh.polygons),), np.uint32)
@@ -109,7 +109,7 @@ def _faces(mesh, count):
 
 
 def _read(collection, attribute, shape, dtype=np.float32):
-    """Indices as uint32: what Blender calls unsigned is copied item by item into anything else."""
+    """Reads an attribute. Use uint32 for indices: Blender copies them into any other type item by item."""
     return _fill(np.empty(math.prod(shape), dtype), collection, attribute).reshape(shape)
 
 
@@ -123,10 +123,10 @@ def _vectors(memory, collection):
 
 
 def _normals(mesh, count, empty):
-    """corner_normals, vertex_normals and smooth: those of corners only where they differ.
+    """corner_normals, vertex_normals and smooth; corner normals only if the corners of a vertex differ.
 
-    Blender gives normals to Python one by one, and there are many more corners than vertices. A flat face is
-    shaded by the triangles that it is cut into, as in Cycles, but for auto smooth.
+    Blender passes normals to Python one by one, and there are many more corners than vertices. Flat faces are
+    shaded with the normals of their triangles, as in Cycles, except with auto smooth.
     """
     domain = mesh.normals_domain if _HAS_DOMAINS else None
     if domain == "CORNER":
@@ -148,11 +148,11 @@ def _normals(mesh, count, empty):
 
 
 def _smooth_faces(mesh, domain):
-    """Whether some faces are, whether some are not, and [faces]; None: all are alike."""
+    """Whether some faces are smooth, whether some are flat, and [faces] of bool; None: all are alike."""
     if domain is not None:
         return domain == "POINT", domain != "POINT", None
     faces = _read(mesh.polygons, "use_smooth", (len(mesh.polygons),), bool)
-    seen = faces.tobytes()  # any() and all() of few take many times as long
+    seen = faces.tobytes()  # any() and all() are many times slower for few faces
     return b"\1" in seen, b"\0" in seen, faces
 
 
@@ -164,11 +164,11 @@ def _split_normals(mesh):
 
 
 def _coordinates(mesh, arrays, uv_maps):
-    """Sets of texture coordinates, [corners x 2] each, as far as materials look at them."""
+    """Sets of texture coordinates that materials use, [corners x 2] each."""
     if not mesh.uv_layers:
         return {"corner_uvs": _projected(mesh, arrays, uv_maps)}
     corners = arrays.triangles
-    # Beyond the last slot the last material shows.
+    # Slots beyond the last use the last material.
     shown = np.minimum(arrays.slots, len(uv_maps) - 1) if len(uv_maps) > 1 else None
 
     def uvs(names):
@@ -189,7 +189,7 @@ def _coordinates(mesh, arrays, uv_maps):
 
 def _with_rendered_uvs(mesh, arrays, uv_maps):
     if uv_maps is not None and not uv_maps:
-        return arrays  # they are its first set
+        return arrays  # already the first set
     shown = _layer_uvs(mesh, _rendered_layer(mesh))
     if uv_maps is None:
         return arrays._replace(corner_uvs=shown)
@@ -198,7 +198,7 @@ def _with_rendered_uvs(mesh, arrays, uv_maps):
 
 
 def _projected(mesh, arrays, uv_maps):
-    """[corners x 2] Of slots that project; None where none does."""
+    """[corners x 2] Box projection for the slots that project; None if none does."""
     projects = np.array([maps.projects for maps in uv_maps], bool)
     if not projects.any():
         return None
@@ -211,7 +211,7 @@ def _projected(mesh, arrays, uv_maps):
 
 
 def _corner_uvs(mesh, corners, shown, names):
-    """Of each slot its UV map; without a name, or where there is none of it, that which renders."""
+    """[corners x 2] UV map of each slot; the active render map if it is unnamed or missing."""
     rendered = _rendered_layer(mesh)
     layers = [mesh.uv_layers.get(name) or rendered if name else rendered for name in names] or [rendered]
     uvs = _layer_uvs(mesh, layers[0])

@@ -1,13 +1,13 @@
-"""Which files a measured material is rendered from, by their hashes."""
+"""Hashes of the files that a measured material renders from."""
 
 from . import files
 from .nodes import velour_node
 
 
 def model_hashes(material):
-    """SHA-256 of its model (before that, of its model for the scene), or of the measurement in its place.
+    """SHA-256 of its scene model, if used, and of its model; or of the measurement used instead.
 
-    None of a material that is not measured. What is missing is left out: renders refuse it in words.
+    None if the material is not measured. Missing files are skipped; renders refuse them with a message.
     """
     node = velour_node(material)
     if node is None:
@@ -20,7 +20,7 @@ def model_hashes(material):
 
 
 def _hashes(*images, computed):
-    # Renders refuse a file that is another one than when it was chosen.
+    # The stored hash suffices, since renders refuse a file that has changed since it was chosen.
     return [image.velour.sha256 or computed(image) for image in images if files.is_there(image)]
 
 

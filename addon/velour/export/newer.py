@@ -1,10 +1,10 @@
-"""Files of newer Blenders: enumerations that this one does not know read as '', properties may be gone."""
+"""Files of newer Blender versions: unknown enum values read as '', and properties may be missing."""
 
 UNKNOWN = "one that this Blender does not know"
 
 
 def choice(table, value, usual, owner, what, notes):
-    """`table[value]`, or of a value that is not in it that of the usual one, said in `notes`."""
+    """`table[value]`, or `table[usual]` with a note if `value` is not in the table."""
     if value in table:
         return table[value]
     found = f"'{value}', which is not supported" if value else UNKNOWN
@@ -13,5 +13,5 @@ def choice(table, value, usual, owner, what, notes):
 
 
 def has_nodes(owner):
-    """Whether a material, world or light uses a node tree; from Blender 6.0 on each that it has."""
+    """Whether a material, world or light uses its node tree; from Blender 6.0 on, it always does."""
     return bool(owner.node_tree) and getattr(owner, "use_nodes", True)

@@ -1,8 +1,8 @@
-"""Finding things in Blender's node trees."""
+"""Lookups in Blender's node trees."""
 
 
 def velour_node(material):
-    """The Image Texture node that makes this a measured material, or None. Of several the active one."""
+    """The Image Texture node of a measured material, or None; the active one if there are several."""
     tree = material.node_tree if material else None
     if tree is None:
         return None
@@ -13,7 +13,7 @@ def velour_node(material):
 
 
 def approximation_node(material):
-    """The group node that shows a measured material where there is no Velour, or None."""
+    """The group node that approximates a measured material without Velour, or None."""
     for node in material.node_tree.nodes if material and material.node_tree else ():
         if node.bl_idname == "ShaderNodeGroup" and node.node_tree and node.node_tree.velour.is_approximation:
             return node
@@ -27,7 +27,7 @@ def active_output(tree, idname):
 
 
 def output(socket):
-    """The output socket that feeds an input socket, past reroutes; None where it is free or muted."""
+    """The output socket that feeds an input socket, through reroutes; None if it is unlinked or muted."""
     while socket.is_linked and socket.links and not socket.links[0].is_muted:
         link = socket.links[0]
         if link.from_node.bl_idname != "NodeReroute":
@@ -43,5 +43,5 @@ def source(socket):
 
 
 def first_input(node, *names):
-    """The first input socket by one of these names (Blender renames them between versions), or None."""
+    """The first input socket with one of these names (Blender renames them between versions), or None."""
     return next((node.inputs[name] for name in names if name in node.inputs), None)

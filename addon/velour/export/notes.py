@@ -1,4 +1,4 @@
-"""What an export has to say to the artist."""
+"""Messages of an export to the user."""
 
 
 class ExportError(RuntimeError):
@@ -27,7 +27,7 @@ class Notes:
         return len(self._sentences)
 
     def unsaid(self):
-        """Those that were not given by a call before."""
+        """Notes that no earlier call has returned."""
         fresh = list(self)[self._said :]
         self._said = len(self)
         return fresh

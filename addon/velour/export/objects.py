@@ -14,7 +14,7 @@ from .unused_settings import note_pencil
 from .uv_maps import maps_of_slots, missing_map
 from .visibility import Visibility, note_light_visibility
 
-_FLAT = 1e-36  # determinants of instances that the library leaves out, and does not count
+_FLAT = 1e-36  # the library skips instances up to this determinant, and does not count them
 _TERMINATOR = {"geometry": 0.1, "shading": 0.0}  # Cycles' defaults, without its add-on
 _PENCIL = "Grease Pencil strokes"
 GEOMETRY = {"MESH", "CURVE", "SURFACE", "FONT", "META"}
@@ -24,52 +24,52 @@ _UNSUPPORTED = {
     "VOLUME": "volumes",
     "GPENCIL": _PENCIL,
     "GREASEPENCIL": _PENCIL,
-    "LIGHT_PROBE": None,  # a helper of EEVEE's: nothing to say
+    "LIGHT_PROBE": None,  # an EEVEE helper; not noted
 }
 
 
 class Owner(NamedTuple):
-    """The object that an instance is of."""
+    """The object that an instance belongs to."""
 
     name: str
-    asset: str  # the name of the last of its parents, else its own
+    asset: str  # name of its topmost parent, or its own
     index: int
-    uv_set: int  # as in InstanceLabel
+    uv_set: int  # see InstanceLabel
 
 
 class _Shown(NamedTuple):
-    """What all instances of an object have in common."""
+    """Data shared by all instances of an object."""
 
     owner: Owner
-    mesh: int  # its place in the MeshQueue
+    mesh: int  # index in the MeshQueue
     slots: list
-    look: tuple  # the arguments of Scene.add_instances beside mesh and matrices
-    is_placed: bool  # how it is turned, and how tiles lie, is said by instance
+    look: tuple  # arguments of Scene.add_instances besides meshes and matrices
+    is_placed: bool  # rotation and placement of tiles are set per instance
 
 
 class _Mesh(NamedTuple):
-    place: int  # in the MeshQueue
+    place: int  # index in the MeshQueue
     slot_count: int
-    has_uvs: bool  # of UV maps
-    uv_set: int  # of the UV map that renders, where it is asked for; -1
+    has_uvs: bool  # its texture coordinates come from UV maps
+    uv_set: int  # set of the active render UV map if a UV pass needs it, else -1
 
 
 class _Slots(NamedTuple):
-    """What all meshes with as many slots have in common, where these show the same materials."""
+    """Data shared by all meshes with the same number of slots and the same materials."""
 
     materials: list
-    numbers: tuple  # in the scene
+    numbers: tuple  # material numbers in the scene
     is_placed: bool
-    look_at_uvs: list  # of the materials those that need texture coordinates
-    uv_maps: list  # of each material the names of UV maps that it asks for
-    colors: list  # of each the CornerColors
+    look_at_uvs: list  # materials that need texture coordinates
+    uv_maps: list  # pairs of a material and the names of its UV maps
+    colors: list  # pairs of a material and its CornerColors
 
 
 class ObjectExport:
     """Adds visible objects to `scene`; instances share the geometry of their evaluated datablock.
 
-    `to_scene`: the 4 x 4 matrix from Blender's world to that of `scene`; None: they are the same.
-    `meshes`: KeptMeshes of exports into the same scene before. `shows_uvs`: meshes have the texture
+    `to_scene`: 4 x 4 matrix from Blender's world space to that of `scene`; None: identity.
+    `meshes`: KeptMeshes of earlier exports into the same scene. `shows_uvs`: meshes include the texture
     coordinates of a UV pass.
     """
 
@@ -77,31 +77,31 @@ class ObjectExport:
         self._scene = scene
         self._materials = materials
         self._notes = notes
-        self._check_break = check_break  # called once an instance; raises to stop
+        self._check_break = check_break  # called once per instance; raises to cancel
         self._to_scene = to_scene
         self._meshes = KeptMeshes() if meshes is None else meshes
         self._queue = self._meshes.queue(scene, notes)
-        self._asked = {}  # by materials of slots, what they ask of a mesh
+        self._asked = {}  # UV maps and colors of a mesh, by the materials of its slots
         self._slots = {}
         self._shown = {}
         self._groups = InstanceGroups(scene, notes)
         self._placements = Placements(materials, notes)
         self._shows_uvs = shows_uvs
-        self._drawn = None  # the evaluated view layer, to whose picture Blender itself may add
+        self._drawn = None  # the evaluated view layer, whose image Blender may draw strokes over
         self.owners = []  # Owners of the instances in the scene
-        self.shines = False  # a lamp has power
-        self._seen = []  # places of meshes that the camera sees, if it looks there
-        self.is_seen = False  # one of them has triangles
+        self.shines = False  # whether any light emits
+        self._seen = []  # queue indices of meshes that are not hidden from the camera
+        self.is_seen = False  # whether any of them has triangles
 
     def add_all(self, depsgraph):
         self.add_shown(depsgraph, lambda instance: instance.show_self)
 
     def add_shown(self, depsgraph, is_shown):
-        """The instances for which `is_shown` is true."""
+        """Adds the instances for which `is_shown` is true."""
         self._add(depsgraph, is_shown)
 
     def add_geometry(self, depsgraph, is_wanted):
-        """Of the instances for which `is_wanted` is true, visible to all; no lights."""
+        """Adds only the geometry, visible to all rays, of instances for which `is_wanted` is true."""
         self._add(depsgraph, lambda instance: instance.show_self and is_wanted(instance), geometry_alone=True)
 
     def _add(self, depsgraph, is_wanted, geometry_alone=False):
@@ -112,7 +112,7 @@ class ObjectExport:
         visibility = None if geometry_alone else Visibility(depsgraph.view_layer)
         for instance in depsgraph.object_instances:
             self._check_break()
-            # The instance is only valid within this turn of the loop.
+            # The instance is only valid within this iteration.
             if not is_wanted(instance):
                 continue
             obj = instance.object
@@ -129,11 +129,11 @@ class ObjectExport:
         self.owners += self._groups.add_to_scene(numbers)
 
     def owner(self, instance):
-        """The name of the object that an instance of the scene is of; None of None."""
+        """Name of the object that an instance of the scene belongs to; None for None."""
         return None if instance is None else self.owners[instance].name
 
     def _look_once(self, instance, obj, kind, override, visibility):
-        if not instance.is_instance:  # there is no other of it
+        if not instance.is_instance:  # it occurs only once
             return self._look_at(obj, kind, override, visibility)
         key = _identity(obj)
         if key not in self._shown:
@@ -141,7 +141,7 @@ class ObjectExport:
         return self._shown[key]
 
     def _look_at(self, obj, kind, override, visibility):
-        """The _Shown of an object; None of what is no geometry. `visibility` None: all see it."""
+        """The _Shown of an object; None if it is not geometry. `visibility` None: visible to all rays."""
         if kind not in GEOMETRY:
             self._note_unsupported(obj)
             return None
@@ -164,7 +164,7 @@ class ObjectExport:
         return _Shown(owner, mesh.place, slots.materials, look, slots.is_placed)
 
     def _terminator(self, obj):
-        """The geometry offset of its shadow terminator; the other is told of."""
+        """Geometry offset of its shadow terminator; notes a shading offset, which is not supported."""
         shading = _terminator(obj, "shading", "shadow_terminator_offset")
         if shading:
             self._notes.add(
@@ -174,7 +174,7 @@ class ObjectExport:
         return _terminator(obj, "geometry", "shadow_terminator_geometry_offset")
 
     def _add_instance(self, instance, shown, metres):
-        matrix = instance.matrix_world.copy()  # which asks Blender once
+        matrix = instance.matrix_world.copy()  # a copy, to query Blender only once
         if abs(matrix.to_3x3().determinant()) <= _FLAT:
             self._notes.add(f"Object '{shown.owner.name}': its scale is zero along an axis; left out.")
             return
@@ -192,7 +192,7 @@ class ObjectExport:
             self.owners.append(shown.owner)
 
     def _mesh(self, obj, kind, data, materials):
-        """The _Mesh of an object; None: it has no faces."""
+        """The _Mesh of an object; None if it has no faces."""
         if materials not in self._asked:
             uv_maps = maps_of_slots(tuple(map(self._materials.uv_maps, materials)))
             self._asked[materials] = uv_maps, colors_of_slots(tuple(map(self._materials.colors, materials)))
@@ -241,11 +241,11 @@ class ObjectExport:
                     self._notes.add(missing_colors(obj, asked, material.name))
 
     def _note_extras(self, obj):
-        """What a renderer would add to the evaluated mesh, which its modifiers tell of."""
+        """Notes hair and adaptive subdivision, which renderers add to the evaluated mesh."""
         for system in obj.particle_systems:
             if system.settings.type == "HAIR" and system.settings.render_type == "PATH":
                 self._notes.add(f"Object '{obj.name}': hair '{system.name}' is not supported; left out.")
-        # Of the object before Blender 5.0, of its modifier since.
+        # A setting of the object before Blender 5.0, of its modifier since.
         adaptive = (getattr(obj, "cycles", None), *obj.modifiers)
         if any(getattr(place, "use_adaptive_subdivision", False) for place in adaptive):
             self._notes.add(f"Object '{obj.name}': adaptive subdivision is not supported; ignored.")
@@ -259,14 +259,14 @@ class ObjectExport:
 
 
 def _has_own_uvs(obj, arrays, uv_maps):
-    """Whether the texture coordinates of its MeshArrays are those of UV maps."""
+    """Whether the texture coordinates of its MeshArrays come from UV maps."""
     if arrays.corner_uvs is None:
         return False
     return not any(maps.projects for maps in uv_maps or ()) or has_uv_maps(obj)
 
 
 def _shown_uv_set(obj, arrays, uv_maps):
-    """The set of its MeshArrays that a UV pass shows; -1: it has no UV map."""
+    """The set of its MeshArrays that a UV pass shows; -1 if it has no UV map."""
     if not has_uv_maps(obj):
         return -1
     return len(arrays.more_uvs) if uv_maps else 0
@@ -279,13 +279,13 @@ def _asset(obj):
 
 
 def _identity(obj):
-    """What all instances of an evaluated object share; meshes of geometry nodes come under that object."""
+    """Key shared by all instances of an object; geometry nodes may put several meshes under one object."""
     data = obj.data
     return obj.original.as_pointer(), data.as_pointer() if data else 0
 
 
 def all_materials(obj):
-    """Of the slots of an object; at least one, which may be None."""
+    """Materials of an object's slots; at least one, which may be None."""
     return _materials(obj, obj.data)
 
 
@@ -298,12 +298,12 @@ def _materials(obj, data):
 
 
 def _shown_materials(materials, count):
-    """Of slots 0..count-1; a face beyond the last slot shows the last one, as in Blender."""
+    """Materials of slots 0..count-1; faces beyond the last slot use its material, as in Blender."""
     return [materials[min(slot, len(materials) - 1)] for slot in range(count)]
 
 
 def slots_of(obj, arrays, material):
-    """The slots of an evaluated object's MeshArrays that show a material of the .blend."""
+    """The slots of an evaluated object's MeshArrays that show `material`."""
     if arrays is None:
         return ()
     shown = _shown_materials(all_materials(obj), arrays.slot_count)
@@ -311,6 +311,6 @@ def slots_of(obj, arrays, material):
 
 
 def _terminator(obj, offset, older):
-    """An offset of the shadow terminator by its name; before Blender 5.0 a setting of Cycles, `older`."""
+    """Shadow terminator offset by name; before Blender 5.0, the Cycles setting `older`."""
     found = getattr(obj, f"shadow_terminator_{offset}_offset", None)
     return getattr(getattr(obj, "cycles", None), older, _TERMINATOR[offset]) if found is None else found

@@ -1,4 +1,4 @@
-"""What one frame shows of a material."""
+"""Scene usage of a material in one frame."""
 
 import zlib
 
@@ -8,9 +8,9 @@ _POLL_SECONDS = 0.05
 
 
 def observe(native_scene, number, view, depsgraph, check_break=lambda: None):
-    """The Observation of material `number` of a committed scene that is seen through `view`.
+    """The Observation of material `number` in a committed scene seen through `view`.
 
-    The same frame and view layer give the same observation wherever and whenever they are looked at.
+    Deterministic: the random seed depends only on the frame and the view layer.
     """
     scene = depsgraph.scene_eval
     job = observe_job(

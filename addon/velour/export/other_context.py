@@ -1,4 +1,4 @@
-"""Operators in a context that is not the one of what calls them."""
+"""Runs operators in another context than the caller's."""
 
 import contextlib
 
@@ -9,6 +9,6 @@ from ..core import reading_gate
 
 @contextlib.contextmanager
 def other_context(**members):
-    """bpy.context.temp_override(), which crashes beside threads in Python (core/reading_gate.py)."""
+    """bpy.context.temp_override(), guarded: it crashes if other threads run Python (core/reading_gate.py)."""
     with reading_gate.closed(), bpy.context.temp_override(**members):
         yield

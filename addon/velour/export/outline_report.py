@@ -1,4 +1,4 @@
-"""How high the structure of a material stands on one object, for the panel and for scripts."""
+"""Report on the height of a material's VOTF on one object, for the panel and for scripts."""
 
 import math
 from typing import NamedTuple
@@ -12,23 +12,23 @@ from .shown_surface import ShownSurface
 
 
 class OutlineReport(NamedTuple):
-    rows: tuple[tuple[str, str], ...]  # name and value, for people
+    rows: tuple[tuple[str, str], ...]  # name and value for display
     warnings: tuple[str, ...]
-    share: float  # of the least radius of curvature that height or depth has; from 1 on the shell folds
+    share: float  # height or depth over the minimum radius of curvature; from 1 on, the shell folds
 
 
 def outline_report_on(depsgraph, obj, material, shell, tile, width=0.0):
-    """Of an object of the .blend that shows `material`, whose model has `shell` in its info.
+    """OutlineReport of an original object that shows `material`, whose model info contains `shell`.
 
-    `tile`: the material's Tile; None where it has no texture. `width`: of a tile, metres; 0: as the
-    coordinates say. None where nothing can be said: without texture coordinates.
+    `tile`: the material's Tile; None if it has no texture. `width`: width of a tile in meters; 0: from the
+    texture coordinates. Returns None if it cannot be determined, as without texture coordinates.
     """
     shown = ShownSurface.of(depsgraph, obj, material)
     if shown.metrics is None:
         return None
     try:
         width = width or _tile_width(shown.metrics, tile, shell)
-    except ExportError:  # the placement says why
+    except ExportError:  # the placement report has the reason
         return None
     low, high = (width * height for height in shell["heights"])
     share = _share(_bends(shown), low, high)
@@ -45,14 +45,14 @@ def _metres(length):
 
 
 def _tile_width(metrics, tile, shell):
-    """Metres, of a tile that covers one unit of the coordinates that it is shown with."""
+    """Width in meters of a tile that covers one unit of its texture coordinates."""
     placed = metrics.world if tile is None else metrics.world.placed(tile_map(tile, metrics))
     width, height = shell["points"][:2]
     return 1 / math.sqrt(math.prod(placed.density()) * height / width)
 
 
 def _bends(shown):
-    """Least and largest curvature of a ShownSurface in the world, 1/m."""
+    """Minimum and maximum curvature of a ShownSurface in world space, 1/m."""
     arrays = shown.arrays
     triangles = np.isin(arrays.slots, shown.slots)
     matrix = np.array(shown.obj.matrix_world, float)[:3, :3]

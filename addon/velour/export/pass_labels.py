@@ -1,4 +1,4 @@
-"""What passes say of objects and materials."""
+"""Labels of objects and materials in passes."""
 
 from typing import NamedTuple
 
@@ -6,17 +6,17 @@ import numpy as np
 
 from ..native import INSTANCE_LABEL, MATERIAL_LABEL, Passes, cryptomatte_id
 
-_NO_MATERIAL = "default_surface"  # Cycles's name of what is shown then
-_EXPONENTS = {"LINEAR": 1.0, "QUADRATIC": 2.0, "INVERSE_QUADRATIC": 0.5}  # of mist
+_NO_MATERIAL = "default_surface"  # Cycles' name for surfaces without a material
+_EXPONENTS = {"LINEAR": 1.0, "QUADRATIC": 2.0, "INVERSE_QUADRATIC": 0.5}  # exponents of the mist falloff
 
 
 class AskedPasses(NamedTuple):
     passes: Passes
-    names: dict  # that each of layer_passes.CRYPTOMATTES may show
+    names: dict  # names that each of layer_passes.CRYPTOMATTES may show
 
 
 def asked_passes(asked, layer, world, objects, materials):
-    """The AskedPasses of `asked`, of table.PASSES; of an exported ObjectExport and MaterialTable."""
+    """AskedPasses for keys of table.PASSES, after export by an ObjectExport and a MaterialTable."""
     passes = Passes(frozenset(asked))
     passes.cryptomatte_ranks = 2 * ((layer.pass_cryptomatte_depth + 1) // 2)
     if world:
@@ -34,7 +34,7 @@ def asked_passes(asked, layer, world, objects, materials):
 
 
 class _Ids(dict):
-    """By name."""
+    """Cryptomatte ids by name."""
 
     def __missing__(self, name):
         self[name] = cryptomatte_id(name).value

@@ -1,5 +1,4 @@
-"""Picture files behind Blender's images: those that the library reads itself, as Cycles does, and what their
-headers say that neither follows."""
+"""Files of Blender's images that the library, like Cycles, reads itself; notes on unsupported headers."""
 
 import os
 
@@ -13,10 +12,10 @@ _FLOATS = (".exr", ".hdr")
 
 
 def linear_file(image):
-    """The path of a file whose numbers are those of the working space; None: Blender's pixels are taken.
+    """Path of a file whose values are in the working space; None: use Blender's pixels.
 
-    Cycles reads the file itself, too. Blender's own reader knows neither channels in small letters nor files
-    with passes, and turns Radiance pictures that Cycles shows as they are stored.
+    Cycles reads such files itself, too. Blender's reader supports neither lowercase channel names nor files
+    with passes, and reorients Radiance images that Cycles shows as stored.
     """
     path = _own_file(image)
     if path is None or image.is_dirty or not path.lower().endswith(_FLOATS):
@@ -25,9 +24,9 @@ def linear_file(image):
 
 
 def file_pixels(image):
-    """[height x width x 4] float32 of an OpenEXR or Radiance file, row 0 at the bottom, alpha multiplied in.
+    """[height x width x 4] float32 of an OpenEXR or Radiance file, row 0 at the bottom, premultiplied.
 
-    None where Blender's pixels are to be taken. Raises VelourError where Blender has none either.
+    None: use Blender's pixels. Raises VelourError if Blender has none either.
     """
     path = _own_file(image)
     space = image.colorspace_settings.name
@@ -44,14 +43,14 @@ def file_pixels(image):
 
 
 def note_header(image, notes):
-    """What the file's header says that Blender does not follow, and what of the file is left out."""
+    """Notes header fields that Blender ignores, and parts of the file that are left out."""
     path = _own_file(image)
     if path is None:
         return
     try:
         found = images.picture_notes(path, as_stored=True)
     except VelourError:
-        return  # said where its pixels are read, if nobody else can
+        return  # reported when the pixels are read, unless Blender can read them
     for sentence in found:
         notes.add(f"Image '{image.name}': {sentence}")
 
@@ -64,7 +63,7 @@ def _own_file(image):
 
 
 def with_alpha(values):
-    """Gray three times, with an alpha of 1 where there is none."""
+    """Expands gray to RGB, and adds an alpha of 1 if there is none."""
     channels = values.shape[2]
     if channels == 4:
         return values

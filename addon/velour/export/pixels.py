@@ -7,10 +7,10 @@ from .picture_files import file_pixels, note_header, with_alpha
 
 
 def working_pixels(image, notes, beside_alpha=False):
-    """[height x width x 4] float32, row 0 at the bottom, whatever the image comes from; None: it has none.
+    """[height x width x 4] float32, row 0 at the bottom, for any image source; None if it has no pixels.
 
-    Colours are multiplied by alpha, as in Cycles, unless the image's alpha is none of theirs (a mask in a
-    channel, or data); `beside_alpha`: of an image whose alpha is looked at too they are not.
+    Colors are multiplied by alpha, as in Cycles, unless the alpha is unrelated to them (channel packed, or
+    data). `beside_alpha`: the image's alpha is used too, so colors are not multiplied.
     """
     note_header(image, notes)
     of_file = file_pixels(image)
@@ -40,9 +40,9 @@ def _blender_pixels(image):
 
 
 def _apply_alpha(values, is_float, beside_alpha):
-    """Blender has colours of floats multiplied by alpha, those of bytes not.
+    """Blender returns float colors premultiplied by alpha, and byte colors unmultiplied.
 
-    Cycles multiplies bytes as they are stored, and drops what is less than one.
+    Cycles multiplies the stored bytes and truncates the result.
     """
     color, alpha = values[..., :3], values[..., 3:]
     if is_float and beside_alpha:

@@ -1,4 +1,4 @@
-"""Where tiles of BTFs lie on objects: the map of texture coordinates of each slot of an instance."""
+"""Placement of BTF tiles on objects: a map of texture coordinates for each slot of an instance."""
 
 import math
 from typing import NamedTuple
@@ -13,16 +13,16 @@ from .uv_maps import placed_maps
 
 
 class Tile(NamedTuple):
-    """What a placement needs to know of a material that repeats over surfaces."""
+    """Placement data of a material that repeats over surfaces."""
 
     material: str  # its name
     settings: object  # node.velour.placement
-    texels: tuple[int, int]  # of an outline alone: its points
-    own_metres: tuple[float, float] | None  # as the BTF says, if it says anything
+    texels: tuple[int, int]  # points of the VOTF if there is no texture
+    own_metres: tuple[float, float] | None  # size stored in the BTF, if any
 
     @classmethod
     def of(cls, material, info):
-        """`info`: of the model or BTF; None where it has neither texels nor an outline."""
+        """`info`: info of the model or BTF. None if that has neither texels nor a VOTF."""
         points = info.get("texels") or info.get("shell", {}).get("points")
         if points is None:
             return None
@@ -31,23 +31,23 @@ class Tile(NamedTuple):
 
     @property
     def metres(self):
-        """Entered or the BTF's own; None: not known."""
+        """Entered size, or the BTF's own, in meters; None if unknown."""
         entered = tuple(1e-3 * side for side in self.settings.tile_size)
         return entered if min(entered) > 0 else self.own_metres
 
     @property
     def shape(self):
-        """Width and height, whose product is 1; of unknown size: with square texels."""
+        """Width and height scaled to a product of 1; if the size is unknown, texels are square."""
         width, height = self.metres or self.texels
         return math.sqrt(width / height), math.sqrt(height / width)
 
 
 class Metrics(NamedTuple):
-    """Of a surface in metres: without the object's scale, and in the world."""
+    """Metrics of a surface in meters: without the object's scale, and in world space."""
 
     local: UvMetric
     world: UvMetric
-    projected: float | None  # metres of a unit of texture coordinates; None: they are of a UV map
+    projected: float | None  # meters per unit of projected coordinates; None: from a UV map
 
     @classmethod
     def of(cls, surface, matrix, metres_per_unit, is_projected):
@@ -59,14 +59,14 @@ class Metrics(NamedTuple):
         return cls(local, UvMetric.of(surface, metres_per_unit * linear), projected)
 
     def growth(self, keeps_size):
-        """How much longer u and v count because the object is scaled."""
+        """Factors on u and v for the object's scale; 1 unless tiles keep their size."""
         if not keeps_size:
             return np.ones(2)
         return np.array(self.local.density()) / self.world.density()
 
 
 def tile_map(tile, metrics):
-    """[2 x 3]: from the mesh's texture coordinates to tiles. Not of a flat surface."""
+    """[2 x 3]: maps the mesh's texture coordinates, which must have an extent, to tiles."""
     settings, lengths = tile.settings, metrics.growth(tile.settings.keeps_size)
     if settings.mode == "REAL_SIZE":
         if tile.metres is None:
@@ -77,14 +77,14 @@ def tile_map(tile, metrics):
         repeats, lengths = 1 / np.array(tile.metres), lengths / _density(settings, metrics)
     elif metrics.projected is None:
         repeats = settings.repeats
-    else:  # there is no unit square: of tiles of real size
+    else:  # projected coordinates have no unit square: repeats of the real tile size
         repeats = np.array(settings.repeats) / (tile.metres or (1.0, 1.0))
         lengths = lengths * metrics.projected
     return texture_map(repeats, settings.rotation, settings.offset, lengths)
 
 
 def _density(settings, metrics):
-    """Of u and v on the object without its scale, 1/m."""
+    """Density of u and v on the object without its scale, 1/m."""
     if metrics.projected is not None:
         return 1 / metrics.projected
     given = np.array(settings.uv_density)
@@ -92,12 +92,12 @@ def _density(settings, metrics):
 
 
 def lie_on(tile, metrics, uv_map):
-    """The Lie of tiles of a map; its scale is of tiles without their shape."""
+    """The Lie of tiles under a map, for tiles of their aspect ratio and unit area."""
     return lie_of(metrics.world.placed(np.diag(tile.shape) @ uv_map))
 
 
 def surface_of(arrays, slots):
-    """The Surface of those slots of MeshArrays; None without texture coordinates."""
+    """The Surface of the given slots of MeshArrays; None without texture coordinates."""
     if arrays is None or arrays.corner_uvs is None:
         return None
     shown = np.isin(arrays.slots, slots)
@@ -134,7 +134,7 @@ class _Placed(NamedTuple):
 
 
 class Placements:
-    """Of the instances of an export; says in `notes` what is stretched or cannot be placed."""
+    """Placements of an export's instances; notes what is stretched or cannot be placed."""
 
     def __init__(self, materials, notes):
         self._materials = materials
@@ -143,9 +143,9 @@ class Placements:
         self._placed = {}
 
     def of(self, instance, key, slots, metres_per_unit):
-        """A map for each material in `slots`, or None: texture coordinates as they are.
+        """A map for each material in `slots`; None: texture coordinates remain unchanged.
 
-        `key`: the same for instances of one mesh.
+        `key`: equal for instances of one mesh.
         """
         maps, is_placed = [], False
         for material in slots:
@@ -155,7 +155,7 @@ class Placements:
         return maps if is_placed else None
 
     def _surface(self, obj, slots, material, mesh):
-        """The Surface of what shows the material, and whether texture coordinates are projected there."""
+        """The Surface that shows the material, and whether its texture coordinates are projected."""
         key = (mesh, _slots_that_show(slots, material))
         if key not in self._surfaces:
             surface = surface_of(object_arrays(obj, placed_maps(slots)), key[1])
@@ -179,7 +179,7 @@ class Placements:
         return placed.uv_map if placed else None
 
     def _place(self, tile, metrics):
-        """None where texture coordinates have no extent."""
+        """The _Placed tile; None if texture coordinates have no extent."""
         if metrics.world.is_flat:
             return None
         try:
@@ -203,7 +203,7 @@ def _slots_that_show(slots, material):
 
 
 def _size_of(matrix):
-    """What is left of a matrix without its rotation, rounded: rotated copies share their measures."""
+    """Matrix invariants under rotation, rounded, so that rotated copies share their metrics."""
     linear = np.array(matrix, float)[:3, :3]
     gram = linear.T @ linear
     size = np.trace(gram) or 1.0

@@ -1,4 +1,4 @@
-"""What a BTF's placement on one object comes to, for the panel and for scripts."""
+"""Report on a BTF's placement on one object, for the panel and for scripts."""
 
 import math
 from typing import NamedTuple
@@ -18,16 +18,16 @@ from .placement import (
 )
 from .shown_surface import ShownSurface
 
-_SAME = 0.005  # of real size: nobody sees that
+_SAME = 0.005  # relative deviation from real size that is not visible
 
 
 class PlacementReport(NamedTuple):
-    rows: tuple[tuple[str, str], ...]  # name and value, for people
+    rows: tuple[tuple[str, str], ...]  # name and value for display
     warnings: tuple[str, ...]
 
 
 def report_on(depsgraph, obj, material, tile):
-    """Of an object of the .blend that shows `material`, whose Tile is `tile`."""
+    """PlacementReport of an original object that shows `material`, whose Tile is `tile`."""
     shown = ShownSurface.of(depsgraph, obj, material)
     metrics = shown.metrics
     if metrics is None:
@@ -47,7 +47,7 @@ def report_on(depsgraph, obj, material, tile):
 
 
 def uv_density_on(depsgraph, obj, material):
-    """Of the object's UV map without its scale, 1/m. Raises ExportError where it has none."""
+    """UV density without the object's scale, 1/m. Raises ExportError if there is no UV map."""
     shown = ShownSurface.of(depsgraph, obj, material)
     if shown.metrics is None:
         raise ExportError(missing_coordinates(obj, material.name))
@@ -57,7 +57,7 @@ def uv_density_on(depsgraph, obj, material):
 
 
 def report_on_brushed(depsgraph, obj, material):
-    """The same of an anisotropic material, which has no tile."""
+    """PlacementReport of an anisotropic material, which has no tile."""
     is_projected = not has_uv_maps(obj.evaluated_get(depsgraph))
     return PlacementReport((), _warnings(obj, material, is_projected))
 
@@ -67,7 +67,7 @@ def _warnings(obj, material, is_projected):
 
 
 def _of_faces(shown, values):
-    """Values of a ShownSurface's triangles as values of the object's faces; NaN of other slots."""
+    """Converts a ShownSurface's values per triangle to values per face; NaN for other slots."""
     faces = triangle_faces(shown.obj)
     found = np.full(int(faces.max()) + 1, np.nan)
     found[faces[np.isin(shown.arrays.slots, shown.slots)]] = values
@@ -75,7 +75,7 @@ def _of_faces(shown, values):
 
 
 def _texels(tile):
-    """Along a side, geometric mean of both."""
+    """Number of texels along a side, geometric mean of both sides."""
     return math.sqrt(math.prod(tile.texels))
 
 

@@ -1,14 +1,14 @@
-"""Following links between nodes, past reroutes and muted nodes, into node groups and out of them."""
+"""Follows links between nodes through reroutes and muted nodes, into and out of node groups."""
 
 from typing import Any, NamedTuple
 
 from .nodes import first_input
 
-_MOST_STEPS = 1000  # links of a broken file may go round
+_MOST_STEPS = 1000  # links of a broken file may be cyclic
 
 
 class Plug(NamedTuple):
-    """A socket, and the group nodes that its tree is shown by, the outermost first."""
+    """A socket, and the group nodes that contain its tree, outermost first."""
 
     socket: Any
     groups: tuple = ()
@@ -18,19 +18,19 @@ class Plug(NamedTuple):
         return self.socket.node
 
     def input(self, *names):
-        """An input of its node, by the first of these names that there is, or None."""
+        """The node's input with the first of these names that exists, or None."""
         socket = first_input(self.node, *names)
         return Plug(socket, self.groups) if socket is not None else None
 
     def inputs(self, idname):
-        """The inputs of its node of a type, in their order: a Mix Shader has two of one name."""
+        """The node's inputs of a type, in order; a Mix Shader has two with one name."""
         return [Plug(socket, self.groups) for socket in self.node.inputs if socket.bl_idname == idname]
 
 
 def followed(plug):
-    """The output of the node that feeds an input; an input whose own value holds; None: nothing does.
+    """The output that feeds an input, or the input whose own value applies; None if there is neither.
 
-    The input may be another one: that of a group node around, or of a muted node before.
+    That input may belong to an enclosing group node, or to a muted node upstream.
     """
     for _ in range(_MOST_STEPS):
         step = _step_out_of(plug) if plug.socket.is_output else _step_into(plug)
@@ -41,7 +41,7 @@ def followed(plug):
 
 
 def fed_by(plug):
-    """The output that feeds an input; None where its own value holds."""
+    """The output that feeds an input; None if its own value applies."""
     found = followed(plug) if plug else None
     return found if found and found.socket.is_output else None
 

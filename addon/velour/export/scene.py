@@ -1,4 +1,4 @@
-"""The whole export, in order."""
+"""Export of a whole scene."""
 
 from typing import NamedTuple
 
@@ -19,12 +19,12 @@ from .world_light import WorldLight
 class Export(NamedTuple):
     scene: Scene  # committed
     materials: MaterialTable
-    surroundings: str  # a sentence on what the camera is inside of; empty: it is not
-    passes: AskedPasses | None  # None: none was asked for
+    surroundings: str  # sentence naming the object that the camera is inside of, or empty
+    passes: AskedPasses | None  # None: none requested
 
 
 def export_scene(depsgraph, view, notes, check_break=lambda: None, strict=True):
-    """What the depsgraph shows, seen through `view`, as an Export, for whoever takes its scene."""
+    """Exports what the depsgraph shows through `view`; the caller must close the Export's scene."""
     export = SceneExport(notes, strict)
     try:
         return export.take(depsgraph, view, check_break)
@@ -34,10 +34,10 @@ def export_scene(depsgraph, view, notes, check_break=lambda: None, strict=True):
 
 
 class SceneExport:
-    """The library's scene of renders; where frames follow, what has changed alone is taken anew.
+    """The library's scene for renders; for subsequent frames, only changes are exported.
 
-    `strict` refuses measured materials and libraries that cannot be had, and what can only be black.
-    `asked`: of table.PASSES.
+    `strict` refuses missing measured materials and libraries, and scenes that can only be black.
+    `asked`: keys of table.PASSES.
     """
 
     def __init__(self, notes, strict=True, asked=()):
@@ -47,23 +47,23 @@ class SceneExport:
         self.materials = MaterialTable(self.scene, notes, strict)
         self._meshes = KeptMeshes()
         self._world = WorldLight(self.scene)
-        self._changes = None  # since the frame before; None: there was none
+        self._changes = None  # since the previous frame; None: first frame
         self._world_shines = False
 
     def close(self):
         self.scene.close()
 
     def follow(self, depsgraph):
-        """The next take() is of another frame. False: all has to begin anew for what has changed.
+        """Prepares take() for another frame; False if the changes require a new SceneExport.
 
-        Of images Blender tells no more, at times, than that materials may look different.
+        Blender sometimes reports a changed image only as a change of its materials.
         """
         self._changes = changes = Changes(depsgraph.updates)
         has_pictures = any(map(self.materials.has_pictures, changes.changed_materials(depsgraph)))
         return not (changes.everything or has_pictures or self._meshes.are_worn)
 
     def take(self, depsgraph, view, check_break=lambda: None):
-        """An Export; `check_break` is called often and raises to stop. After any error, close()."""
+        """Returns an Export. `check_break` is called often and raises to cancel. After any error, close()."""
         if self._strict:
             refuse_missing_libraries(depsgraph.scene)
         if self._changes is None:

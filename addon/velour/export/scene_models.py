@@ -1,4 +1,4 @@
-"""How far models for the scene serve in a frame: told from what it shows, without a picture."""
+"""Whether scene models are valid in a frame, judged by its scene usage without rendering."""
 
 from typing import NamedTuple
 
@@ -7,13 +7,13 @@ from .observe import observe
 
 
 class Served(NamedTuple):
-    """A material with a model for the scene, in one frame and view layer."""
+    """A material with a scene model, in one frame and view layer."""
 
     name: str
-    image: str  # name of the model's
+    image: str  # name of the scene model's image
     frame: int
-    share: float  # of what is seen of it, outside of what that model was fitted to
-    has_full: bool  # False: there is no full model to take in its place
+    share: float  # share of its scene usage that the model was not fitted to
+    has_full: bool  # False: there is no full model to fall back to
 
     @property
     def is_inside(self):
@@ -21,7 +21,7 @@ class Served(NamedTuple):
 
     @property
     def words(self):
-        """What becomes of it."""
+        """The part of the message that says how it is rendered."""
         if self.is_inside:
             return "rendered with that model"
         more = f"that is more than {domain.LARGEST_SHARE:.1%}"
@@ -47,7 +47,7 @@ class Served(NamedTuple):
 
 
 def served(native_scene, reduced, view, depsgraph, check_break=lambda: None):
-    """Of each of `reduced` in a committed scene with its full models, seen through `view`."""
+    """A Served for each of `reduced` in a committed scene with its full models, seen through `view`."""
     frame = depsgraph.scene_eval.frame_current
     found = []
     for entry in reduced:

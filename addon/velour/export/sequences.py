@@ -1,11 +1,11 @@
-"""Image sequences: which of their files a frame shows, as Blender counts."""
+"""Files of image sequences by frame, numbered as in Blender."""
 
 import os
 import re
 
 
 def sequence_number(user, frame):
-    """What an ImageUser shows in a frame of the scene."""
+    """The file number that an ImageUser shows in a frame of the scene."""
     place, count = frame - user.frame_start + 1, user.frame_duration
     if count and user.use_cyclic:
         place = (place - 1) % count + 1
@@ -13,7 +13,7 @@ def sequence_number(user, frame):
 
 
 def sequence_file(path, number):
-    """Of the sequence that the file at `path` is one of: the last digits of its name count."""
+    """File `number` of the sequence that contains `path`: replaces the last digits of its name."""
     folder, name = os.path.split(path)
     stem, extension = os.path.splitext(name)
     stem = re.sub(r"\d+(?=\D*$)", lambda digits: str(max(number, 0)).zfill(len(digits[0])), stem)

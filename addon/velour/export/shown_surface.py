@@ -1,4 +1,4 @@
-"""What one object shows of one material."""
+"""The part of an object's surface that shows one material."""
 
 from __future__ import annotations
 
@@ -16,15 +16,15 @@ from .uv_maps import placed_maps
 class ShownSurface(NamedTuple):
     obj: Any  # evaluated
     arrays: MeshArrays | None
-    slots: tuple[int, ...]  # that show it
-    surface: Surface | None  # of those
-    metres: float  # a unit of the scene
-    metrics: Metrics | None  # None where texture coordinates are missing or have no extent
+    slots: tuple[int, ...]  # slots that show the material
+    surface: Surface | None  # surface of these slots
+    metres: float  # meters per scene unit
+    metrics: Metrics | None  # None if texture coordinates are missing or have no extent
     is_projected: bool
 
     @classmethod
     def of(cls, depsgraph, obj, material) -> ShownSurface:
-        """Of an object of the .blend."""
+        """`obj`: an original object."""
         evaluated = obj.evaluated_get(depsgraph)
         arrays = object_arrays(evaluated, placed_maps(all_materials(evaluated)))
         slots = slots_of(evaluated, arrays, material)

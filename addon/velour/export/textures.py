@@ -1,4 +1,4 @@
-"""Pictures of materials as the library's textures."""
+"""Images of materials as the library's textures."""
 
 import numpy as np
 
@@ -9,7 +9,7 @@ from .pixels import working_pixels
 
 
 class TextureTable:
-    """Makes each texture once."""
+    """Creates each texture once."""
 
     def __init__(self, scene, notes):
         self._scene = scene
@@ -17,7 +17,7 @@ class TextureTable:
         self._textures = {}
 
     def slot(self, picture, is_color, owner, uv_maps):
-        """Of a Picture of a material with these UvMaps; None where its image cannot be read: noted."""
+        """TextureSlot of a Picture for a material's UvMaps; None, with a note, if it cannot be read."""
         channels = (picture.alpha, picture.beside_alpha, is_color)
         key = (picture.image.as_pointer(), *channels, picture.wrap, picture.filter)
         if key not in self._textures:
@@ -26,7 +26,7 @@ class TextureTable:
         return TextureSlot(texture, picture.uv_map, uv_maps.number(picture.coordinates)) if texture else None
 
     def of_corners(self, color_set):
-        """Of a mesh's own colours."""
+        """TextureSlot of a set of corner colors."""
         if color_set not in self._textures:
             self._textures[color_set] = Texture.of_corners(color_set)
         return TextureSlot(self._textures[color_set])

@@ -1,4 +1,4 @@
-"""What a capture repeats: an object or a collection, its own axes, its period."""
+"""The tile that a capture repeats: an object or a collection, its axes and its period."""
 
 from typing import NamedTuple
 
@@ -14,21 +14,21 @@ from .units import metres_per_unit
 
 
 class TilePlace(NamedTuple):
-    """In the library's scene: metres."""
+    """A tile's cell in the library's scene, in meters."""
 
     origin: tuple[float, float]
     period: tuple[float, float]
 
 
 class TileSource(NamedTuple):
-    """Lengths in Blender's units."""
+    """A tile in Blender's scene; lengths in Blender units."""
 
     owner: object  # the Object or the Collection
-    objects: frozenset  # of the .blend, whose geometry makes the tile
-    to_tile: Matrix  # from the world to the tile's own axes: no scale
+    objects: frozenset  # original objects whose geometry forms the tile
+    to_tile: Matrix  # from world space to the tile's axes, without scale
     origin: Vector  # corner of the cell, in the tile's axes
     period: tuple[float, float]
-    stretch: tuple[float, float]  # by the owner's scale, which is in the period
+    stretch: tuple[float, float]  # the owner's scale, which the period includes
 
     @property
     def label(self):
@@ -37,7 +37,7 @@ class TileSource(NamedTuple):
 
 
 def object_tile(obj, depsgraph):
-    """The tile's axes are those of the object, its scale counts."""
+    """Tile with the axes of the object, whose scale counts."""
     if obj.velour.is_repeat:
         raise ExportError(f"Object '{obj.name}' shows how a tile goes on; choose the tile itself.")
     location, rotation, scale = obj.matrix_world.decompose()
@@ -47,21 +47,21 @@ def object_tile(obj, depsgraph):
 
 
 def collection_tile(collection, depsgraph):
-    """The tile's axes are those of the world; its cell begins at the world's origin."""
+    """Tile with the world's axes; its cell begins at the world's origin."""
     objects = frozenset(obj for obj in collection.all_objects if not obj.velour.is_repeat)
     return _tile(collection, objects, Matrix(), (1.0, 1.0), depsgraph)
 
 
 def is_of_tile(instance, source):
-    """True for a depsgraph instance that is an object of the tile, or that such an object makes."""
+    """Whether a depsgraph instance is an object of the tile, or instanced by one."""
     maker = instance.parent if instance.is_instance else instance.object
     return maker is not None and maker.original in source.objects
 
 
 def export_tile(source, depsgraph, approximate=False):
-    """A committed library scene of the tile alone, metres, in its own axes; and where it repeats in it.
+    """Committed library scene of the tile alone, in meters along its own axes; its TilePlace; the notes.
 
-    A material that is not rendered as it is, is refused unless `approximate`. Also returns the notes.
+    Unless `approximate`, raises ExportError if a material is not rendered exactly.
     """
     notes, material_notes, scene = Notes(), Notes(), Scene()
     metres = metres_per_unit(depsgraph.scene)
@@ -94,14 +94,14 @@ def _tile(owner, objects, to_tile, stretch, depsgraph):
     origin = Vector((0, 0, 0))
     if min(given) == 0:
         low, high = _bounds(source, depsgraph)
-        for k in (0, 1):  # each axis for itself
+        for k in (0, 1):  # each axis separately
             if given[k] == 0:
                 origin[k], period[k] = low[k], high[k] - low[k]
     return source._replace(origin=origin, period=tuple(period))
 
 
 def _bounds(source, depsgraph):
-    """Of the evaluated geometry, in the tile's axes."""
+    """Bounds of the evaluated geometry, in the tile's axes."""
     corners = [
         source.to_tile @ instance.matrix_world @ Vector(corner)
         for instance in depsgraph.object_instances

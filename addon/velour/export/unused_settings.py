@@ -1,14 +1,14 @@
-"""Settings of scenes, view layers, worlds and lights that change a picture of Cycles and none of Velour's.
+"""Settings of scenes, view layers, worlds and lights that affect Cycles' images but not Velour's.
 
-Those of Cycles are read while that is enabled. Values that Blender begins with are no wish of the artist's:
-nothing is said of them.
+Settings of Cycles are read only while it is enabled. Default values are not noted, since the user did not
+choose them.
 """
 
 import bpy
 
 from .notes import listed
 
-_BOUNCES = 1024  # of the light of a lamp or a world: no limit
+_BOUNCES = 1024  # default for the light of a light or a world: no limit
 
 
 def note_scene(scene, notes):
@@ -30,7 +30,7 @@ def note_scene(scene, notes):
         notes.add(f"{owner}: {listed(asked)} of Cycles: not supported; ignored.")
 
 
-# Cycles' name and Velour's.
+# Names of the property in Cycles and in Velour.
 COPIED = {
     "Clamp Direct": ("sample_clamp_direct", "clamp_direct"),
     "Clamp Indirect": ("sample_clamp_indirect", "clamp_indirect"),
@@ -40,7 +40,7 @@ COPIED = {
 
 
 def _is_not_copied(scene, cycles, theirs, ours):
-    """Where a new scene has Cycles' value, or both have the same, nobody misses it."""
+    """Whether Cycles' value is neither its default nor Velour's value."""
     value = getattr(cycles, theirs)
     return value not in (getattr(scene.velour, ours), cycles.bl_rna.properties[theirs].default)
 
@@ -59,7 +59,7 @@ _OF_SIMPLIFY = {
 
 
 def _is_usual_filter(cycles):
-    """That of a new scene, or the box of one pixel that is rendered."""
+    """Whether the filter is the default, or the one-pixel box that Velour uses."""
     kind = cycles.pixel_filter_type
     return kind == "BOX" or (kind == "BLACKMAN_HARRIS" and abs(cycles.filter_width - 1.5) < 1e-6)
 
@@ -70,7 +70,7 @@ def note_layer(layer, notes):
 
 
 def note_emitter(owner, settings, notes):
-    """`settings`: those that Cycles keeps with a light or a world; None: there are none."""
+    """`settings`: Cycles' settings of a light or a world, or None."""
     if getattr(settings, "is_caustics_light", False):
         notes.add(f"{owner}: shadow caustics are not supported; ignored.")
     if getattr(settings, "max_bounces", _BOUNCES) < _BOUNCES:
@@ -78,7 +78,7 @@ def note_emitter(owner, settings, notes):
 
 
 def note_strokes(scene, layer, notes):
-    """Of the .blend's own scene, or of the one that renders: whoever only looks at scenes has them off."""
+    """`scene`: the original or rendered scene; copies that are only inspected have Freestyle off."""
     if bpy.app.build_options.freestyle and scene.render.use_freestyle and layer.use_freestyle:
         notes.add(
             f"View layer '{layer.name}': Blender itself adds Freestyle's strokes to the picture, by EEVEE;"
@@ -87,7 +87,7 @@ def note_strokes(scene, layer, notes):
 
 
 def note_pencil(obj, layer, notes):
-    """Of an evaluated Grease Pencil object."""
+    """`obj`: an evaluated Grease Pencil object."""
     if getattr(layer, "use_grease_pencil", True):  # 5.0 and newer
         notes.add(
             f"Object '{obj.name}': Blender itself draws Grease Pencil over the picture, without shadows and"

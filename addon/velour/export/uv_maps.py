@@ -1,4 +1,4 @@
-"""Which UV maps a material is shown by."""
+"""UV maps that a material uses."""
 
 from typing import NamedTuple
 
@@ -9,18 +9,18 @@ MOST_SETS = 4  # VLR_MOST_UV_SETS
 
 
 class UvMaps(NamedTuple):
-    """UV maps of a mesh by name; "": the one that renders."""
+    """UV maps of a mesh by name; "": the active render map."""
 
-    names: tuple = ("",)  # that pictures are on; the first is that of tiles and of what is stretched, too
-    relief: str | None = None  # that tangents of its normal maps follow; None: the first, or it has none
-    projects: bool = False  # onto meshes without any (core/projection.py); else they show one point of it
+    names: tuple = ("",)  # maps of pictures; the first is also used for tiles and anisotropy
+    relief: str | None = None  # map of normal maps' tangents; None: the first map, or no normal map
+    projects: bool = False  # onto meshes without UV maps (core/projection.py), instead of one point
 
     @property
     def first(self):
         return self.names[0] if self.names else ""
 
     def number(self, name):
-        """Of one that a picture is on."""
+        """The set of a picture's UV map."""
         return self.names.index(name) if name in self.names else 0
 
     @property
@@ -29,18 +29,18 @@ class UvMaps(NamedTuple):
 
 
 RENDERED = UvMaps()
-UNUSED = UvMaps(())  # of materials that are the same all over
+UNUSED = UvMaps(())  # for uniform materials
 
 
 def maps_of_slots(maps):
-    """What object_arrays() takes, of the UvMaps of a mesh's slots."""
+    """The `uv_maps` argument of object_arrays() for the UvMaps of a mesh's slots."""
     if all(each == UNUSED for each in maps):
         return None
     return () if all(each in (UNUSED, RENDERED) for each in maps) else maps
 
 
 def placed_maps(materials):
-    """Of slots, as far as measured materials show them, as object_arrays() takes them."""
+    """The `uv_maps` argument of object_arrays() that measured materials in the slots need."""
     return maps_of_slots(tuple(map(placed_map, materials)))
 
 
@@ -50,7 +50,7 @@ def placed_map(material):
 
 
 def shader_maps(owner, sources, reliefs, notes):
-    """Of a material that is not measured, by the pictures in its layers and its Reliefs."""
+    """UvMaps of a material that is not measured, from the pictures in its layers and Reliefs."""
     pictures = [source for source in sources if isinstance(source, Picture)]
     pictures += [relief.picture for relief in reliefs]
     names = tuple(sorted({picture.coordinates for picture in pictures}))

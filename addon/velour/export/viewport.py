@@ -15,7 +15,7 @@ class Frame(NamedTuple):
     place: tuple  # x, y, width, height in the region, in pixels
 
     def key(self):
-        """Equal for equal pictures."""
+        """Key that is equal for equal images."""
         view = self.view
         size = (view.width, view.height)
         lens = tuple(sorted(view.lens.items()))
@@ -31,7 +31,7 @@ class Frame(NamedTuple):
 
 
 def viewport_frame(context, depsgraph):
-    """Of the region that is drawn; None where nothing of it is to be rendered."""
+    """Frame of the region being drawn; None if no part of it is rendered."""
     region, space, region_view = context.region, context.space_data, context.region_data
     if region.width < 1 or region.height < 1:
         return None
@@ -57,7 +57,7 @@ def viewport_frame(context, depsgraph):
 
 
 def pixel_size(context):
-    """Pixels of the region that share one of the picture, along a side."""
+    """Number of region pixels per rendered pixel, along a side."""
     asked = context.scene.render.preview_pixel_size
     if asked != "AUTO":
         return int(asked)
@@ -65,7 +65,7 @@ def pixel_size(context):
 
 
 def _camera(space, region_view, depsgraph):
-    """The evaluated camera that the viewport looks through; None where it looks by itself."""
+    """The evaluated camera that the viewport looks through; None if it uses its own view."""
     if region_view.view_perspective != "CAMERA":
         return None
     camera = space.camera if space.use_local_camera else depsgraph.scene.camera
@@ -77,18 +77,18 @@ def _camera(space, region_view, depsgraph):
 
 
 def _placed(region_view, space, camera):
-    """Where the eye is, and from where to where it sees."""
+    """Matrix of the eye, and the clip range."""
     matrix = region_view.view_matrix.inverted()
     if camera:
         return matrix, (camera.data.clip_start, camera.data.clip_end)
     if region_view.is_perspective:
         return matrix, (space.clip_start, space.clip_end)
-    # Blender looks as far ahead as behind; half of Clip End, all told.
+    # Blender's orthographic view reaches half of Clip End both ahead and behind.
     return matrix @ Matrix.Translation((0, 0, space.clip_end / 2)), (0.0, space.clip_end)
 
 
 def _cut(region, space, region_view, camera, render):
-    """x0, y0, x1, y1: the pixels of the region that are rendered; None: none is."""
+    """x0, y0, x1, y1: the pixels of the region that are rendered; None if there are none."""
     size = (region.width, region.height)
     if camera:
         if not render.use_border:

@@ -1,26 +1,26 @@
-"""What objects are hidden from."""
+"""Ray visibility of objects."""
 
 import bpy
 
 from .notes import listed
 
-# To ask each object for what it has not is slow.
+# Looking up a missing attribute on every object is slow.
 _LINKS_LIGHT = "light_linking" in bpy.types.Object.bl_rna.properties  # 4.0 and newer
 _BOUNCES = {"visible_diffuse": "diffuse rays", "visible_glossy": "glossy rays"}
 
 
 class Visibility:
-    """What evaluated objects are hidden from in a view layer."""
+    """Ray visibility of evaluated objects in a view layer."""
 
     def __init__(self, layer):
         self._layer = layer
         collections = list(_all_collections(layer.layer_collection))
-        # Asked of each object they would cost more than all else here.
+        # Querying them per object would cost more than everything else here.
         self._some_indirect = any(each.indirect_only for each in collections)
         self._some_holdout = any(each.holdout for each in collections)
 
     def hidden(self, obj, notes):
-        """The keyword `hidden` of Scene.add_instance; says what of it is not rendered."""
+        """The keyword `hidden` of Scene.add_instance; notes unsupported settings."""
         found = []
         if not obj.visible_camera or self._is_indirect(obj):
             found.append("camera")
@@ -54,7 +54,7 @@ def _all_collections(root):
 
 
 def hidden_backs(material):
-    """Which rays the back faces of a material let pass: the argument of Scene.hide_backs."""
+    """Rays that pass through a material's back faces: the argument of Scene.hide_backs."""
     found = []
     if material and material.use_backface_culling:
         found += ["camera", "bounces"]
@@ -64,7 +64,7 @@ def hidden_backs(material):
 
 
 def note_light_visibility(obj, notes):
-    """Says what of an evaluated light's visibility is not rendered."""
+    """Notes unsupported visibility settings of an evaluated light."""
     bounces = _hidden_bounces(obj)
     if bounces:
         notes.add(f"Light '{obj.name}': that it is hidden from {listed(bounces)} is not supported; ignored.")

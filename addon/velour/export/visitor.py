@@ -1,8 +1,8 @@
-"""Looks at the frames of a scene as a render sees them, without rendering.
+"""Evaluates frames of a scene in render mode, without rendering.
 
-Blender gives Python no evaluated scene in render mode (render visibility, render levels of modifiers, every
-view layer) but inside a render engine. So a copy of the scene is "rendered", and the engine calls a visitor
-instead. The scene itself, its current frame and its render result stay as they are.
+Blender gives Python an evaluated scene in render mode (render visibility, render levels of modifiers, every
+view layer) only inside a render engine. So a copy of the scene is "rendered", and the engine calls a visitor
+instead. The scene itself, its current frame and its render result remain unchanged.
 """
 
 import contextlib
@@ -16,12 +16,12 @@ _visit = None
 
 
 def current():
-    """What the engine calls with itself and the depsgraph instead of rendering; None: it renders."""
+    """Function that the engine calls with itself and the depsgraph instead of rendering; None: it renders."""
     return _visit
 
 
 def visit_frame(scene, frame, visit, engine_id):
-    """Calls `visit(engine, depsgraph)` for every view layer that renders; its exceptions come up here."""
+    """Calls `visit(engine, depsgraph)` for every enabled view layer; raises its first exception."""
     errors = []
 
     def guarded(engine, depsgraph):
@@ -45,14 +45,14 @@ def visit_frame(scene, frame, visit, engine_id):
 def _render(scene):
     try:
         bpy.ops.render.render(scene=scene.name)
-    except RuntimeError as error:  # Blender itself refuses: no camera, for one
+    except RuntimeError as error:  # Blender itself refuses, as without a camera
         sentence = str(error).splitlines()[0].removeprefix("Error: ")
         raise ExportError(f"The scene cannot be looked at: {sentence}.") from error
 
 
 @contextlib.contextmanager
 def _kept_frame(scene):
-    """Rendering leaves the animated values of its frame in the .blend, also for the scene that was copied."""
+    """Restores the frame: rendering a copy leaves that frame's animated values in the original scene, too."""
     try:
         yield
     finally:
@@ -66,12 +66,12 @@ def _copy(scene, frame, engine_id):
         copy.render.engine = engine_id
         copy.render.use_border = copy.render.use_compositing = copy.render.use_sequencer = False
         copy.render.use_single_layer = False
-        copy.render.use_freestyle = False  # strokes over no picture take seconds, and end Blender 4.3 and 5.2
+        copy.render.use_freestyle = False  # strokes alone take seconds, and crash Blender 4.3 and 5.2
         copy.render.use_persistent_data = False  # nothing of the copy may outlive it
         copy.frame_current = frame
         yield copy
     finally:
-        # scenes.remove ends Blender 3.4 where the context has no window, as in timers.
+        # scenes.remove crashes Blender 3.4 if the context has no window, as in timers.
         bpy.data.batch_remove((copy,))
 
 

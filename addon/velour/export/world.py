@@ -1,4 +1,4 @@
-"""Blender's world: a colour, or an environment picture with strength and rotation."""
+"""Blender's world: a color, or an environment image with strength and rotation."""
 
 import math
 import os
@@ -21,25 +21,25 @@ _RAYS = {"diffuse": "diffuse rays", "glossy": "glossy rays"}
 
 
 def layer_world(scene, layer):
-    """The view layer's own (4.3 and newer), or the scene's; None: there is none."""
+    """The view layer's own world (4.3 and newer), or the scene's; may be None."""
     return getattr(layer, "world_override", None) or scene.world
 
 
 def shown_world(depsgraph):
-    """The evaluated world that lights the view layer; None: it is black, or left out."""
+    """The evaluated world that lights the view layer; None if it is missing or switched off."""
     layer = depsgraph.view_layer_eval
     return layer_world(depsgraph.scene_eval, layer) if layer.use_sky else None
 
 
 def has_moving_picture(world):
-    """Whether it shows another one in each frame, of which Blender tells nobody."""
+    """Whether it uses a sequence or movie; Blender does not report that their frame changes."""
     tree = world.node_tree if world and has_nodes(world) else None
     images = [getattr(node, "image", None) for node in tree.nodes] if tree else []
     return any(image and image.source in _MOVING for image in images)
 
 
 def add_world(light, world, frame, notes):
-    """Whether it shines in that frame; `light`: WorldLight."""
+    """Sets the WorldLight `light` for a frame; returns whether it emits."""
     _note_visibility(world, notes)
     if world is None:
         return _add_color(light, (0.0, 0.0, 0.0))
@@ -54,7 +54,7 @@ def _add_color(light, color):
 
 
 def _note_visibility(world, notes):
-    """That it is hidden from the camera is rendered (film.py)."""
+    """Notes unsupported visibility settings. Camera visibility is supported (film.py)."""
     visibility = getattr(world, "cycles_visibility", None)
     for name, rays in _RAYS.items():
         if not getattr(visibility, name, True):
@@ -113,7 +113,7 @@ def _is_linear(image, path):
 
 
 def _file_of_frame(owner, node, path, frame):
-    """Of an image sequence: Blender itself hands out pixels of whichever frame it has shown last."""
+    """File of an image sequence, since Blender returns pixels of whichever frame it showed last."""
     image = node.image
     if image.source == "MOVIE" or not _is_linear(image, path):
         raise ExportError(
@@ -140,7 +140,7 @@ def _pixels(owner, image, path, notes):
 
 
 def _rotation(owner, node, notes):
-    """3 x 3 from world directions to the picture's, or None."""
+    """3 x 3 rotation from world directions to the image's, or None."""
     mapping = source(node.inputs["Vector"])
     if mapping is None or mapping.bl_idname != "ShaderNodeMapping":
         _note_coordinates(owner, node.inputs["Vector"], notes)
@@ -153,7 +153,7 @@ def _rotation(owner, node, notes):
 
 
 def _note_coordinates(owner, vector, notes):
-    """Only the direction of the ray is rendered, which is what an Environment Texture takes by itself."""
+    """Notes unsupported coordinates: only the ray direction, an Environment Texture's default, is used."""
     node = source(vector)
     if node is None:
         return
@@ -174,7 +174,7 @@ def _euler_matrix(euler):
 
 def _note_mapping(owner, mapping, notes):
     scale = mapping.inputs["Scale"].default_value
-    location = mapping.inputs.get("Location")  # newer Blenders find it only where the type uses it
+    location = mapping.inputs.get("Location")  # newer Blender versions have it only for types that use it
     moved = location is not None and any(abs(c) > 1e-6 for c in location.default_value)
     uneven = not all(math.isclose(s, scale[0], rel_tol=1e-5) and s > 0 for s in scale)
     if (moved and mapping.vector_type in ("POINT", "TEXTURE")) or uneven:

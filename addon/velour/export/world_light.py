@@ -1,21 +1,21 @@
-"""What lights a scene from all around."""
+"""Environment light of a scene."""
 
 from .files import file_stamp
 
 
 class WorldLight:
-    """Of one library scene. Reading a picture takes seconds: one that it has is lit and turned anew."""
+    """Environment of one library scene. Reading an image takes seconds: the current one is only re-placed."""
 
     def __init__(self, scene):
         self._scene = scene
-        self._picture = None  # the key of what the scene has; None: a colour, or what may change unseen
+        self._picture = None  # key of the current image; None: a color, or an image that may change unnoticed
 
     def set_color(self, color):
         self._picture = None
         self._scene.set_world_color(color)
 
     def set_file(self, path, strength, rotation, layer=""):
-        """`rotation` [3 x 3] from world directions to the picture's, or None; `layer` of an OpenEXR file."""
+        """`rotation` [3 x 3] from world directions to the image's, or None; `layer` of an OpenEXR file."""
         stamp = file_stamp(path)
         self._show(
             stamp and (stamp, layer),
@@ -37,13 +37,13 @@ class WorldLight:
         if key is not None and key == self._picture:
             self._scene.place_world(strength, rotation)
             return
-        self._picture = None  # should it not be readable
+        self._picture = None  # in case reading fails
         read(strength, rotation)
         self._picture = key
 
 
 def _image_key(image, path):
-    """None where its pixels are painted."""
+    """Key of an image's content; None if its pixels were edited."""
     if image.is_dirty:
         return None
     return (

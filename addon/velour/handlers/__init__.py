@@ -1,4 +1,4 @@
-"""What Blender calls by itself."""
+"""Handlers that Blender calls by itself."""
 
 from . import saved_files
 

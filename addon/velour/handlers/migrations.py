@@ -1,7 +1,7 @@
-"""What settings meant in earlier releases.
+"""Converts settings from earlier releases.
 
-The identifier of a property, its type and the numbers of its choices never change meaning: a test holds them
-to the table that each release has in blend-tests/releases. What has to change all the same is a Step.
+The identifier of a property, its type and the numbers of its choices never change meaning: a test compares
+them with each release's table in blend-tests/releases. An inevitable change is a Step.
 """
 
 from collections.abc import Callable
@@ -10,8 +10,8 @@ from typing import NamedTuple
 
 class Step(NamedTuple):
     version: tuple  # the first release that has the new meaning
-    owner: type  # of the settings: bpy.types.Scene, ShaderNodeTexImage, ...
-    apply: Callable  # changes the settings of an owner that an earlier release has saved
+    owner: type  # type that has the settings: bpy.types.Scene, ShaderNodeTexImage, ...
+    apply: Callable  # converts the settings of an owner that an earlier release has saved
 
 
 STEPS = []  # in the order of releases

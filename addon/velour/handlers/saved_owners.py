@@ -1,4 +1,4 @@
-"""What in a file has settings of Velour."""
+"""Finds what has settings of Velour in a file."""
 
 import bpy
 
@@ -6,7 +6,7 @@ _LISTS = ("scenes", "objects", "collections", "images", "node_groups")
 
 
 def saved_owners():
-    """Datablocks and nodes whose `velour` holds something. Others are not touched, not even looked into."""
+    """Datablocks and nodes whose `velour` has settings. The `velour` of others is not even read."""
     for name in _LISTS:
         for datablock in getattr(bpy.data, name):
             if hasattr(type(datablock), "velour") and _has_settings(datablock):
@@ -25,7 +25,7 @@ def _image_nodes():
 
 
 def _has_settings(owner):
-    # Looking into settings makes them: the first question keeps that from the rest of the file.
+    # Reading settings creates them; is_property_set() avoids that in the rest of the file.
     if owner.is_property_set("velour"):
         settings = owner.velour
         if any(

@@ -1,7 +1,7 @@
-"""The shared library as Python sees it. Importing this opens nothing; the first call does.
+"""Python bindings of the shared library. Importing them does not open it; the first call does.
 
-A name is imported from its module when somebody asks for it: most modules need numpy, which takes longer to
-import than a command like `velour info` takes in all.
+Names are imported from their modules on first use: most modules need numpy, which takes longer to import than
+a command like `velour info` takes in total.
 """
 
 import importlib
@@ -47,5 +47,5 @@ def __getattr__(name: str):
     if name not in _MODULE_OF:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
     value = getattr(importlib.import_module(f"{__name__}.{_MODULE_OF[name]}"), name)
-    globals()[name] = value  # asked for once
+    globals()[name] = value  # no further calls for this name
     return value

@@ -18,14 +18,14 @@ _CHOICES = (("values", table.BTF_VALUES), ("colors", table.BTF_COLORS), ("angles
 
 
 class Btf(Handle):
-    """Pictures over pairs of directions, read when asked for. Immutable; threads may share it."""
+    """Pictures for pairs of directions, read on demand. Immutable; threads may share it."""
 
     _free_name = "vlr_btf_free"
 
     @classmethod
     def load(cls, path: str | os.PathLike, **options) -> Btf:
-        """Opens a folder of Velour's own, a folder of pictures named for their angles (UBO2003), a CSV index
-        of pictures, or a .btf file of Bonn (UBO2014). Options: values (table.BTF_VALUES), colors
+        """Opens a folder written by Velour, a folder of pictures named after their angles (UBO2003), a CSV
+        index of pictures, or a .btf file from Bonn (UBO2014). Options: values (table.BTF_VALUES), colors
         (table.BTF_COLORS), angles (table.BTF_ANGLES), gamma (0: the sRGB curve), tile_metres (x, y), layer
         (of OpenEXR pictures)."""
         raw = structs.BtfOptions()
@@ -62,21 +62,21 @@ class Btf(Handle):
 
 
 def export_btf_job(btf: Btf, path: str | os.PathLike) -> Job:
-    """Writes one OpenEXR picture a pair into the new folder `path`, named for its angles where all of them
-    are whole degrees, else listed in btf.csv."""
+    """Writes one OpenEXR picture per pair into the new folder `path`, named after its angles if all are whole
+    degrees, otherwise listed in btf.csv."""
     return Job._create("vlr_btf_export_create_job", btf.pointer, path_bytes(path))
 
 
 class CompressSize(NamedTuple):
-    """What a fit is about to take, of all sides of the BTF."""
+    """Predicted memory and size of a fit of all sides of the BTF, in bytes."""
 
-    memory: int  # bytes that it holds at once where nothing limits it, the program as it was not counted
-    least_memory: int  # the least `memory` of its options that it can be kept to
-    bytes: int  # of all coefficients, at most
+    memory: int  # peak without a limit, in addition to the process as it is
+    least_memory: int  # the smallest `memory` option that the fit can keep to
+    bytes: int  # upper bound for all coefficients
 
 
 def compress_size(btf: Btf, **options) -> CompressSize:
-    """Options as of compress_job. Nothing is read but the BTF's sizes."""
+    """Options as for compress_job(). Uses only the BTF's dimensions, without reading it."""
     numbers = [ctypes.c_uint64() for _ in CompressSize._fields]
     raw = ctypes.byref(_compress_options(options))
     library.load().vlr_compress_size(btf.pointer, raw, *map(ctypes.byref, numbers))
@@ -85,9 +85,9 @@ def compress_size(btf: Btf, **options) -> CompressSize:
 
 def compress_job(btf: Btf, **options) -> Job:
     """Options: method (table.COMPRESS_METHODS), companding (table.COMPANDINGS), tolerance, bytes, seed,
-    threads, memory, checkpoint (a file that finished stages are kept in until the fit succeeds) and resume,
-    held_out (a Btf of pairs that the fit does not see); for_scene (an Observation) and full_model (a Model)
-    leave out what scenes do not resolve. Result: result_model()."""
+    threads, memory, checkpoint (a file that keeps finished stages until the fit succeeds) and resume,
+    held_out (a Btf of held-out pairs); for_scene (an Observation) and full_model (a Model) make a scene model
+    without details that the scenes do not resolve. Result: result_model()."""
     return Job._create("vlr_compress_create_job", btf.pointer, ctypes.byref(_compress_options(options)))
 
 

@@ -16,8 +16,8 @@ _PAIRS = {"texels": ctypes.c_uint32 * 2, "origin": c_double * 2, "period": c_dou
 
 
 def directions(name: str) -> np.ndarray:
-    """[n x 2] theta and phi, degrees, of a set: "81" (Bonn's), "105" (and a ring at 85 degrees), or another
-    number of directions of equal solid angle."""
+    """[n x 2] theta and phi of a set in degrees: "81" (Bonn's), "105" (Bonn's and a ring at 85 degrees), or
+    another number of directions of equal solid angle."""
     lib, count = library.load(), c_uint64()
     lib.vlr_directions(name.encode(), None, byref(count))
     angles = np.empty((count.value, 2))
@@ -28,11 +28,11 @@ def directions(name: str) -> np.ndarray:
 def capture_job(tile, path: str | os.PathLike, **options) -> Job:
     """Captures a committed Scene, repeated by its period, as a BTF in the folder `path`.
 
-    Options: texels (one number or two), views and lights ([n x 2] degrees), held_out (so many pairs to judge
-    models by, in place of both), samples, bounces, sides (table.SIDES), origin and period (pairs, the scene's
-    units; no period: the bounding box), metres_per_unit (0: not known), reference_height (the scene's z;
-    none: chosen), memory_limit (bytes of a view's images that are kept in memory), source (a name), seed,
-    threads, resume, measure_ray_share.
+    Options: texels (one number or two), views and lights ([n x 2] degrees), held_out (number of held-out
+    pairs, in place of both), samples, bounces, sides (table.SIDES), origin and period (pairs, the scene's
+    units; default period: the bounding box), metres_per_unit (0: not known), reference_height (the scene's z;
+    default: automatic), memory_limit (bytes of a view's images that are kept in memory), source (a name),
+    seed, threads, resume, measure_ray_share.
     """
     raw = structs.CaptureOptions()
     library.load().vlr_capture_options_init(byref(raw))
@@ -52,13 +52,13 @@ def capture_job(tile, path: str | os.PathLike, **options) -> Job:
 
 
 def votf_job(tile, model, **options) -> Job:
-    """Adds to a copy of a Model what a committed Scene, repeated by its period, lets rays through.
+    """Adds to a copy of a Model the VOTF of a committed Scene, repeated by its period.
 
-    Surfaces with the result, a Model, show its outline and its holes.
+    Surfaces with the resulting Model show the silhouette and the holes of the scene.
 
-    Options: texels (along x), origin and period (pairs, the scene's units; no period: the bounding box),
-    metres_per_unit (0: not known), surface (the scene's z that lies on what carries the structure),
-    reference_height (the scene's z; none: chosen), source (a name), check_views, seed, threads.
+    Options: texels (along x), origin and period (pairs, the scene's units; default period: the bounding box),
+    metres_per_unit (0: not known), surface (the scene's z that lies on the surface with the material),
+    reference_height (the scene's z; default: automatic), source (a name), check_views, seed, threads.
     """
     for name in ("origin", "period"):
         if name in options:
@@ -67,10 +67,11 @@ def votf_job(tile, model, **options) -> Job:
 
 
 def votf_data_job(btf, model, **options) -> Job:
-    """The same from what the views of a Btf show: coverage and heights of a capture, or alpha.
+    """Like votf_job(), from the views of a Btf: coverage and heights of a capture, or alpha.
 
-    Options: texels (those of the data), surface (its height over the structure's lowest point, metres, or
-    widths of the tile), source (a name), check_views (of the data's own), threads.
+    Options: texels (default: those of the data), surface (its height over the structure's lowest point, in
+    meters, or in widths of the tile if its size is not known), source (a name), check_views (number of the
+    data's own), threads.
     """
     return Job._create(
         "vlr_votf_data_create_job", btf.pointer, model.pointer, _votf_options({"texels": 0, **options})

@@ -1,4 +1,4 @@
-"""What can go wrong at the boundary of the library. Every error is one sentence for the user."""
+"""Errors of the library and its wrappers. Each is one sentence for the user."""
 
 from __future__ import annotations
 
@@ -34,12 +34,12 @@ class VelourError(RuntimeError):
 
 
 class LibraryError(VelourError):
-    """The shared library is missing, cannot be loaded, or is not the one that this package was made for."""
+    """The shared library is missing, cannot be loaded, or does not match this package."""
 
     def __init__(self, sentence: str):
         super().__init__(Status.VERSION_MISMATCH, sentence)
 
 
 def refuse(sentence: str) -> VelourError:
-    """An argument that never reaches the library."""
+    """The error of an argument that is refused before it reaches the library; the caller raises it."""
     return VelourError(Status.INVALID_ARGUMENT, sentence)

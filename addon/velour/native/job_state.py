@@ -1,4 +1,4 @@
-"""Progress of a job. Apart from job.py, because that needs numpy."""
+"""Progress of a job. Not in job.py, because that needs numpy."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ class JobState(NamedTuple):
     stage: str
     seconds: float  # since the start
     seconds_left: float | None  # estimate
-    bytes_in_use: int  # of the whole process
+    bytes_in_use: int  # memory of the whole process
 
     @property
     def running(self) -> bool:

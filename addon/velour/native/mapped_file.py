@@ -10,23 +10,23 @@ _MAPS = "/proc/self/maps"  # Linux; elsewhere nothing is known
 
 
 def is_replaced(path: Path, function) -> bool:
-    """Whether `function` (of ctypes) lies in another file than the one that has the name now.
+    """Whether `function` (of ctypes) lies in another file than the one that is at `path` now.
 
-    The name that the system has for what is mapped proves nothing: an update may move the old file before it
-    deletes it. Nor do the numbers of stat(), which are others for devices of btrfs and overlays. So the file
-    is mapped as well, and the system asked about both.
+    The system's name of the mapping proves nothing: an update may move the old file before deleting it. Nor
+    do the numbers of stat(), which differ for devices of btrfs and overlays. So the file is mapped as well,
+    and both mappings are compared.
     """
     with open(path, "rb") as file, mmap.mmap(file.fileno(), 1, access=mmap.ACCESS_COPY) as mapped:
         first = ctypes.c_char.from_buffer(mapped)
         try:
             now = _file_at(ctypes.addressof(first))
         finally:
-            del first  # or `mapped` cannot be closed
+            del first  # otherwise `mapped` cannot be closed
     return _file_at(ctypes.cast(function, ctypes.c_void_p).value) != now
 
 
 def _file_at(address: int) -> tuple[str, str] | None:
-    """Device and inode of what is mapped there; None: not known."""
+    """Device and inode of the file that is mapped there; None: not known."""
     try:
         with open(_MAPS, encoding="utf-8", errors="surrogateescape") as file:
             lines = file.readlines()

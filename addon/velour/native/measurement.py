@@ -18,7 +18,7 @@ class Measurement(Handle):
 
     @classmethod
     def load(cls, path: str | os.PathLike) -> Measurement:
-        """Reads a measurement file; the format is recognised from its content."""
+        """Reads a measurement file; the format is recognized from its content."""
         return cls._create("vlr_measurement_load", path_bytes(path))
 
     def info(self) -> dict:

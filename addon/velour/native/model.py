@@ -24,7 +24,7 @@ class Model(Handle):
 
     @classmethod
     def from_bytes(cls, data: bytes, name: str) -> Model:
-        """The model whose file has the content `data`; `name` appears in error sentences."""
+        """Loads a model from the content `data` of its file; `name` appears in error messages."""
         data = bytes(data)
         return cls._create("vlr_model_load_memory", data, len(data), os.fsencode(name))
 
@@ -35,7 +35,7 @@ class Model(Handle):
         return ctypes.string_at(data, size.value)
 
     def save(self, path: str | os.PathLike) -> None:
-        """Writes the old file or the new one, never a part."""
+        """Atomic: the file is the old one or the new one, never a part."""
         self._lib.vlr_model_save(self.pointer, path_bytes(path))
 
     def info(self) -> dict:
@@ -43,11 +43,11 @@ class Model(Handle):
         return library.json_of(self._lib.vlr_model_info_json, self.pointer)
 
     def roughened(self, roughness: float) -> Model:
-        """The model of a surface that is rougher, 0 to 1; not of a BTF."""
+        """The model of a rougher surface; `roughness`: 0 to 1. Not for models of BTFs."""
         return self._create("vlr_model_roughened", self.pointer, roughness)
 
     def out_of_domain(self, frame: Observation) -> float:
-        """Share of what `frame` shows that a model reduced to a scene was not made for; 0 for others."""
+        """Share of the usage in `frame` that a scene model was not fitted for; 0 for other models."""
         share = ctypes.c_double()
         self._lib.vlr_model_out_of_domain(self.pointer, frame.pointer, ctypes.byref(share))
         return share.value
@@ -62,7 +62,7 @@ class Model(Handle):
         return f, pdf
 
     def sample(self, wv, u: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Directions wl [n x 3] drawn for `wv` [3] from `u` [n x 2] in [0, 1), and their density pdf [n].
+        """Directions wl [n x 3] sampled for `wv` [3] from `u` [n x 2] in [0, 1), and their density pdf [n].
 
         A direction may lie below the horizon.
         """

@@ -1,4 +1,4 @@
-"""What scenes show of one material."""
+"""Scene usage: what scenes show of one material."""
 
 from __future__ import annotations
 
@@ -9,13 +9,13 @@ from .handle import Handle, path_bytes
 
 
 class Observation(Handle):
-    """Views and lights under which frames show a material, with weights; may be of no frame, and grow."""
+    """Weighted views and lights under which frames show a material; may be empty, and grows by merge()."""
 
     _free_name = "vlr_observation_free"
 
     @classmethod
     def of_nothing(cls) -> Observation:
-        """Of no frame: something to merge into."""
+        """An observation without frames, to merge others into."""
         return cls._create("vlr_observation_create")
 
     @classmethod
@@ -23,11 +23,11 @@ class Observation(Handle):
         return cls._create("vlr_observation_load", path_bytes(path))
 
     def save(self, path: str | os.PathLike) -> None:
-        """Writes the old file or the new one, never a part."""
+        """Atomic: the file is the old one or the new one, never a part."""
         self._lib.vlr_observation_save(self.pointer, path_bytes(path))
 
     def merge(self, other: Observation) -> None:
-        """Adds what `other` saw."""
+        """Adds the frames of `other`."""
         self._lib.vlr_observation_merge(self.pointer, other.pointer)
 
     def info(self) -> dict:

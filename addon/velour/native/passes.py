@@ -1,4 +1,4 @@
-"""Passes that a render is asked for beyond those that every picture has, and what they say of the scene."""
+"""Optional passes of a render, and the labels of the scene that they show."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ _CHANNELS = {
     "Halves": 18,
     "Denoised": 4,
 }
-# Passes come in levels of two ids: CryptoObject00, CryptoObject01, ...
+# Each is a sequence of passes with two ids each: CryptoObject00, CryptoObject01, ...
 _CRYPTOMATTES = ("CryptoObject", "CryptoMaterial", "CryptoAsset")
 
 INSTANCE_LABEL = np.dtype(structs.InstanceLabel)
@@ -40,16 +40,16 @@ MATERIAL_LABEL = np.dtype(structs.MaterialLabel)
 class Passes:
     """vlr_pass_options."""
 
-    asked: frozenset[str]  # of table.PASSES
-    cryptomatte_ranks: int = 6  # ids that a pixel tells, two a pass; 2..16
-    # Metres from the camera to where it begins, from there to where all is mist, exponent of that way.
+    asked: frozenset[str]  # names in table.PASSES
+    cryptomatte_ranks: int = 6  # ids per pixel, two per pass; 2..16
+    # Start: meters from the camera; depth: meters from there to full mist; exponent of the falloff.
     mist: tuple[float, float, float] = (5.0, 25.0, 2.0)
-    # By the numbers of the scene's instances and materials: INSTANCE_LABEL, MATERIAL_LABEL.
+    # Indexed by the scene's instance and material numbers: INSTANCE_LABEL, MATERIAL_LABEL.
     instances: np.ndarray = field(default_factory=lambda: np.zeros(0, INSTANCE_LABEL))
     materials: np.ndarray = field(default_factory=lambda: np.zeros(0, MATERIAL_LABEL))
 
     def raw(self) -> structs.PassOptions:
-        """Borrows the labels."""
+        """The C struct, which borrows the labels."""
         raw = structs.PassOptions()
         library.load().vlr_pass_options_init(ctypes.byref(raw))
         start, depth, exponent = self.mist
@@ -69,7 +69,7 @@ class Passes:
 
 
 def channels_of(name: str) -> int:
-    """Raises a sentence where there is no pass of that name."""
+    """Raises VelourError if there is no pass of that name."""
     if name[:-2] in _CRYPTOMATTES and name[-2:].isdecimal():
         return 4
     if name not in _CHANNELS:
@@ -78,14 +78,14 @@ def channels_of(name: str) -> int:
     return _CHANNELS[name]
 
 
-_SUMS = 12  # of every film: light, alpha, normal, depth, halves, numbers of rays
+_SUMS = 12  # floats per pixel of every film: light, alpha, normal, depth, halves, numbers of rays
 _VALUES = {"position": 3, "uv": 3, "object_index": 1, "material_index": 1, "mist": 1, "albedo": 3, "error": 3}
 _VALUES |= {"denoising_albedo": 3, "halves": 12}
-_SPARE_IDS = 2  # beyond those that are shown
+_SPARE_IDS = 2  # ids that are kept in addition to those shown
 
 
 def sums_per_pixel(passes: Passes | None) -> int:
-    """Floats a pixel of a film, as Job.sums_per_pixel() tells once it is there."""
+    """Floats per pixel of a film: Job.sums_per_pixel() before there is a job."""
     if passes is None:
         return _SUMS
     ids = 2 * (passes.cryptomatte_ranks + _SPARE_IDS)
@@ -94,11 +94,11 @@ def sums_per_pixel(passes: Passes | None) -> int:
 
 class CryptomatteId(NamedTuple):
     hash: int  # MurmurHash3_x86_32 of the name
-    value: float  # what passes hold
+    value: float  # as stored in the passes
 
     @property
     def text(self) -> str:
-        """Of the value, as a manifest has it."""
+        """The value as it is written in a manifest."""
         return f"{np.float32(self.value).view(np.uint32):08x}"
 
 

@@ -1,4 +1,4 @@
-"""Materials that are mixed and added of others."""
+"""Materials that mix and add others."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ _CHOICES = {"formula": table.FORMULAS, "lobe": table.LOBES, "coat_lobe": table.L
 
 
 class Shader(Handle):
-    """The sum of its layers, each with its weight; Scene.add_shader_material makes a material of it."""
+    """A weighted sum of layers; Scene.add_shader_material makes a material of it."""
 
     _free_name = "vlr_shader_free"
 
@@ -32,13 +32,13 @@ class Shader(Handle):
         interreflection: bool = False,
         **values,
     ) -> None:
-        """`kind`: principled, diffuse, glossy, transparent, emission; the weight is 1.
+        """Adds a layer with weight 1. `kind`: principled, diffuse, glossy, transparent, emission.
 
-        textures and values: as of Scene.add_textured_material, without alpha and emission. diffuse looks at
-        base_color and roughness, glossy at lobe, too; base_color of transparent is what light that goes
-        straight on is multiplied with, of emission the radiance. normal: a normal map, colours, of what
-        reflects. normal_correction: turned, faded, shadowed, as-it-is: what becomes of steep normals.
-        interreflection: a rough diffuse layer keeps its energy.
+        textures and values: as for Scene.add_textured_material, without alpha and emission. diffuse uses
+        base_color and roughness, glossy also lobe. base_color is the factor on transmitted light for
+        transparent, the radiance for emission. normal: a normal map (colors) for reflection.
+        normal_correction: treatment of steep normals: turned, faded, shadowed, as-it-is. interreflection: a
+        rough diffuse layer keeps its energy.
         """
         desc = structs.LayerDesc()
         self._lib.vlr_layer_desc_init(byref(desc))
@@ -57,7 +57,7 @@ class Shader(Handle):
     ) -> None:
         """Multiplies the weight of the last layer: by `share` of a mix, its `rest` (1 - share), or a `gain`.
 
-        A texture of numbers goes before the value.
+        A texture of numbers replaces the value.
         """
         desc = structs.FactorDesc()
         self._lib.vlr_factor_desc_init(byref(desc))
@@ -69,7 +69,7 @@ class Shader(Handle):
 
 
 def fill_principled(desc: structs.PrincipledDesc, values: dict) -> None:
-    """By names of numbers, colours and choices: those of Scene.add_principled_material."""
+    """Sets numbers, colors and choices by the names of Scene.add_principled_material."""
     for name, value in values.items():
         if name in _COLORS:
             value = small(name, value, _COLORS[name])
@@ -79,7 +79,7 @@ def fill_principled(desc: structs.PrincipledDesc, values: dict) -> None:
 
 
 def described(lib, textures: dict[str, TextureSlot], values: dict):
-    """PrincipledDesc and PrincipledTextures of these; they borrow the textures."""
+    """PrincipledDesc and PrincipledTextures of a material; they borrow the textures."""
     desc, pictures = structs.PrincipledDesc(), structs.PrincipledTextures()
     lib.vlr_principled_desc_init(byref(desc))
     lib.vlr_principled_textures_init(byref(pictures))

@@ -1,4 +1,4 @@
-"""Pictures that stand for the numbers of a material."""
+"""Textures for parameters of a material."""
 
 from __future__ import annotations
 
@@ -18,34 +18,34 @@ IDENTITY = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0))
 class Texture(Handle):
     """Immutable. (0, 0) is the picture's lower left corner, (1, 1) its upper right.
 
-    wrap: repeat, extend, clip, mirror; filter: closest, linear. channel: -1 makes it a colour, of the first
-    three channels (of one or two: the first); else that channel makes it a number.
+    wrap: repeat, extend, clip, mirror; filter: closest, linear. channel: -1: a color from the first three
+    channels (of one or two: from the first); otherwise a number from that channel.
     """
 
     _free_name = "vlr_texture_free"
 
     @classmethod
     def from_pixels(cls, pixels: np.ndarray, **options) -> Texture:
-        """[height x width x channels] float32, row 0 at the bottom, linear; colours in the working space."""
+        """[height x width x channels] float32, row 0 at the bottom, linear; colors in the working space."""
         pixels = checked("pixels", pixels, (None, None, None))
         height, width, channels = pixels.shape
         return cls._create("vlr_texture_create", width, height, channels, pointer(pixels), _options(options))
 
     @classmethod
     def of_corners(cls, color_set: int) -> Texture:
-        """The colours of the mesh's own corners, of one of its sets; for numbers, their first channel."""
+        """The colors of the mesh's corners, from one of its sets; numbers use the first channel."""
         return cls._create("vlr_texture_of_corners", color_set)
 
     @classmethod
     def load(cls, path: str | os.PathLike, **options) -> Texture:
-        """raw: 1 takes integer values as numbers from 0 to 1, not as sRGB colours."""
+        """raw: 1 reads integer values as numbers from 0 to 1, not as sRGB colors."""
         return cls._create("vlr_texture_load", path_bytes(path), _options(options))
 
 
 class TextureSlot(NamedTuple):
     """A texture of a parameter; `uv_map` [2 x 3] takes the surface's (u, v, 1) to the picture's.
 
-    uv_set: of the mesh's texture coordinates, below table.MOST_UV_SETS.
+    uv_set: index of the mesh's texture coordinates, below VLR_MOST_UV_SETS.
     """
 
     texture: Texture

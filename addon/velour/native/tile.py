@@ -13,7 +13,7 @@ from .scene import Scene
 
 
 class TileMesh(NamedTuple):
-    """The keywords of Scene.add_mesh."""
+    """Keywords of Scene.add_mesh."""
 
     positions: np.ndarray
     triangles: np.ndarray
@@ -23,23 +23,24 @@ class TileMesh(NamedTuple):
 
 
 class Tile(Handle):
-    """One period of a small structure. The cell is [0, period x] x [0, period y], metres, +z up.
+    """One period of a small structure. The cell is [0, period x] x [0, period y], meters, +z up.
 
-    What crosses the cell's border is there once and sticks out; copies moved by the period complete it.
+    Geometry that crosses the cell's border exists once and sticks out; copies shifted by the period complete
+    the structure.
     """
 
     _free_name = "vlr_tile_free"
 
     @staticmethod
     def kinds() -> list[dict]:
-        """name, summary and defaults of each kind; a kind has no default of what it does not take."""
+        """name, summary and defaults of each kind; options that a kind does not take have no default."""
         return library.json_of(library.load().vlr_tile_kinds_json)["kinds"]
 
     @classmethod
     def create(cls, kind: str, **shape) -> Tile:
-        """size (metres), count, resolution, thickness, gap (pitches), irregularity (0..1), seed.
+        """size (meters), count, resolution, thickness, gap (pitches), irregularity (0..1), seed.
 
-        What is not said is the kind's own.
+        Options that are not given have the kind's defaults.
         """
         options = structs.TileOptions()
         library.load().vlr_tile_options_init(byref(options))
@@ -68,7 +69,7 @@ class Tile(Handle):
         return library.json_of(self._lib.vlr_tile_info_json, self.pointer)
 
     def add_to(self, scene: Scene) -> tuple[int, list[int]]:
-        """The numbers of its mesh and of its materials in `scene`, for Scene.add_instance."""
+        """Adds the tile. Returns the numbers of its mesh and its materials, for Scene.add_instance."""
         mesh, _dropped = scene.add_mesh(**self.mesh()._asdict())
         materials = [
             scene.add_principled_material(**{name: m[name] for name in m if name != "name"})

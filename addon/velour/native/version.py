@@ -1,16 +1,16 @@
-"""The version that this package belongs to. A test holds it to CMakeLists.txt, bl_info and the manifest."""
+"""The version of this package. A test compares it with CMakeLists.txt, bl_info and the manifest."""
 
 VERSION = (0, 1, 0)
 ABI_VERSION = 10
 
 
 def packed(version: tuple[int, int, int] = VERSION) -> int:
-    """As vlr_version() packs it."""
+    """The version as one integer, packed like vlr_version()."""
     return version[0] * 10000 + version[1] * 100 + version[2]
 
 
 def version_text(packed: int | None = None) -> str:
-    """ "0.1.0" of VERSION, or of a number packed as vlr_version() packs it."""
+    """ "0.1.0" from VERSION, or from an integer packed like vlr_version()."""
     if packed is None:
         return ".".join(str(part) for part in VERSION)
     return f"{packed // 10000}.{packed // 100 % 100}.{packed % 100}"

@@ -1,4 +1,4 @@
-"""What the artist can do."""
+"""Velour's operators."""
 
 import bpy
 

@@ -1,4 +1,4 @@
-"""A file that changed on disk, accepted on purpose."""
+"""Accepts a file that has changed on disk."""
 
 import bpy
 from bpy.props import StringProperty
@@ -54,13 +54,13 @@ class VELOUR_OT_accept_file(ReadsFirst, bpy.types.Operator):
 
 
 def _images(node):
-    """What stands for files, by what it is to the material."""
+    """Image datablocks of the material's files, with their roles."""
     roles = (("model", node.image), ("scene model", node.velour.scene_model))
     return [(role, image) for role, image in (*roles, (_MEASUREMENT, node.velour.measurement)) if image]
 
 
 def _digests(stored):
-    """By role; and a sentence for each file that cannot be had, which is no matter to the others."""
+    """SHA-256 by role, and a sentence for each file that cannot be read; other files are unaffected."""
     found, sentences = {}, []
     for role, file in stored.items():
         try:

@@ -1,4 +1,4 @@
-"""A procedural tile of mesostructure as an ordinary mesh."""
+"""Adds a procedural tile of mesostructure as an ordinary mesh."""
 
 import bpy
 import numpy as np
@@ -23,7 +23,7 @@ _SHAPE = ("size", "count", "thickness", "gap", "irregularity", "resolution", "se
 
 
 def _forget_shape(operator, _context):
-    """Another type begins with its own shape."""
+    """Resets the shape to the defaults of another type."""
     for name in _SHAPE:
         operator.property_unset(name)
 
@@ -34,7 +34,7 @@ class VELOUR_OT_add_mesostructure(bpy.types.Operator, AddObjectHelper):
     bl_description = "Add one tile of a small structure, true to life in size, that repeats without a seam"
     bl_options = {"REGISTER", "UNDO"}
 
-    # What is not given is the type's own; it is filled in once the tile is made.
+    # Properties that are not set use the type's defaults, which are filled in once the tile is made.
     type: EnumProperty(name="Type", items=_TYPES, default="WEAVE", update=_forget_shape)
     size: FloatProperty(
         name="Size",
@@ -124,7 +124,7 @@ class VELOUR_OT_add_mesostructure(bpy.types.Operator, AddObjectHelper):
         return {"FINISHED"}
 
     def _given(self, unit):
-        """What was said of the shape: keywords of Tile.create."""
+        """Shape properties that were set, as keywords of Tile.create."""
         taken = {"seed", *_own_shape(self.type)}
         given = {n: getattr(self, n) for n in _SHAPE if n in taken and self.properties.is_property_set(n)}
         if "size" in given:
@@ -132,7 +132,7 @@ class VELOUR_OT_add_mesostructure(bpy.types.Operator, AddObjectHelper):
         return given
 
     def _fill_in(self, shape, unit):
-        """The panel of the last operation shows what was made."""
+        """Sets the properties to the values used, for the Adjust Last Operation panel."""
         for name in {"seed", *_own_shape(self.type)}:
             setattr(self, name, shape[name] / unit if name == "size" else shape[name])
 
@@ -142,7 +142,7 @@ def _own_shape(kind):
 
 
 def _mesh_data(name, mesh, unit):
-    """In Blender's units, smooth, with a UV map and the slots of its faces."""
+    """Smooth mesh in Blender units, with a UV map and material slots."""
     faces = joined(mesh)
     data = bpy.data.meshes.new(name)
     data.from_pydata((mesh.positions / unit).tolist(), [], faces.corners)

@@ -1,4 +1,4 @@
-"""The library of presets, made known to Blender's asset browser: only when the artist asks for it."""
+"""Adds the preset library to Blender's asset browsers, only when the user asks for it."""
 
 import os
 
@@ -22,7 +22,7 @@ class VELOUR_OT_add_presets(bpy.types.Operator):
     )
 
     def invoke(self, context, event):
-        """Asks for the folder where the add-on has none."""
+        """Asks for the folder if the add-on contains no presets."""
         if self.directory or presets.is_built(presets.folder()):
             return self.execute(context)
         context.window_manager.fileselect_add(self)
@@ -43,7 +43,7 @@ class VELOUR_OT_add_presets(bpy.types.Operator):
 
 
 def missing(folder):
-    """What is wrong where the presets are not in `folder`, and what to do."""
+    """Error message for a `folder` without presets, with the remedy."""
     return (
         f"{folder} has no {presets.LIBRARY_FILE}: run scripts/presets in Velour's sources, then scripts/build"
         " or scripts/package; or choose the folder that has it."
@@ -51,7 +51,7 @@ def missing(folder):
 
 
 def library_of(preferences, folder):
-    """The asset library of the user's that is `folder`, or None."""
+    """The user's asset library at `folder`, or None."""
     for library in preferences.filepaths.asset_libraries:
         if os.path.realpath(bpy.path.abspath(library.path)) == os.path.realpath(folder):
             return library
@@ -67,8 +67,8 @@ def _add(preferences, folder):
 
 
 def _prefer_appending(library):
-    """Models belong to the file that shows them."""
+    """Prefers appending, so that models are stored in the file that uses them."""
     try:
         library.import_method = "APPEND_REUSE"
-    except TypeError:  # newer Blenders offer it no more, though they list it
+    except TypeError:  # newer Blender versions list it, but reject it
         library.import_method = "APPEND"

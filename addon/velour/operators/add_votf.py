@@ -1,4 +1,4 @@
-"""Give a material's model the outline and the holes of a tile: in the background of a window, or at once."""
+"""Adds a tile's VOTF to a material's model: in the background or, without a window, synchronously."""
 
 import functools
 
@@ -28,7 +28,7 @@ class VELOUR_OT_add_votf(AskedOutline, MakesModel, bpy.types.Operator):
     def _begin(self, context):
         asked = self._asked(context)
         self._target, self._subject = JobTarget(asked.material, asked.node), asked.material.name
-        # The structure as it is now; the model as the jobs before this one leave it.
+        # The structure is exported now; the model is read when earlier jobs have finished.
         scene, options, self._notes = export_structure(context, asked)
         self._outline = functools.partial(_outline_job, scene, texels=asked.texels, **options)
 
@@ -60,6 +60,6 @@ class VELOUR_OT_add_votf(AskedOutline, MakesModel, bpy.types.Operator):
 
 
 def _outline_job(scene, stored, **options):
-    """Beside the window."""
+    """Runs on the job's thread."""
     with scene, stored.model() as model:
         return votf_job(scene, model, **options)

@@ -1,4 +1,4 @@
-"""Approximate a measured material: in the background of a window, or at once without one."""
+"""Approximates a measured material: in the background or, without a window, synchronously."""
 
 import bpy
 from bpy.props import StringProperty
@@ -13,12 +13,12 @@ from .job_target import JobTarget
 
 
 class MakesModel(JobsInSteps):
-    """Mixin of an operator whose first job makes a model, which comes with its approximation or not at all.
+    """Mixin for an operator whose first job makes a model, applied only together with its approximation.
 
-    It is for the material of `_target`; `_put()` takes `_data`, `_info` and the first job's `_report`.
+    The model is for the material of `_target`; `_put()` uses `_data`, `_info` and the first job's `_report`.
     """
 
-    _data = None  # the model's file
+    _data = None  # contents of the model file
 
     def _finish(self):
         if self._data is None:

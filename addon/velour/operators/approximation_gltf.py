@@ -1,13 +1,13 @@
-"""What glTF files carry of a measured material: the approximation's colour, metallic, roughness and images.
+"""Exports a measured material's approximation to glTF: color, metallic, roughness and images.
 
-The exporter of Blender 4.0 and newer looks into groups by itself.
+The exporter of Blender 4.0 and newer reads node groups itself.
 """
 
 from ..export.nodes import approximation_node
 
 
 def fill(gltf_material, material, export_settings):
-    """Of a material whose group the exporter has not looked into."""
+    """Fills in a material whose node group the exporter has not read."""
     node, pbr = approximation_node(material), gltf_material.pbr_metallic_roughness
     if node is None or pbr is None or pbr.base_color_factor or pbr.base_color_texture:
         return
@@ -27,7 +27,7 @@ def fill(gltf_material, material, export_settings):
 
 
 def _factor(color):
-    """What an image is multiplied by, or the colour itself."""
+    """The factor on an image, or the color itself."""
     if color.is_linked:
         *_, color = (socket for socket in color.links[0].from_node.inputs if socket.enabled)
     return color.default_value[:3]

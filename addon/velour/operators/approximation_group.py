@@ -1,4 +1,4 @@
-"""The native node group that shows a measured material wherever there is no Velour."""
+"""The native node group that approximates a measured material without Velour."""
 
 import bpy
 
@@ -12,27 +12,27 @@ NAME = "Velour approximation"
 
 
 def has_layers():
-    """Whether coat and tints of the Principled BSDF are those that the library fits; no property tells."""
+    """Whether the Principled BSDF has the coat and tints that the library fits; no property reveals it."""
     return bpy.app.version >= (4, 0, 0)
 
 
 def is_editable(material):
-    """Not of another file: overrides cannot add nodes."""
+    """Whether the material is local; library overrides cannot add nodes."""
     return material.library is None and material.override_library is None
 
 
 def is_wanted(material):
-    """Whether a new model may change what other programs see: there is an approximation, or no shader."""
+    """Whether a new model should be approximated: there is an approximation already, or no other shader."""
     outputs = [n for n in material.node_tree.nodes if n.bl_idname == "ShaderNodeOutputMaterial"]
     has_shader = any(node.inputs["Surface"].is_linked for node in outputs)
     return is_editable(material) and (approximation_node(material) is not None or not has_shader)
 
 
 def put(material, approximation=UNFITTED, model=""):
-    """Makes the material's group anew and shows it, if it is the first; touches no other node.
+    """Replaces the material's group, and links it if it is the first; does not change other nodes.
 
-    Materials that are copies share a group: it is replaced, never changed. model: the SHA-256 of what it
-    stands for.
+    Copies of a material share its group, so it is replaced, never edited. model: SHA-256 of the model that
+    it approximates.
     """
     tree, node = material.node_tree, approximation_node(material)
     output = active_output(tree, "ShaderNodeOutputMaterial") or tree.nodes.new("ShaderNodeOutputMaterial")
@@ -43,7 +43,7 @@ def put(material, approximation=UNFITTED, model=""):
         node.location = output.location.x - 200, output.location.y
     shown_by = [output.inputs["Surface"]] if is_new else [link.to_socket for link in node.outputs[0].links]
     node.node_tree = None
-    _remove(before)  # first: its name is free then
+    _remove(before)  # first, to free its name
     node.node_tree = _group(approximation, material)
     for socket in shown_by:
         tree.links.new(node.outputs[0], socket)
@@ -62,7 +62,7 @@ def _group(approximation, material):
     sink = group.nodes.new("NodeGroupOutput")
     sink.location = 600, 0
     shader = group.nodes.new("ShaderNodeBsdfPrincipled")
-    shader.distribution = "GGX"  # as it was fitted: without light between facets
+    shader.distribution = "GGX"  # as fitted: without multiple scattering between facets
     if approximation.anisotropic > 0:
         _turn(group, shader)
     base = group.nodes.new("ShaderNodeBsdfDiffuse") if max(approximation.diffuse) > 0 else None
@@ -89,15 +89,15 @@ def _color(group, shader, tiles, approximation, material):
     group.links.new(next(socket for socket in dye.outputs if socket.enabled), shader.inputs["Base Color"])
     if is_open(pixels):
         group.links.new(texture.outputs["Alpha"], shader.inputs["Alpha"])
-        if hasattr(material, "shadow_method"):  # before 4.2 EEVEE has to be told
+        if hasattr(material, "shadow_method"):  # EEVEE before 4.2 requires it
             material.blend_method = material.shadow_method = "HASHED"
 
 
 def _relief(group, texture, shader, base):
-    """Normals along the tile, which are turned as it is: tangents are those of the texture coordinates."""
+    """Adds the normal map, rotated like the tile, since tangents are those of the texture coordinates."""
     turn, relief = group.nodes.new("ShaderNodeVectorRotate"), group.nodes.new("ShaderNodeNormalMap")
     turn.rotation_type = "Z_AXIS"
-    turn.inputs["Center"].default_value = 0.5, 0.5, 0.5  # the colour of no tilt
+    turn.inputs["Center"].default_value = 0.5, 0.5, 0.5  # color of an untilted normal
     turn.location, relief.location = (-360, -460), (-180, -460)
     group.links.new(texture.outputs["Color"], turn.inputs["Vector"])
     group.links.new(turn.outputs["Vector"], relief.inputs["Color"])
@@ -107,7 +107,7 @@ def _relief(group, texture, shader, base):
 
 
 def _turn(group, shader):
-    """Along the texture coordinates, as measured materials lie."""
+    """Aligns anisotropy with the texture coordinates, as for measured materials."""
     tangent = group.nodes.new("ShaderNodeTangent")
     tangent.direction_type = "UV_MAP"
     tangent.location = -220, -300
@@ -124,7 +124,7 @@ def _with_base(group, shader, base):
 
 
 def _remove(group):
-    """Of a material's own, with its images; copies of the material keep them."""
+    """Removes a group and its images, unless copies of the material use them."""
     if group is None or group.users > 0:
         return
     images = [node.image for node in group.nodes if node.bl_idname == "ShaderNodeTexImage" and node.image]

@@ -1,11 +1,11 @@
-"""The images of an approximation: base colour and what of a tile is there, and its normals."""
+"""Images of an approximation: base color with opacity, and normals."""
 
 import bpy
 import numpy as np
 
 from ..core.normal_map import encoded
 
-_KEPT_OPAQUE = 0.999  # a map of more is opaque but for noise
+_KEPT_OPAQUE = 0.999  # mean alpha from which on a map counts as opaque except for noise
 
 
 def add_image(name, pixels):
@@ -16,9 +16,9 @@ def add_image(name, pixels):
 
 
 def add_normals(name, normals):
-    """A packed image of unit `normals` [rows x columns x 3]: of 8 bits, as glTF files have them.
+    """A packed 8-bit image of unit `normals` [rows x columns x 3], as in glTF files.
 
-    Their steps are a quarter of a degree, what pictures tell of normals is vaguer.
+    Its steps are a quarter of a degree, finer than the accuracy of normals estimated from images.
     """
     return _packed(name, np.dstack([encoded(normals), np.ones(normals.shape[:2])]), is_data=True)
 
@@ -35,22 +35,22 @@ def _packed(name, pixels, alpha=False, is_data=False):
 
 
 def is_open(pixels):
-    """Whether something shows through."""
+    """Whether the image is partly transparent."""
     return float(pixels[..., 3].mean()) < _KEPT_OPAQUE
 
 
 def add_mapping(group):
-    """The nodes of a group that say where its tiles lie: their socket."""
+    """Adds the nodes that place a group's tiles; returns their output socket."""
     uvs, mapping = group.nodes.new("ShaderNodeUVMap"), group.nodes.new("ShaderNodeMapping")
     for node, x in ((uvs, -1000), (mapping, -800)):
         node.location = x, 0
-    mapping.vector_type = "TEXTURE"  # the inverse: tiles are as large as this scale
+    mapping.vector_type = "TEXTURE"  # the inverse: its scale is the size of a tile
     group.links.new(uvs.outputs["UV"], mapping.inputs["Vector"])
     return mapping.outputs["Vector"]
 
 
 def add_texture(group, image, tiles, y=0):
-    """The image's node; `tiles` is the socket of add_mapping."""
+    """Adds the image's node; `tiles` is the socket of add_mapping()."""
     texture = group.nodes.new("ShaderNodeTexImage")
     texture.location = -500, y
     texture.image = image
@@ -59,14 +59,14 @@ def add_texture(group, image, tiles, y=0):
 
 
 def place(mapping, placement, metres):
-    """Where the placement says that tiles lie. metres: sides of a tile, where the model knows them."""
+    """Sets a Mapping node to a placement. `metres`: sides of a tile in meters, if the model has them."""
     mapping.inputs["Location"].default_value = (*placement.offset, 0.0)
     mapping.inputs["Rotation"].default_value = (0.0, 0.0, placement.rotation)
     mapping.inputs["Scale"].default_value = (*(1.0 / r for r in _repeats(placement, metres)), 1.0)
 
 
 def _repeats(placement, metres):
-    """Over a unit of texture coordinates. Tiles in real size: as if that were a metre, unless it is told."""
+    """Repeats per unit of texture coordinates. For real-size tiles that is 1 m, unless a density is set."""
     if placement.mode == "REPEATS":
         return tuple(placement.repeats)
     entered = tuple(1e-3 * side for side in placement.tile_size)

@@ -1,4 +1,4 @@
-"""The values of an approximation's nodes: what was fitted, changed by the artist's look and placement."""
+"""Node values of an approximation: the fit, modified by the material's look and placement."""
 
 import json
 import math
@@ -12,8 +12,8 @@ from ..export.nodes import approximation_node, first_input, velour_node
 from ..properties import changed
 from .approximation_image import place
 
-# The library's names: those of Blender's sockets over the versions. A tint is told to colours only: before
-# Blender 4.0 it is a number, of another meaning.
+# The library's names: names of Blender's sockets across versions. The tint is set on color sockets only:
+# before Blender 4.0 it is a number with another meaning.
 _SOCKETS = {
     "base_color": ("Base Color",),
     "metallic": ("Metallic",),
@@ -26,7 +26,7 @@ _SOCKETS = {
 
 
 def kept(approximation):
-    """What `follow` makes values of, for the group to remember: JSON, colours in the working space."""
+    """Input of `follow` as JSON, to be stored in the group; colors are in the working space."""
     principled = {**approximation.principled, "base_color": _working(approximation.principled["base_color"])}
     return json.dumps(
         {
@@ -41,11 +41,11 @@ def kept(approximation):
 
 
 def follow(material):
-    """Gives the nodes of the material's approximation, and Solid mode, the values of its settings."""
+    """Updates the nodes of the material's approximation, and its look in Solid mode, from its settings."""
     node, measured = approximation_node(material), velour_node(material)
     if node is None or measured is None or not _can_write(material, node.node_tree):
         return
-    if node.node_tree.users > 1:  # a copy of the material has it, too
+    if node.node_tree.users > 1:  # a copy of the material uses it, too
         node.node_tree = node.node_tree.copy()
     settings, group = measured.velour, node.node_tree
     fitted = json.loads(group.velour.fitted)
@@ -66,7 +66,7 @@ def _show_principled(shader, shown, placement, _look):
             socket.default_value = _rgba(value)
         elif name != "specular_tint":
             socket.default_value = value
-    shader.inputs["IOR"].default_value = 1.5  # which levels are fitted for; 1.45 by itself in Blender 4.0
+    shader.inputs["IOR"].default_value = 1.5  # levels are fitted for it; Blender 4.0's default is 1.45
     turns = placement.rotation / math.tau + (0.25 if shown["turned"] else 0.0)
     shader.inputs["Anisotropic"].default_value = shown["anisotropic"]
     shader.inputs["Anisotropic Rotation"].default_value = turns % 1.0 if shown["anisotropic"] > 0 else 0.0
@@ -93,7 +93,7 @@ def _show_turn(turn, _shown, placement, _look):
     turn.inputs["Angle"].default_value = placement.rotation
 
 
-# Of each kind a group has one at most.
+# A group has at most one node of each type.
 _SHOW = {
     "ShaderNodeBsdfPrincipled": _show_principled,
     "ShaderNodeBsdfDiffuse": _show_base,
@@ -107,7 +107,7 @@ _SHOW = {
 
 
 def _can_write(material, group):
-    """Whether both are this file's own, and the group knows what its values are made of."""
+    """Whether both are local, and the group stores its fitted values."""
     libraries = material.library, material.override_library, group.library
     return not any(libraries) and group.velour.fitted != ""
 
@@ -127,7 +127,7 @@ def detach():
 
 
 def _working(color):
-    """Of linear Rec. 709 in Blender's scene-linear space."""
+    """Converts linear Rec. 709 to Blender's scene-linear space."""
     return [float(c) for c in rec709_to_working() @ color]
 
 

@@ -1,6 +1,6 @@
-"""What USD files carry of a measured material: its approximation, as a UsdPreviewSurface.
+"""Exports a measured material's approximation to USD as a UsdPreviewSurface.
 
-Blender's exporter does not look into groups, and writes a material without a surface.
+Blender's exporter does not read node groups, and writes a material without a surface.
 """
 
 import os
@@ -15,9 +15,9 @@ _READER = "Velour_UV"
 
 
 def write(context, material, usd_material):
-    """Into a material that has no surface yet: one of the artist's own, or of Solid mode, stays.
+    """Writes into a material that has no surface yet; a surface of the user's own, or of Solid mode, stays.
 
-    context: of Blender's export. Returns whether anything was written.
+    context: Blender's export context. Returns whether anything was written.
     """
     node = approximation_node(material)
     if node is None or _has_surface(usd_material):
@@ -34,7 +34,7 @@ def write(context, material, usd_material):
 
 
 def choose_uvs(stage):
-    """Names of texture coordinates as the meshes have them: the export may have renamed the active ones."""
+    """Sets names of texture coordinates to those of the meshes, since the export may rename active ones."""
     from pxr import Usd, UsdShade
 
     for prim in Usd.PrimRange(stage.GetPseudoRoot()):
@@ -51,7 +51,7 @@ def _has_surface(usd_material):
 
 
 def _inputs(parts):
-    """What the preview's surface is told, of one value each: type and value by name."""
+    """Constant inputs of the preview surface: type and value by name."""
     principled, base = parts["ShaderNodeBsdfPrincipled"], parts.get("ShaderNodeBsdfDiffuse")
     color = working_to_rec709(principled.inputs["Base Color"].default_value)
     values = {
@@ -65,7 +65,7 @@ def _inputs(parts):
             first_input(principled, "Coat Roughness", "Clearcoat Roughness").default_value,
         ),
     }
-    if base is not None:  # a metal and a diffuse surface added: only this workflow has both
+    if base is not None:  # sum of a metal and a diffuse surface: only this workflow supports both
         del values["metallic"], values["ior"]
         values["useSpecularWorkflow"] = ("Int", 1)
         values["specularColor"] = ("Color3f", color)
@@ -74,7 +74,7 @@ def _inputs(parts):
 
 
 def _ior(level):
-    """Of a dielectric as bright from above as Blender's level says."""
+    """IOR of a dielectric with the normal-incidence reflectance of Blender's specular level."""
     f0 = np.sqrt(min(max(0.08 * level, 0.0), 0.99))
     return float((1 + f0) / (1 - f0))
 
@@ -105,7 +105,7 @@ def _write_images(context, usd_material, shader, parts):
 
 
 def _write_uvs(usd_material, parts):
-    """The output of the last node that places the image."""
+    """Adds the nodes that place the image; returns the output of the last one."""
     from pxr import Tf
 
     reader = _add(usd_material, _READER, "UsdPrimvarReader_float2")
@@ -123,29 +123,29 @@ def _write_uvs(usd_material, parts):
 
 
 def _colors(mix):
-    """The sockets of what an image is multiplied by: the image's, and the other."""
+    """Color sockets of a multiplication: the image's, and its factor."""
     return [socket for socket in mix.inputs if socket.enabled and socket.type == "RGBA"]
 
 
 def _behind(socket):
-    """The node that is linked to it."""
+    """The node linked to a socket."""
     return socket.links[0].from_node
 
 
 def _exported(context, image):
-    """The image's path as the file is to say it; written beside the file, as Blender writes textures."""
+    """Writes the image beside the file, as Blender writes textures; returns its path for the file."""
     if hasattr(context, "export_texture"):
         return context.export_texture(image)
     folder = os.path.join(os.path.dirname(context.get_stage().GetRootLayer().realPath), "textures")
     os.makedirs(folder, exist_ok=True)
     name = "".join(c if c.isalnum() else "_" for c in image.name) + ".png"
     with open(os.path.join(folder, name), "wb") as file:
-        file.write(image.packed_file.data)  # PNG: approximation_image packs no other
+        file.write(image.packed_file.data)  # always PNG, packed by approximation_image
     return f"./textures/{name}"
 
 
 def _uv_names(stage, path):
-    """Texture coordinates of meshes that have this material, on them or on some of their faces."""
+    """Names of texture coordinates of meshes with this material on all or some faces."""
     from pxr import UsdGeom, UsdShade
 
     names = []

@@ -1,11 +1,11 @@
-"""How an approximation's Mapping node places its image, in the steps that other programs know."""
+"""Placement by an approximation's Mapping node as transforms that other programs support."""
 
 import math
 from typing import NamedTuple
 
 
 class Step(NamedTuple):
-    """Scaled, then turned counter-clockwise, then moved."""
+    """Scaling, then counterclockwise rotation, then translation."""
 
     scale: tuple
     degrees: float
@@ -13,9 +13,9 @@ class Step(NamedTuple):
 
 
 def chain(mapping):
-    """One step where one can say it; two where tiles are turned and not as wide as high.
+    """One Step if possible; two if tiles are rotated and not square.
 
-    The Mapping node is of the type Texture: moved back, turned back, and divided by its scale.
+    The Mapping node has type Texture: inverse translation, inverse rotation, division by its scale.
     """
     x, y, _ = mapping.inputs["Location"].default_value
     angle = 0.0 - mapping.inputs["Rotation"].default_value[2]

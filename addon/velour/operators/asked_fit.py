@@ -1,4 +1,4 @@
-"""What a fit of a BTF is asked for: of which BTF, by which method, how large."""
+"""Parameters of a BTF fit: the BTF, the method and the size."""
 
 import functools
 import os
@@ -17,15 +17,15 @@ from .tiles import find_tile, tile_folder
 
 
 class Chosen(NamedTuple):
-    """The BTF, and who asks for its fit: a tile, a material that has a measurement, or neither."""
+    """The BTF, and what it is fitted for: a tile, a material that has a measurement, or neither."""
 
     path: str
-    settings: Any = None  # BtfFitSettings; None: those of the operator
+    settings: Any = None  # BtfFitSettings; None: use the operator's properties
     tile: Any = None  # TileSource
     material: bpy.types.Material | None = None
 
     def loading(self):
-        """Loads the BTF as it is by now; knows nothing of Blender."""
+        """Function that loads the current BTF without accessing Blender's data."""
         if self.material is None:
             return functools.partial(Btf.load, self.path)
         measurement = velour_node(self.material).velour.measurement
@@ -34,9 +34,9 @@ class Chosen(NamedTuple):
 
 
 class AskedFit:
-    """Mixin of an operator."""
+    """Operator mixin with the parameters of a BTF fit."""
 
-    _keeps = True  # in the settings of the tile or the material, what is given
+    _keeps = True  # stores given properties in the settings of the tile or the material
 
     filepath: StringProperty(
         name="BTF",
@@ -52,7 +52,7 @@ class AskedFit:
         description="Whose BTF is fitted anew. Empty: a new material is made, of the file or of the tile",
         options={"SKIP_SAVE"},
     )
-    # Where given these replace the settings of the tile or the material, where there is one.
+    # If set, these replace the settings of the tile or the material.
     method: EnumProperty(name="Method", items=METHODS, default="SRBF", options={"SKIP_SAVE"})
     clusters: IntProperty(
         name="Clusters",
@@ -102,7 +102,7 @@ class AskedFit:
         return Chosen(path, node.velour.btf, material=material)
 
     def _asked(self, settings):
-        """By NAMES: what was given, or what the settings say."""
+        """Values by NAMES: properties that are set, or else the settings."""
         if settings is None:
             return {name: getattr(self, name) for name in NAMES}
         given = {name: getattr(self, name) for name in NAMES if self.properties.is_property_set(name)}
@@ -112,13 +112,13 @@ class AskedFit:
 
 
 def keep(asked, settings):
-    """For the next fit."""
+    """Stores the parameters for the next fit."""
     for name, value in asked.items():
         setattr(settings, name, value)
 
 
 def options_of(asked):
-    """Of compress_job(); of clusters and members what the method takes."""
+    """Options of compress_job(); clusters and members only if the method uses them."""
     return {
         "method": asked["method"].lower().replace("_", "-"),
         **{name: asked[name] for name in SHAPE_OF.get(asked["method"], ())},
@@ -128,12 +128,12 @@ def options_of(asked):
 
 
 def fitted_as(settings, *whose):
-    """Changes with what a fit is asked for. For draw()."""
+    """Key that changes with the parameters of a fit. Safe in draw()."""
     return repr((*whose, *(getattr(settings, name) for name in NAMES)))
 
 
 def refitted_as(material):
-    """The same of a material's BTF."""
+    """fitted_as() for a material's BTF."""
     settings = velour_node(material).velour
     return fitted_as(settings.btf, material.name, absolute_path(settings.measurement))
 

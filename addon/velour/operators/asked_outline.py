@@ -1,4 +1,4 @@
-"""What an outline (VOTF) is asked for: of which structure, for which material, how fine."""
+"""Parameters of a VOTF: the structure, the material and the resolution."""
 
 from typing import NamedTuple
 
@@ -19,9 +19,9 @@ class Asked(NamedTuple):
 
 
 class AskedOutline:
-    """Mixin of an operator."""
+    """Operator mixin with the parameters of a VOTF."""
 
-    _keeps = True  # in the settings of the material, what is given
+    _keeps = True  # stores given properties in the settings of the material
 
     material: StringProperty(name="Material", description="Empty: the active one", options={"SKIP_SAVE"})
     structure: StringProperty(
@@ -35,7 +35,7 @@ class AskedOutline:
     texels: IntProperty(name="Texels", min=4, max=4096, default=128, options={"SKIP_SAVE"})
 
     def _asked(self, context):
-        """Raises ExportError where there is no model, or no structure."""
+        """Raises ExportError if there is no model or no structure."""
         material = measured.wanted_material(context, self.material)
         if self._keeps:
             measured.refuse_linked(material)
@@ -76,5 +76,5 @@ def export_structure(context, asked):
 
 
 def outlined_as(material, structure, texels):
-    """Changes with what an outline of a material is asked for. For draw()."""
+    """Key that changes with the parameters of a material's VOTF. Safe in draw()."""
     return repr((material.name, structure and structure.name, texels))

@@ -1,4 +1,4 @@
-"""What operators share that work on while a window stays usable."""
+"""Base of operators that run in the background while the window stays usable."""
 
 import time
 
@@ -7,30 +7,30 @@ import bpy
 from ..export import ExportError
 from ..native import Status, VelourError
 
-TABS = ("MATERIAL", "OBJECT", "COLLECTION")  # of the Properties editor: their panels show the progress
-_line = []  # of those that run or wait, the first runs
+TABS = ("MATERIAL", "OBJECT", "COLLECTION")  # tabs of the Properties editor whose panels show the progress
+_line = []  # queue of tickets; the first one runs
 
 
 class _Ticket:
-    """A place in line."""
+    """A place in the queue."""
 
     is_given_up = False
 
 
 class BackgroundJob:
-    """Mixin of a modal operator: a timer, a place in line, progress for panels and status bar, and its end.
+    """Mixin for a modal operator: timer, place in the queue, progress for panels and status bar, and cleanup.
 
-    `_start(context)` begins the work when its turn has come; `_step(context)` gives what the operator
-    returns, or None as long as the work goes on; `_stop()` gives that too, or None where a step will tell.
+    `_start(context)` begins the work when its turn has come; `_step(context)` returns the operator's result,
+    or None while the work continues; `_stop()` returns it too, or None if a later step will.
 
-    Never with REGISTER: Adjust Last Operation and Repeat Last call `execute`, which holds the window.
+    Never use REGISTER: Adjust Last Operation and Repeat Last call `execute`, which blocks the window.
     """
 
     _timer = None
     _ticket = None
 
     def _enter(self, context, subject):
-        """What `invoke` returns once the work is ready to begin."""
+        """Queues work that is ready to begin; returns the result of `invoke`."""
         self._shown_as = subject
         self._ticket = _Ticket()
         _line.append(self._ticket)
@@ -61,7 +61,7 @@ class BackgroundJob:
         return self._end(context, result) if result else {"PASS_THROUGH"}
 
     def _has_turn(self, context):
-        """Whether it is the first in line; the work begins when that comes true."""
+        """Whether it is first in the queue; starts the work as soon as it is."""
         if _line[0] is not self._ticket:
             return False
         state = context.window_manager.velour
@@ -93,7 +93,7 @@ class BackgroundJob:
                 context.window_manager.velour.running = False
             _line.remove(self._ticket)
         state = context.window_manager.velour
-        state.waiting = len(_line) - int(state.running)  # the next one, until its timer's turn, as well
+        state.waiting = len(_line) - int(state.running)  # includes the next job until its timer event
         if self._timer is not None:
             context.window_manager.event_timer_remove(self._timer)
             self._timer = None
@@ -101,13 +101,13 @@ class BackgroundJob:
 
 
 def give_up_waiting(context):
-    """All but the one that runs; each says so at its next turn."""
+    """Cancels all queued jobs except the running one; each reports it at its next event."""
     for ticket in _line[int(context.window_manager.velour.running) :]:
         ticket.is_given_up = True
 
 
 def _over_progress(context, event):
-    """Esc belongs to whatever the cursor is over: a tab that shows the progress, or the status bar."""
+    """Whether the cursor is over a tab that shows the progress, or over the status bar, where Esc cancels."""
     areas = context.window.screen.areas if context.window else ()
     for area in areas:
         inside = 0 <= event.mouse_x - area.x < area.width and 0 <= event.mouse_y - area.y < area.height
@@ -118,35 +118,35 @@ def _over_progress(context, event):
 
 
 def redraw(context):
-    """The panels and the status bar."""
+    """Redraws the panels and the status bar."""
     for window in context.window_manager.windows:
         for area in window.screen.areas:
             if area.type == "PROPERTIES":
                 area.tag_redraw()
-        # Makes the bar draw its header, and at once. The public status_text_set would take away what add-ons
+        # Redraws the status bar's header immediately. The public status_text_set would remove what add-ons
         # append to that header.
         window.workspace.status_text_set_internal(None)
 
 
 class OneJob(BackgroundJob):
-    """Mixin of an operator that is one job of the library, or a few one after the other.
+    """Mixin for an operator that runs one job of the library, or several in sequence.
 
-    `_begin(context)` makes `_job`, not yet started, and sets `_subject`; where the jobs before it may change
-    what it reads, `_take_turn()` makes `_job`. `_finish()` takes the result, `_what` is its name.
+    `_begin(context)` makes `_job`, not yet started, and sets `_subject`; if earlier jobs may change what it
+    reads, `_take_turn()` makes `_job` instead. `_finish()` takes the result; `_what` names it in messages.
     """
 
     _job = None
-    _after_cancel = ""  # what may be done then
+    _after_cancel = ""  # appended to the message after a cancel
 
     def _take_turn(self):
-        """Those before it are done."""
+        """Called when earlier jobs are done."""
 
     def _goes_on(self):
-        """Makes the next job `_job`, where there is one."""
+        """Sets `_job` to the next job; returns whether there is one."""
         return False
 
     def execute(self, context):
-        """Waits for the result."""
+        """Runs synchronously."""
         try:
             self._begin(context)
             self._take_turn()
@@ -159,7 +159,7 @@ class OneJob(BackgroundJob):
             return self._fail(error)
 
     def invoke(self, context, _event):
-        """Lets the artist go on working: the job starts when those before it are done."""
+        """Runs in the background: the job starts when earlier ones are done."""
         try:
             self._begin(context)
         except (ExportError, VelourError) as error:
@@ -167,7 +167,7 @@ class OneJob(BackgroundJob):
         return self._enter(context, self._subject)
 
     def cancel(self, context):
-        """Blender closes the window or loads another file."""
+        """Called when Blender closes the window or loads another file."""
         self._leave(context)
         if self._job is not None:
             self._job.close()
@@ -198,13 +198,13 @@ class OneJob(BackgroundJob):
 
 
 class JobsInSteps(OneJob):
-    """Mixin of an operator whose last jobs are those of `_steps`: next_job() gives each, at the end None."""
+    """Mixin for an operator that ends with the jobs of `_steps`: next_job() returns each, then None."""
 
-    _steps = None  # none: they are not wanted
+    _steps = None  # None: no further jobs
     _next = None
 
     def _advance(self):
-        """Whether another job is to be run before the steps' result is there."""
+        """Takes the next job of the steps; returns whether there is one."""
         self._next = self._steps.next_job() if self._steps else None
         return self._next is not None
 

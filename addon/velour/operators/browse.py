@@ -1,4 +1,4 @@
-"""A folder of measurements and models: what its browser does."""
+"""Operators of the browser for a folder of measurements and models."""
 
 import os
 from pathlib import Path
@@ -18,13 +18,13 @@ _MOST_SENTENCES = 5
 
 
 def addon_preferences(context):
-    """Velour's; None where it runs without being an add-on of this Blender."""
+    """Velour's preferences; None if it is not installed as an add-on."""
     addon = context.preferences.addons.get(__package__.rpartition(".")[0])
     return addon.preferences if addon else None
 
 
 def measurement_folder(context):
-    """The one of the preferences, absolute; "" where none is chosen."""
+    """Absolute measurement folder of the preferences; "" if none is chosen."""
     preferences = addon_preferences(context)
     chosen = preferences.measurements if preferences else ""
     return os.path.normpath(bpy.path.abspath(chosen)) if chosen else ""
@@ -96,7 +96,7 @@ class VELOUR_OT_make_thumbnails(JobsInSteps, bpy.types.Operator):
 
 
 class _Pictures:
-    """The jobs that make them; then `files`, `made` and `sentences`. `kept`: their folder."""
+    """Jobs that make thumbnails, and their results: `files`, `made` and `sentences`. `kept`: the folder."""
 
     def __init__(self, folder, cache, threads):
         self._folder, self._cache, self._threads = folder, cache, threads
@@ -115,7 +115,7 @@ class _Pictures:
         yield ThumbnailJob(self.files, self._cache, self._count, self._threads)
 
     def _count(self, _file, thumbnail):
-        """On the job's thread."""
+        """Called on the job's thread."""
         self.made += thumbnail.pixels is not None
         if thumbnail.sentence:
             self.sentences.append(thumbnail.sentence)

@@ -1,4 +1,4 @@
-"""Capture a tile as a BTF: in the background of a window, or at once without one."""
+"""Captures a tile as a BTF: in the background or, without a window, synchronously."""
 
 import os
 
@@ -28,7 +28,7 @@ class VELOUR_OT_capture_btf(OneJob, bpy.types.Operator):
     collection: StringProperty(
         name="Collection", description="The tile; empty: the active object is it", options={"SKIP_SAVE"}
     )
-    # Where given these replace the settings of the tile; what is not given stays as it is.
+    # If set, these replace the settings of the tile.
     directory: StringProperty(name="Folder", subtype="DIR_PATH", options={"SKIP_SAVE"})
     texels: IntProperty(name="Texels", min=1, default=128, options={"SKIP_SAVE"})
     views: IntProperty(name="Views", min=1, default=105, options={"SKIP_SAVE"})
@@ -66,7 +66,7 @@ class VELOUR_OT_capture_btf(OneJob, bpy.types.Operator):
         return _NEW_FOLDER if properties.new_folder else cls.bl_description
 
     def invoke(self, context, event):
-        """Goes on with what was stopped: the library does so with a capture of this very tile alone."""
+        """Resumes a stopped capture by default; the library resumes only captures of the same tile."""
         if not self.properties.is_property_set("resume"):
             self.resume = True
         return super().invoke(context, event)
@@ -75,7 +75,7 @@ class VELOUR_OT_capture_btf(OneJob, bpy.types.Operator):
         tile = find_tile(context, self.collection)
         settings = tile.owner.velour
         for name in _SETTINGS:
-            of_these_pairs = self.held_out and name == "directory"  # not of the tile's BTF
+            of_these_pairs = self.held_out and name == "directory"  # not the folder of the tile's BTF
             if self.properties.is_property_set(name) and not of_these_pairs:
                 setattr(settings, name, getattr(self, name))
         self._subject, self._folder = tile.owner.name, self._folder_of(tile)
@@ -93,7 +93,7 @@ class VELOUR_OT_capture_btf(OneJob, bpy.types.Operator):
                 self._later = folder, capture_job(scene, folder, held_out=settings.held_out, **options)
 
     def _goes_on(self):
-        """The pairs to judge by, of the tile as it was when the capture began."""
+        """Captures the held-out pairs next, of the tile as it was when the capture began."""
         if self._later is None:
             return False
         (self._folder, self._job), self._later = self._later, None

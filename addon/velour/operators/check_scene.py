@@ -1,4 +1,4 @@
-"""What of a scene is not rendered as it is, told without rendering."""
+"""Lists the unsupported features of a scene without rendering."""
 
 import bpy
 
@@ -33,8 +33,8 @@ class VELOUR_OT_check_scene(bpy.types.Operator):
 
 
 class _Check:
-    """Of all view layers that render: what is ignored, why there is no picture of the frame, and how far
-    models for the scene serve (`served`)."""
+    """Findings for all enabled view layers: what is ignored, why the frame is refused, and whether scene
+    models are valid in it (`served`)."""
 
     def __init__(self, scene):
         self._scene, self._copies = scene, set()
@@ -74,7 +74,7 @@ class _Check:
         self.served += found
 
     def _of_scene(self, sentence):
-        """What is looked at is a copy."""
+        """Replaces the name of the inspected copy by the scene's own."""
         for name in self._copies:
             sentence = sentence.replace(f"Scene '{name}'", f"Scene '{self._scene.name}'")
         return sentence

@@ -1,4 +1,4 @@
-"""Compare: a material's measurement and its model side by side, as an image."""
+"""Compares a material's measurement and its model side by side in an image."""
 
 import bpy
 from bpy.props import FloatProperty, IntProperty, StringProperty
@@ -43,9 +43,9 @@ class VELOUR_OT_compare(JobsInSteps, bpy.types.Operator):
             return None
         image = made_image(comparison_name(self._subject), 3 * self.side, self.side, float_buffer=True)
         image.velour.compared = self._compared
-        image.use_view_as_render = True  # light, as a render: with the scene's view transform
+        image.use_view_as_render = True  # scene-linear, like a render: apply the scene's view transform
         image.pixels.foreach_set(rec709_pixels_to_working(self._steps.tiles(self.gain)).ravel())
-        image.pack()  # or Blender asks about it at the end
+        image.pack()  # otherwise Blender asks to save it on exit
         _set_preview(image, self._steps.thumbnail(self.gain))
         if not bpy.app.background:
             show(image)
@@ -58,18 +58,18 @@ class VELOUR_OT_compare(JobsInSteps, bpy.types.Operator):
 
 
 def comparison_name(material_name):
-    """Of the image."""
+    """Name of the image."""
     return f"{material_name} compared"
 
 
 def find_comparison(node):
-    """The image of its model beside its measurement, whichever material asked for it; None: there is none."""
+    """The comparison of the node's model and measurement, possibly made for another material; or None."""
     wanted = _compared(node)
     return next((image for image in all_made() if image.velour.compared == wanted), None)
 
 
 def _compared(node):
-    """Another text for another model or another measurement, by what the files are known by. For draw()."""
+    """Key of the model and the measurement, from file hashes or stamps. Safe in draw()."""
     return " ".join(_content(image) for image in (node.image, node.velour.measurement) if image is not None)
 
 

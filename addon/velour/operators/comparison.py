@@ -1,4 +1,4 @@
-"""A measurement, its model and the difference of both, on a ball."""
+"""Renders of a measurement, its model and their difference on a ball."""
 
 import contextlib
 import functools
@@ -11,12 +11,12 @@ from ..export import ExportError
 from ..export.files import StoredFile
 from ..native import Btf, Measurement, VelourError, library
 
-_BACKDROP = 0.05  # linear, beside the balls
+_BACKDROP = 0.05  # linear gray around the balls
 _THUMBNAIL = 256  # pixels; previews are square
 
 
 class Comparison:
-    """Its jobs, each to be run before the next one is asked for; then the pictures."""
+    """Jobs of a comparison, each to be run before requesting the next one, and the resulting images."""
 
     def __init__(self, node, owner, side, samples, threads):
         self._owner, self._side, self._samples, self._threads = owner, side, samples, threads
@@ -30,7 +30,7 @@ class Comparison:
         self._jobs = self._run()
 
     def next_job(self):
-        """None after the last."""
+        """The next job; None after the last."""
         return next(self._jobs, None)
 
     def _run(self):
@@ -49,7 +49,7 @@ class Comparison:
         return ball_job(scene, self._side, self._samples, self._threads)
 
     def _add_measured(self, model, scene):
-        """On a thread of its own: what is measured may be large."""
+        """Runs on the job's thread, since measurements may be large."""
         try:
             is_btf = library.file_info(self._path)["kind"] == "btf"
             with (Btf if is_btf else Measurement).load(self._path) as measured:
@@ -62,7 +62,7 @@ class Comparison:
 
     @property
     def relative_l2(self):
-        """Of the pixels of the ball."""
+        """Relative L2 error over the pixels of the ball."""
         measured, model = (ball[..., :3] for ball in self._balls)
         return float(np.linalg.norm(model - measured) / max(np.linalg.norm(measured), 1e-30))
 
@@ -73,7 +73,7 @@ class Comparison:
         return np.concatenate((tiles, np.ones_like(tiles[..., :1])), axis=2)
 
     def thumbnail(self, gain):
-        """Square, as previews have it: measured and model above the difference."""
+        """Square preview: measurement and model above the difference."""
         half = _THUMBNAIL // 2
         measured, model = (_resized(ball, half) for ball in self._balls)
         difference = gain * np.abs(model - measured)
@@ -93,6 +93,6 @@ def _over_backdrop(ball):
 
 
 def _resized(pixels, side):
-    """The nearest of them: a thumbnail's noise is no matter."""
+    """Nearest-neighbor resampling: a thumbnail may be noisy."""
     at = ((np.arange(side) + 0.5) * (len(pixels) / side)).astype(int)
     return pixels[at][:, at]

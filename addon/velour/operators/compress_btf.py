@@ -1,4 +1,4 @@
-"""Make a material from a BTF: in the background of a window, or at once without one."""
+"""Makes a material from a BTF: in the background or, without a window, synchronously."""
 
 import contextlib
 import functools
@@ -44,7 +44,7 @@ class VELOUR_OT_compress_btf(AskedFit, MakesModel, bpy.types.Operator):
     slot: IntProperty(name="Slot", description="Its number, from 0", min=0, options={"SKIP_SAVE"})
 
     _what = "Making the material"
-    _target = None  # the material whose model is fitted anew
+    _target = None  # the material whose model is refitted
 
     def _begin(self, context):
         chosen = self._chosen(context)
@@ -71,7 +71,7 @@ class VELOUR_OT_compress_btf(AskedFit, MakesModel, bpy.types.Operator):
             self._digest = info["sha256"]
             options = options_of(self._asked_for)
             checkpoint = _checkpoint(self._digest, options)
-            # One that goes on with what another has done would tell too little.
+            # The time of a resumed fit would be too short.
             self._fit = None if os.path.exists(checkpoint) else fit_of(info, options, self._threads)
             self._next = compress_job(
                 btf,
@@ -84,7 +84,7 @@ class VELOUR_OT_compress_btf(AskedFit, MakesModel, bpy.types.Operator):
         return None
 
     def _remember(self, image):
-        """For the tile's panel."""
+        """Stores the model for the tile's panel."""
         owner = self._owner.take() if self._owner else None
         if owner is not None:
             owner.velour.model = image
@@ -102,7 +102,7 @@ class VELOUR_OT_compress_btf(AskedFit, MakesModel, bpy.types.Operator):
         return {"FINISHED"}
 
     def _put_anew(self):
-        """The material, if it is still there."""
+        """Puts the refitted model; returns the material if it still exists."""
         material, node = measured.put_model(self._data, self._target, self.report)
         if node is not None:
             measured.after_fit(material, node, self._read_file, self._digest, self.report)
@@ -135,15 +135,15 @@ class VELOUR_OT_compress_btf(AskedFit, MakesModel, bpy.types.Operator):
 
 
 def _read(load, held_out):
-    """Beside the window: the BTF, what is known of it, and the one to judge by or None."""
+    """Runs on the job's thread: the BTF, its info, and the held-out BTF or None."""
     btf = load()
     check()
     return btf, btf.info(), held_out and Btf.load(held_out)
 
 
 def _held_out_of(tile):
-    """The folder of pairs to judge by that were captured beside the tile's BTF, or None. Of a BTF without its
-    tile nothing says whether what lies beside it is of the same capture."""
+    """Folder of held-out pairs captured beside the tile's BTF, or None. For a BTF without its tile, it is
+    unknown whether the folder beside it is from the same capture."""
     if tile is None or not tile.owner.velour.held_out:
         return None
     folder = held_out_folder(tile)
@@ -151,6 +151,6 @@ def _held_out_of(tile):
 
 
 def _checkpoint(digest, asked):
-    """Of this session: a fit that was cancelled goes on when the same one is started again."""
+    """Checkpoint in this session's folder: a canceled fit resumes when the same one is started again."""
     name = hashlib.sha256(repr((digest, asked)).encode()).hexdigest()
     return os.path.join(bpy.app.tempdir, f"velour-fit-{name[:32]}")

@@ -1,4 +1,4 @@
-"""Copy from Cycles: what keeps fireflies out of a picture, as the scene has it for Cycles."""
+"""Copies the scene's Cycles settings that suppress fireflies."""
 
 import bpy
 

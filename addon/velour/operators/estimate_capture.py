@@ -1,4 +1,4 @@
-"""Estimate: what the capture of a tile will take, by two small ones of it."""
+"""Estimates the cost of a tile's capture from two small captures."""
 
 import os
 import tempfile
@@ -29,7 +29,7 @@ class VELOUR_OT_estimate_capture(JobsInSteps, bpy.types.Operator):
         tile = find_tile(context, self.collection)
         settings = tile.owner.velour
         self._subject, self._key = tile.owner.name, captured_as(tile.owner)
-        # The artist may change the settings meanwhile.
+        # A copy, since the user may change the settings meanwhile.
         self._numbers = SimpleNamespace(
             **{name: getattr(settings, name) for name in (*CAPTURE_NUMBERS, "held_out")}
         )
@@ -49,7 +49,7 @@ class VELOUR_OT_estimate_capture(JobsInSteps, bpy.types.Operator):
 
 
 class _Probes:
-    """The jobs of two small captures of a committed scene, which this owns; then `took` and `sides`."""
+    """Jobs of two small captures of a committed scene, which this owns, and their `took` and `sides`."""
 
     def __init__(self, scene, numbers, options):
         self._scene, self._numbers, self._options = scene, numbers, options

@@ -1,4 +1,4 @@
-"""Estimate: what the fit of a BTF will take, by its size and by the fits that were made before."""
+"""Estimates the cost of a BTF fit from the BTF's size and from earlier fits."""
 
 import functools
 from pathlib import Path
@@ -42,7 +42,7 @@ class VELOUR_OT_estimate_fit(AskedFit, ReadsFirst, bpy.types.Operator):
 
 
 def captured_and_fitted_as(owner):
-    """Changes with what capture and fit of a tile are asked for. For draw()."""
+    """Key that changes with the parameters of a tile's capture and fit. Safe in draw()."""
     return fitted_as(owner.velour, asked_of(owner), owner.velour.directory)
 
 

@@ -1,4 +1,4 @@
-"""Estimate: what an outline will take, by small ones of the structure."""
+"""Estimates the cost of a VOTF from small ones of the structure."""
 
 import bpy
 
@@ -44,7 +44,7 @@ class VELOUR_OT_estimate_votf(AskedOutline, JobsInSteps, bpy.types.Operator):
 
 
 class _Probes:
-    """The jobs of small outlines of a committed scene, which this owns; then `made`."""
+    """Jobs of small VOTFs of a committed scene, which this owns, and the result `made`."""
 
     def __init__(self, scene, model, texels, options):
         self._scene, self._model, self._texels, self._options = scene, model, texels, options

@@ -1,4 +1,4 @@
-"""Fit a model to the measurement of a material: in the background of a window, or at once without one."""
+"""Fits a model to a material's measurement: in the background or, without a window, synchronously."""
 
 import bpy
 from bpy.props import EnumProperty, FloatProperty, IntProperty, StringProperty
@@ -24,7 +24,7 @@ class VELOUR_OT_fit(MakesModel, bpy.types.Operator):
     bl_options = {"UNDO"}
 
     material: StringProperty(name="Material", description="Empty: the active one", options={"SKIP_SAVE"})
-    # Where given these replace the settings of the material; what is not given stays as it is.
+    # If set, these replace the settings of the material.
     model: EnumProperty(name="Kind", items=MODELS, default="PARAMETRIC", options={"SKIP_SAVE"})
     tolerance: FloatProperty(name="Tolerance", min=0.0005, max=1.0, default=0.02, options={"SKIP_SAVE"})
     max_lobes: IntProperty(name="Max Lobes", min=1, max=64, default=16, options={"SKIP_SAVE"})
@@ -92,7 +92,7 @@ class VELOUR_OT_fit(MakesModel, bpy.types.Operator):
 
 
 def _model_options(settings):
-    """A parametric model has Gaussian lobes, whatever kernel the settings keep for a scattered one."""
+    """Options of fit_job(). Parametric models have Gaussian lobes; the kernel is for per-view models only."""
     if settings.model == "PARAMETRIC":
         return {
             "model": "parametric",

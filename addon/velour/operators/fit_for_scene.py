@@ -1,4 +1,4 @@
-"""Fit a smaller model that holds for what one scene shows of a material."""
+"""Fits a scene model: a smaller model for one scene's usage of a material."""
 
 import time
 
@@ -12,8 +12,8 @@ from . import measured
 from .background_job import BackgroundJob, console_progress
 from .scene_fit import SceneFit, SharedMaterialError
 
-_OBSERVING = 0.5  # share of the progress bar
-_TICK_SECONDS = 0.1  # of looking at frames, until the window may answer again
+_OBSERVING = 0.5  # share of the progress bar for observing frames
+_TICK_SECONDS = 0.1  # spent on observing frames per timer event, to keep the window responsive
 
 
 class VELOUR_OT_fit_for_scene(BackgroundJob, bpy.types.Operator):
@@ -41,7 +41,7 @@ class VELOUR_OT_fit_for_scene(BackgroundJob, bpy.types.Operator):
     _job = None
 
     def execute(self, context):
-        """Waits for the model."""
+        """Runs synchronously."""
         try:
             self._begin(context)
             self._work.begin_reading().wait()
@@ -55,7 +55,7 @@ class VELOUR_OT_fit_for_scene(BackgroundJob, bpy.types.Operator):
             return self._fail(error)
 
     def invoke(self, context, _event):
-        """The files and the fit beside the window; between them some frames a tick."""
+        """Reads files and fits on other threads; in between, observes some frames per timer event."""
         try:
             self._begin(context)
         except SharedMaterialError as error:
@@ -67,7 +67,7 @@ class VELOUR_OT_fit_for_scene(BackgroundJob, bpy.types.Operator):
         return self._enter(context, self._work.material_name)
 
     def cancel(self, context):
-        """Blender closes the window or loads another file."""
+        """Called when Blender closes the window or loads another file."""
         self._leave(context)
         self._close()
 
@@ -84,7 +84,7 @@ class VELOUR_OT_fit_for_scene(BackgroundJob, bpy.types.Operator):
         return self._cancelled()
 
     def _step(self, context):
-        """A look at the files, some frames, the start of the fit, or a look at that."""
+        """Polls the reading, observes some frames, starts the fit, or polls the fit."""
         if not self._work.has_read:
             if self._work.reading.wait(timeout=0.0):
                 self._work.take()
@@ -98,7 +98,7 @@ class VELOUR_OT_fit_for_scene(BackgroundJob, bpy.types.Operator):
             )
             return self._finish() if self._job.wait(timeout=0.0) else None
         if bpy.app.is_job_running("RENDER"):
-            return None  # its turn first
+            return None  # the render goes first
         if not self._observe_some():
             self._start_fit(context)
             return None
@@ -107,7 +107,7 @@ class VELOUR_OT_fit_for_scene(BackgroundJob, bpy.types.Operator):
         return None
 
     def _observe_some(self):
-        """Frames for a tick, one at least; False when none was left."""
+        """Observes frames for one timer event, at least one; False if none remained."""
         end = time.monotonic() + _TICK_SECONDS
         seen = self._work.observe_next()
         while seen and time.monotonic() < end and self._work.observe_next():
@@ -123,7 +123,7 @@ class VELOUR_OT_fit_for_scene(BackgroundJob, bpy.types.Operator):
             smaller = info["parameter_bytes"] < info["scene"]["full_parameter_bytes"]
             if smaller:
                 self._work.keep(model)
-        for warning in panel_warnings(info):  # also that nothing is smaller
+        for warning in panel_warnings(info):  # including that the model is not smaller
             self.report({"WARNING"}, f"Material '{self._work.material_name}': {warning}")
         if smaller:
             self.report({"INFO"}, _report(self._work, info))
@@ -144,7 +144,7 @@ class VELOUR_OT_fit_for_scene(BackgroundJob, bpy.types.Operator):
 
     def _close(self):
         if self._job is not None:
-            self._job.close()  # cancels what still runs
+            self._job.close()  # cancels it if it is running
         work = getattr(self, "_work", None)
         if work is not None:
             work.close()
@@ -180,7 +180,7 @@ def _texels_left(info):
 
 
 def _ask(context, sentence, material, current_frame):
-    """Says why not, and offers to do it all the same."""
+    """Shows the reason, and offers to fit anyway."""
 
     def draw(menu, _context):
         menu.layout.operator_context = "INVOKE_DEFAULT"

@@ -1,4 +1,4 @@
-"""File > Import, or files dropped into a window: models and measurements become materials."""
+"""Imports models and measurements as materials: File > Import, or files dropped into a window."""
 
 import os
 from typing import NamedTuple
@@ -18,16 +18,16 @@ from . import measured
 from .background_job import OneJob
 from .slots import SlotTarget, slot_under
 
-_MOST_SENTENCES = 10  # of a report
+_MOST_SENTENCES = 10  # in a report
 
 
 class _Found(NamedTuple):
-    """A file that is to become a material."""
+    """A file to be imported as a material."""
 
     path: str
     kind: str
     digest: str  # SHA-256
-    data: bytes | None  # of a model: its file
+    data: bytes | None  # contents of a model file; None for other kinds
 
     @property
     def name(self):
@@ -35,7 +35,7 @@ class _Found(NamedTuple):
 
 
 def found_file(path):
-    """What is to be known of a model, a measurement or a BTF; raises ExportError or VelourError."""
+    """The _Found of a model, a measurement or a BTF; raises ExportError or VelourError."""
     info = library.file_info(path)
     if info["kind"] == "observation":
         raise ExportError(f"{path}: is what a scene shows of a material; choose a model or a measurement.")
@@ -49,7 +49,7 @@ def found_file(path):
 
 
 def _find(paths):
-    """What can be had of them, and a sentence for each of the others. Runs beside the window."""
+    """The readable files, and a sentence for each of the others. Runs on the job's thread."""
     found, sentences = [], []
     for path in paths:
         check()
@@ -97,9 +97,9 @@ class VELOUR_OT_load_material(OneJob, bpy.types.Operator, ImportHelper):
     _asks = False
 
     def invoke(self, context, event):
-        """What is dropped on an object goes into the slot under the cursor, elsewhere into none.
+        """Files dropped on an object go into the slot under the cursor, elsewhere into none.
 
-        Without files one is asked for them."""
+        Without files, opens a file browser."""
         if not (self.properties.is_property_set("filepath") or self.files):
             self._asks = True
             return ImportHelper.invoke(self, context, event)
@@ -113,12 +113,12 @@ class VELOUR_OT_load_material(OneJob, bpy.types.Operator, ImportHelper):
     def execute(self, context):
         if not self._asks:
             return OneJob.execute(self, context)
-        # Blender ends what its file browser has asked for when this returns: another one does the work.
+        # Blender ends the file browser's operator when this returns, so another one does the work.
         chosen = self.as_keywords(ignore=("check_existing", "filter_glob", "files"))
         chosen["files"] = [{"name": file.name} for file in self.files]
         with other_context(area=None):  # nothing was dropped
             bpy.ops.velour.load_material("INVOKE_DEFAULT", **chosen)
-        return {"CANCELLED"}  # no undo step: that is the other one's
+        return {"CANCELLED"}  # no undo step: the other operator adds it
 
     def _begin(self, context):
         paths = self._paths()
@@ -140,7 +140,7 @@ class VELOUR_OT_load_material(OneJob, bpy.types.Operator, ImportHelper):
         jobs += [
             (bpy.ops.velour.approximate, {"material": m.name}) for m in materials if m.name not in unfitted
         ]
-        place = {} if materials else self._place()  # the first of all files takes the slot
+        place = {} if materials else self._place()  # the first file takes the slot
         for path in btfs:
             jobs.append((bpy.ops.velour.compress_btf, {"filepath": path, **place}))
             place = {}
@@ -149,7 +149,7 @@ class VELOUR_OT_load_material(OneJob, bpy.types.Operator, ImportHelper):
         return {"FINISHED"} if found else {"CANCELLED"}
 
     def _place(self):
-        """Arguments for the operator that makes the material."""
+        """Slot arguments for the operator that makes the material."""
         if self._slot is None:
             return {}
         taken = self._slot.take()
@@ -177,7 +177,7 @@ class VELOUR_OT_load_material(OneJob, bpy.types.Operator, ImportHelper):
         return material
 
     def _run_all(self, jobs):
-        """In a window they stand in line in the background. What one fails in is no matter to the others."""
+        """Queues jobs in the background if there is a window. A failure does not affect the others."""
         mode = "EXEC_DEFAULT" if bpy.app.background else "INVOKE_DEFAULT"
         for operator, arguments in jobs:
             try:
@@ -186,7 +186,7 @@ class VELOUR_OT_load_material(OneJob, bpy.types.Operator, ImportHelper):
                 self._sentences.append(str(error).removeprefix("Error: ").strip())
 
     def _say_all(self):
-        """In one report, what went wrong. What could be read is there, and its fit can be tried again."""
+        """Reports all errors at once. Readable files are imported even if their fit failed."""
         more = len(self._sentences) - _MOST_SENTENCES
         said = self._sentences[:_MOST_SENTENCES]
         if more > 0:

@@ -1,4 +1,4 @@
-"""Mark as Asset: a measured material for asset browsers, with a picture of a ball of it."""
+"""Marks a measured material as an asset, with a preview of it on a ball."""
 
 import bpy
 from bpy.props import StringProperty
@@ -20,7 +20,7 @@ class VELOUR_OT_mark_asset(JobsInSteps, bpy.types.Operator):
     bl_options = {"UNDO"}
 
     material: StringProperty(name="Material", description="Empty: the active one", options={"SKIP_SAVE"})
-    # What is not given stays as it is.
+    # Properties that are not set remain unchanged.
     author: StringProperty(name="Author", options={"SKIP_SAVE"})
     license: StringProperty(name="License", options={"SKIP_SAVE"})
     description: StringProperty(name="Description", options={"SKIP_SAVE"})
@@ -65,7 +65,7 @@ class VELOUR_OT_mark_asset(JobsInSteps, bpy.types.Operator):
         for name in _TEXTS:
             if getattr(self, name) and hasattr(asset, name):
                 setattr(asset, name, getattr(self, name))
-            elif getattr(self, name):  # the licence, in Blender 3.4
+            elif getattr(self, name):  # the license, in Blender 3.4
                 sentence = f"this Blender keeps no {name} of assets; put it into the description"
                 self.report({"WARNING"}, f"Material '{material.name}': {sentence}.")
         if self.catalog:
@@ -75,7 +75,7 @@ class VELOUR_OT_mark_asset(JobsInSteps, bpy.types.Operator):
 
 
 class _Picture:
-    """The jobs that render it; then `pixels`, and `source`: the name of what was measured."""
+    """Jobs that render the preview, and the results: `pixels`, and `source`, the name of the measurement."""
 
     def __init__(self, stored, threads):
         self._stored, self._threads = stored, threads

@@ -1,4 +1,4 @@
-"""What the operators share: making measured materials and the image datablocks that stand for their files."""
+"""Shared by operators: creation of measured materials and of the image datablocks of their files."""
 
 import os
 from typing import NamedTuple
@@ -15,9 +15,9 @@ NODE_NAME = "Velour"
 
 
 def find_material(context, name):
-    """The material called `name`, or the active one when `name` is empty; None where there is none.
+    """The material called `name`, or the active one if `name` is empty; None if there is none.
 
-    In a tab or a node editor the one that is shown is active: it may be pinned, and on no object."""
+    In a tab or a node editor, the material shown is active; it may be pinned and on no object."""
     if name:
         return bpy.data.materials.get(name)
     shown, obj = getattr(context, "material", None), context.object
@@ -25,7 +25,7 @@ def find_material(context, name):
 
 
 def wanted_material(context, name):
-    """The same; raises ExportError where there is none."""
+    """Like find_material(); raises ExportError if there is none."""
     material = find_material(context, name)
     if material is None:
         raise ExportError(f"There is no material {name!r}." if name else "No active material.")
@@ -33,7 +33,7 @@ def wanted_material(context, name):
 
 
 def modelled_node(material):
-    """The material's measured node; raises ExportError where it has no model."""
+    """The material's measured node; raises ExportError if it has no model."""
     node = velour_node(material)
     if node is None or node.image is None:
         raise _no_model(material)
@@ -41,7 +41,7 @@ def modelled_node(material):
 
 
 def stored_model(target):
-    """The model of a JobTarget as it is now, to be read; raises ExportError where there is none."""
+    """StoredFile of a JobTarget's current model; raises ExportError if there is none."""
     material, node = target.find()
     if node is None:
         raise ExportError(f"Material '{target.material_name}' is gone.")
@@ -55,7 +55,7 @@ def _no_model(material):
 
 
 def refuse_linked(material):
-    """Raises ExportError where what is made of it would be gone with the next look into its file."""
+    """Raises ExportError for a linked material, whose changes would be lost on the next load of its file."""
     if material.library is not None:
         raise ExportError(
             f"Material '{material.name}' is linked from a library, where nothing can be kept; make it local."
@@ -63,7 +63,7 @@ def refuse_linked(material):
 
 
 def new_material(name):
-    """A material with a measured node beside the group that approximates it, ready for a model."""
+    """Creates a material with a measured node and the group that approximates it."""
     material = bpy.data.materials.new(name)
     if material.node_tree is None:
         material.use_nodes = True
@@ -74,7 +74,7 @@ def new_material(name):
 
 
 def ensure_node(material):
-    """The material's measured node; made, switched on and placed where there is none."""
+    """The material's measured node, which is created and enabled if needed."""
     if material.node_tree is None:
         material.use_nodes = True
     node = velour_node(material)
@@ -83,13 +83,13 @@ def ensure_node(material):
         node.name = node.label = NODE_NAME
         node.location = _free_place(material.node_tree)
         node.velour.enabled = True
-        # Cycles reads the images of all nodes that are not muted, linked or not; models are no pictures.
+        # Cycles reads the images of all nodes that are not muted, linked or not; models are not images.
         node.mute = True
     return node
 
 
 def file_image(path, name=None):
-    """An image datablock that names the file `path`, blend-relative where the .blend has a place."""
+    """Creates an image datablock for the file `path`, stored relative to the .blend if that is saved."""
     image = bpy.data.images.new(name or os.path.basename(path), 1, 1)
     image.source = "FILE"
     image.colorspace_settings.name = _data_space(image)
@@ -98,9 +98,9 @@ def file_image(path, name=None):
 
 
 def packed_model(data, name, digest=None):
-    """A new image datablock with the bytes of a model packed into it, as if read from //NAME.velour.
+    """Creates an image datablock with the bytes of a model packed into it, as if read from //NAME.velour.
 
-    `digest`: their SHA-256, where that is known."""
+    `digest`: their SHA-256, if known."""
     image = file_image(f"//{bpy.path.clean_name(name)}.velour", name=f"{name}.velour")
     image.filepath_raw = f"//{bpy.path.clean_name(name)}.velour"
     image.pack(data=data, data_len=len(data))
@@ -109,9 +109,9 @@ def packed_model(data, name, digest=None):
 
 
 def put_model(data, target, report):
-    """Puts a model into a new image of a JobTarget: the one before it is untouched, so undo brings it back.
+    """Puts a model into a new image of a JobTarget; the previous image is kept, so that undo restores it.
 
-    The material and the node; (None, None) where they are gone, and the image is kept."""
+    Returns the material and the node; (None, None) if they are gone, but the image is kept."""
     material, node = target.find()
     image = packed_model(data, material.name if material else target.material_name)
     if node is None:
@@ -123,7 +123,7 @@ def put_model(data, target, report):
 
 
 def set_model(node, image, report):
-    """Another model for the node of a material."""
+    """Sets another model on a material's node, and disables its scene model."""
     node.image = image
     if node.velour.use_scene_model:
         node.velour.use_scene_model = False
@@ -131,14 +131,14 @@ def set_model(node, image, report):
 
 
 def linked_model(path, digest):
-    """A new image datablock that names a model file on disk, whose content has that SHA-256."""
+    """Creates an image datablock for a model file on disk with this SHA-256."""
     image = file_image(path)
     image.velour.sha256 = digest
     return image
 
 
 def measurement_image(path, digest):
-    """The image datablock of a measurement file: the one that is there already, or a new one."""
+    """The image datablock of a measurement file: an existing one, or a new one."""
     for image in bpy.data.images:
         if image.velour.sha256 == digest and absolute_path(image) == os.path.normpath(os.path.abspath(path)):
             return image
@@ -148,16 +148,16 @@ def measurement_image(path, digest):
 
 
 def place_of(image):
-    """Says whether it is the file that was read, also after an undo, or where it has another name by now."""
+    """Identifies the file of an image, also after an undo or if the image has been renamed."""
     if image is None:
         return None
     return absolute_path(image), image.packed_file.size if image.packed_file else None
 
 
 class ReadFile(NamedTuple):
-    """Which measurement a job has read."""
+    """The measurement that a job has read."""
 
-    name: str  # of the image
+    name: str  # name of the image
     place: tuple
 
     @classmethod
@@ -166,8 +166,8 @@ class ReadFile(NamedTuple):
 
 
 def after_fit(material, node, read, digest, report):
-    """Keeps the hash of the measurement that a model was fitted to, if the material still has that one, and
-    says what the model before had."""
+    """Stores the hash of the measurement that a model was fitted to, if the material still has it; reports a
+    VOTF that only the previous model has."""
     if node.velour.structure is not None:
         sentence = "An outline (VOTF) stays with the model before; press Add Outline for the new one."
         report({"INFO"}, f"Material '{material.name}': {sentence}")
@@ -182,26 +182,26 @@ def after_fit(material, node, read, digest, report):
 
 
 def is_btf(image):
-    """Whether a measurement is a BTF, by its name. For draw()."""
+    """Whether a measurement is a BTF, judged by its file name. Safe in draw()."""
     path = absolute_path(image)
     suffix, is_index = os.path.splitext(path)[1], os.path.basename(path) in INDICES
     return is_index or suffix in (".btf", ".csv") or os.path.isdir(path)
 
 
 def btf_name(path):
-    """What a BTF is called: as its folder, where the index in it stands for it."""
+    """Name of a BTF; that of its folder if `path` is the index in it."""
     folder, name = os.path.split(path)
     return os.path.splitext(os.path.basename(folder) if name in INDICES else name)[0]
 
 
 def btf_file(path):
-    """The file that stands for a BTF: its index, where the BTF is a folder that has one."""
+    """The file that represents a BTF: its index if it is a folder with one, otherwise `path`."""
     indices = (os.path.join(path, name) for name in INDICES)
     return next((index for index in indices if os.path.isfile(index)), path)
 
 
 def _data_space(image):
-    """The colour space of this configuration that leaves values alone."""
+    """The color space of this configuration that leaves values unchanged."""
     names = image.colorspace_settings.bl_rna.properties["name"].enum_items.keys()
     return next((name for name in ("Non-Color", "Raw") if name in names), image.colorspace_settings.name)
 

@@ -1,4 +1,4 @@
-"""Plots of the model in an image datablock, from the library's numbers."""
+"""Plots of the model in an image datablock, computed by the library."""
 
 from ..core.read_job import ReadJob
 from ..export import ExportError
@@ -19,10 +19,10 @@ def measurement_for(kind, settings):
 
 
 class PlotSource:
-    """What plots of a material are made from: the model, and the measurement where there is one.
+    """Sources of a material's plots: the model, and the measurement if there is one.
 
-    `reading`: the job that is to be done before there is a plot, or None. `missing`: why the measurement is
-    not there although it should be, or None.
+    `reading`: the job that must finish before plotting, or None. `missing`: why an expected measurement is
+    missing, or None.
     """
 
     def __init__(self, image, measurement, owner):
@@ -35,11 +35,11 @@ class PlotSource:
         self.reading = ReadJob(StoredFile.of(image, owner).model)
 
     def take(self):
-        """What its job has read. Without a measurement there are plots of the model alone."""
+        """Takes the result of `reading`. Without a measurement, plots show the model only."""
         if self.model is None:
             self.model = self.reading.result()
             self.reading = self._of_measurement
-            if "texels" in self.model.info():  # BTFs have no plot with their measurement
+            if "texels" in self.model.info():  # plots of BTFs never show the measurement
                 self.reading = self.missing = None
             return
         try:
@@ -56,15 +56,15 @@ class PlotSource:
 
 
 class PlotSteps:
-    """The jobs of one plot; each is to be run before the next one is asked for."""
+    """Jobs of one plot; each must be run before requesting the next one."""
 
     def __init__(self, source, kind, view, azimuth):
         """`kind`: an item of PLOTS; the angles in radians."""
-        self.source, self.plot = source, None  # the Plot is there after the last job
+        self.source, self.plot = source, None  # the Plot, available after the last job
         self._jobs = self._run(plot_name(kind), view, azimuth)
 
     def next_job(self):
-        """None after the last. VelourError where the model has no such plot."""
+        """The next job; None after the last. Raises VelourError if the model has no such plot."""
         return next(self._jobs, None)
 
     def _run(self, name, view, azimuth):

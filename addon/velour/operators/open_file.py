@@ -1,4 +1,4 @@
-"""Choose the file of a material's measurement or model. Its SHA-256 is kept, so a change is noticed."""
+"""Chooses the file of a material's measurement or model, and stores its SHA-256 to detect changes."""
 
 import bpy
 from bpy.props import BoolProperty, StringProperty
@@ -17,7 +17,7 @@ _MODELS = ".velour"
 
 
 class _OpensFile(ReadsFirst, ImportHelper):
-    """Mixin of an operator. `_kinds`: of files that will do; `_put(node, file)` takes what was found."""
+    """Operator mixin. `_kinds`: accepted kinds of files; `_put(node, file)` takes the file that was read."""
 
     filepath: StringProperty(name="File", subtype="FILE_PATH", options={"SKIP_SAVE"})
     material: StringProperty(name="Material", description="Empty: the active one", options={"SKIP_SAVE"})
@@ -25,7 +25,7 @@ class _OpensFile(ReadsFirst, ImportHelper):
     _asks = False
 
     def invoke(self, context, event):
-        """A file browser asks for the file, unless it is known."""
+        """Opens a file browser unless the file is given."""
         if self.properties.is_property_set("filepath"):
             return ReadsFirst.invoke(self, context, event)
         material = measured.find_material(context, self.material)
@@ -36,10 +36,10 @@ class _OpensFile(ReadsFirst, ImportHelper):
     def execute(self, context):
         if not self._asks:
             return ReadsFirst.execute(self, context)
-        # Blender ends what its file browser has asked for when this returns: another one does the work.
+        # Blender ends the file browser's operator when this returns, so another one does the work.
         opens = getattr(bpy.ops.velour, type(self).bl_idname.partition(".")[2])
         opens("INVOKE_DEFAULT", **self.as_keywords(ignore=("check_existing", "filter_glob")))
-        return {"CANCELLED"}  # no undo step: that is the other one's
+        return {"CANCELLED"}  # no undo step: the other operator adds it
 
     def cancel(self, context):
         if not self._asks:

@@ -1,4 +1,4 @@
-"""What a BTF's placement comes to on an object, told and kept."""
+"""Operators that report a BTF's placement on an object, and store its UV density."""
 
 import bpy
 from bpy.props import StringProperty
@@ -14,7 +14,7 @@ from .reads_first import ReadsFirst
 
 
 class PlacementOperator(ReadsFirst):
-    """`_use_on(depsgraph, obj, material, tile)` takes what is asked about."""
+    """Operator mixin; `_use_on(depsgraph, obj, material, tile)` does the work."""
 
     object: StringProperty(name="Object", description="Empty: the active one", options={"SKIP_SAVE"})
     material: StringProperty(

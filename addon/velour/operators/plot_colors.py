@@ -1,8 +1,8 @@
-"""The colours of Blender's theme, as plots take them."""
+"""Colors of Blender's theme for plots."""
 
 
 def theme_colors(preferences):
-    """Keywords of Plot.draw. What would not be read on the background the library mixes with the text."""
+    """Keywords of Plot.draw. The library mixes colors with too little contrast with the text color."""
     theme = preferences.themes[0]
     interface, editor = theme.user_interface, theme.properties.space
     colors = {

@@ -1,4 +1,4 @@
-"""Plots out of the panel: into files, and large into an Image Editor."""
+"""Saves plots to files, and shows them enlarged in an Image Editor."""
 
 import bpy
 from bpy.props import IntProperty, StringProperty
@@ -17,7 +17,7 @@ _KINDS_OF_FILES = (".png", ".svg", ".csv")
 
 
 class _OfMaterial(JobsInSteps):
-    """What both have: which plot of which material. `_use(plot)` takes it."""
+    """Operator mixin that makes a plot of a material. `_use(plot)` takes it."""
 
     material: StringProperty(name="Material", description="Empty: the active one", options={"SKIP_SAVE"})
     kind: plot_kind()
@@ -56,14 +56,14 @@ class VELOUR_OT_save_plot(_OfMaterial, bpy.types.Operator, ExportHelper):
     bl_description = "Write the plot as a picture for paper (.png, .svg), or its numbers (.csv)"
 
     filename_ext = ".png"
-    check_extension = None  # the file's own decides what is written
+    check_extension = None  # the file's extension determines the format
     filter_glob: StringProperty(default="*.png;*.svg;*.csv", options={"HIDDEN"})
     side: IntProperty(name="Size", description="Of a picture: pixels", default=800, min=64, max=8192)
 
     _asks = False
 
     def invoke(self, context, event):
-        """A file browser asks for the file, unless it is known."""
+        """Opens a file browser unless the file is given."""
         if self.properties.is_property_set("filepath"):
             return JobsInSteps.invoke(self, context, event)
         material = measured.find_material(context, self.material)
@@ -74,7 +74,7 @@ class VELOUR_OT_save_plot(_OfMaterial, bpy.types.Operator, ExportHelper):
     def execute(self, context):
         if not self._asks:
             return JobsInSteps.execute(self, context)
-        # Blender ends what its file browser has asked for when this returns: another one does the work.
+        # Blender ends the file browser's operator when this returns, so another one does the work.
         bpy.ops.velour.save_plot(
             "INVOKE_DEFAULT", **self.as_keywords(ignore=("check_existing", "filter_glob"))
         )
@@ -103,6 +103,6 @@ class VELOUR_OT_enlarge_plot(_OfMaterial, bpy.types.Operator):
         pixels = plot.draw(side=self.side, **theme_colors(context.preferences))
         image = made_image(f"{self._subject} {plot_name(self.kind)}", self.side, self.side)
         image.pixels.foreach_set(pixels.ravel())
-        image.pack()  # or Blender asks about it at the end
+        image.pack()  # otherwise Blender asks to save it on exit
         if not bpy.app.background:
             show(image)

@@ -1,4 +1,4 @@
-"""What operators share that act at once when they have read a file: beside the window, and in no line."""
+"""Base of operators that read a file on another thread and then act immediately, without queueing."""
 
 from ..core.read_job import ReadJob
 from ..export import ExportError
@@ -7,17 +7,17 @@ from .background_job import redraw
 
 
 class ReadsFirst:
-    """Mixin of an operator. `_read(context)` returns a function that knows nothing of Blender, and sets
-    `_subject`, a name for the status bar. `_use(context, found)` takes what the function returned, and gives
-    what the operator returns; what was done to the .blend meanwhile is for it to find out.
+    """Operator mixin. `_read(context)` returns a function that does not access Blender, and sets `_subject`,
+    a name for the status bar. `_use(context, found)` takes the function's result and returns the operator's;
+    it must cope with changes made to the .blend meanwhile.
 
-    A fit that runs does not keep them waiting: they need no processor to speak of.
+    These operators do not wait for running fits, since they need little CPU time.
     """
 
     _reading = _timer = None
 
     def execute(self, context):
-        """Waits for the file."""
+        """Runs synchronously."""
         try:
             return self._use(context, self._read(context)())
         except (ExportError, VelourError) as error:
@@ -49,7 +49,7 @@ class ReadsFirst:
             raise
 
     def cancel(self, context):
-        """Blender closes the window or loads another file."""
+        """Called when Blender closes the window or loads another file."""
         self._leave(context)
         self._reading.close()
 

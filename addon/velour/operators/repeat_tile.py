@@ -1,7 +1,7 @@
 """Shows a tile repeated: copies around it that follow every change of it.
 
-Around an object drivers put them, so they follow its rotation and its scale, animated or not; also where
-files may not run Python, for they are simple expressions. Another Period puts them anew.
+Around an object, drivers place the copies, so that they follow its rotation and scale, animated or not. The
+drivers are simple expressions, which work even if files may not run Python. A new Period places them again.
 """
 
 import contextlib
@@ -51,20 +51,20 @@ def is_repeated(owner):
 
 
 def _repeats(owner):
-    """The empties that stand for copies of the object or collection `owner`."""
+    """The empties that instance the object or collection `owner`."""
     shown = _holders(owner)
     return [o for o in bpy.data.objects if o.velour.is_repeat and o.instance_collection in shown]
 
 
 def _holders(owner):
-    """What the empties instance: the collection itself; or one that holds the object and lies in no scene."""
+    """Collections that the empties instance: `owner` itself, or one outside all scenes that holds it."""
     if isinstance(owner, bpy.types.Collection):
         return [owner]
     return [c for c in bpy.data.collections if c.velour.is_repeat and owner.name in c.objects]
 
 
 def _take_away(owner):
-    """True where there were copies."""
+    """Removes the copies; returns whether there were any."""
     repeats = _repeats(owner)
     made = {c for empty in repeats for c in empty.users_collection} | set(_holders(owner))
     for empty in repeats:
@@ -89,7 +89,7 @@ def _show(context, tile):
 
 
 def _place(home, tile):
-    """The copies in the collection `home`, each in its cell."""
+    """Places the copies in the collection `home`, each in its cell."""
     is_object = isinstance(tile.owner, bpy.types.Object)
     axes = tile.to_tile.inverted().to_3x3()
     for empty, (x, y) in zip(home.objects, _AROUND, strict=False):
@@ -99,7 +99,7 @@ def _place(home, tile):
 
 
 def _drive(empty, axis, cell, tile):
-    """A coordinate of the copy by what the object's matrix has of it in its first two columns."""
+    """Drives a coordinate of the copy by the first two columns of the object's matrix."""
     empty.driver_remove("location", axis)
     driver = empty.driver_add("location", axis).driver
     terms = []
@@ -115,7 +115,7 @@ def _drive(empty, axis, cell, tile):
 
 def _follow_period(owner):
     for home in {collection for empty in _repeats(owner) for collection in empty.users_collection}:
-        with contextlib.suppress(ExportError):  # nothing is left of the tile
+        with contextlib.suppress(ExportError):  # the tile has no geometry left
             _place(home, tile_of(bpy.context, owner))
 
 

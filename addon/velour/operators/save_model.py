@@ -1,4 +1,4 @@
-"""A model out of the .blend."""
+"""Saves a model from the .blend to a file."""
 
 import bpy
 from bpy.props import BoolProperty, StringProperty
@@ -24,7 +24,7 @@ class VELOUR_OT_save_model(bpy.types.Operator, ExportHelper):
     )
 
     def invoke(self, context, event):
-        """The file browser that asks for the file shows no material."""
+        """Stores the material's name, since the file browser has no active material."""
         material = measured.find_material(context, self.material)
         self.material = material.name if material else ""
         return ExportHelper.invoke(self, context, event)

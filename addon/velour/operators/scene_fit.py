@@ -1,4 +1,4 @@
-"""The steps of a fit for a scene, for the operator that takes them at once or one at a time."""
+"""Steps of fitting a scene model, which the operator runs all at once or one at a time."""
 
 from ..core.read_job import ReadJob
 from ..export import ExportError, Notes, export_scene, visitor
@@ -21,7 +21,7 @@ class SharedMaterialError(ExportError):
 class SceneFit:
     """Reads the files (begin_reading(), then take()), observes frame after frame, then fits.
 
-    Holds names and marks: undo may replace any datablock."""
+    Stores names and marks, since undo may replace any datablock."""
 
     def __init__(self, material, scene, current_frame=False, shared=False):
         _refuse_unfit(material)
@@ -38,10 +38,10 @@ class SceneFit:
         self.frames = [scene.frame_current] if current_frame else frame_range(scene)
         self.reading = self._read = None
         self.observation = Observation.of_nothing()
-        self.done = 0  # frames
+        self.done = 0  # number of observed frames
 
     def begin_reading(self):
-        """The job, started: of the files that the material has now."""
+        """Starts and returns the job that reads the material's current files."""
         material, node = self._material()
         _refuse_unfit(material)
         self._model_before = _identity(node.image)
@@ -53,7 +53,7 @@ class SceneFit:
         return self._read is not None
 
     def take(self):
-        """What the job has read: the measurement or BTF, and the full model."""
+        """Takes the job's result: the measurement or BTF, and the full model."""
         self._read = self.reading.result()
         self.reading.close()
 
@@ -64,7 +64,7 @@ class SceneFit:
             handle.close()
 
     def observe_next(self):
-        """Adds what the next frame shows; False when there is none left."""
+        """Adds the scene usage of the next frame; False if no frame remains."""
         self._refuse_another_model()
         if self.done == len(self.frames):
             return False
@@ -73,7 +73,7 @@ class SceneFit:
         return True
 
     def fit(self, threads):
-        """The job, started."""
+        """Starts and returns the job of the fit."""
         if self.observation.info()["hits"] == 0:
             raise ExportError(
                 f"Material '{self.material_name}' is not seen in {self._range()} of scene"
@@ -92,7 +92,7 @@ class SceneFit:
                 f"Material '{self.material_name}': only a parametric model hands its outline (VOTF) on to a"
                 " model for the scene; fit one, and add the outline to it."
             )
-        # A model of another kind is no measure of a parametric one: without one the fit makes it first.
+        # Only a parametric model can be the reference; without one, the fit makes it first.
         measure = {"full_model": full} if full.info()["model"] == "parametric" else {}
         return fit_job(
             measurement,
@@ -108,7 +108,7 @@ class SceneFit:
         )
 
     def keep(self, model):
-        """Puts the model beside the full one, in a new image, and switches it on."""
+        """Stores the model in a new image beside the full one, and enables it."""
         material, node = self._target.find()
         name = material.name if material else self.material_name
         image = measured.packed_model(model.bytes(), f"{name} for {self.scene_name}")
@@ -120,7 +120,7 @@ class SceneFit:
         node.velour.scene_model, node.velour.use_scene_model = image, True
 
     def _refuse_another_model(self):
-        """The node; raises ExportError where its model is not the one that was read."""
+        """The node; raises ExportError if its model is not the one that was read."""
         _material, node = self._material()
         if node.image is None or _identity(node.image) != self._model_before:
             raise ExportError(
@@ -130,7 +130,7 @@ class SceneFit:
         return node
 
     def _material(self):
-        """The material and its node, whatever it is called now."""
+        """The material and its node, even if renamed."""
         material, node = self._target.find()
         if velour_node(material) is None:
             raise ExportError(f"Material '{self.material_name}' is gone, or is not measured any more.")
@@ -138,7 +138,7 @@ class SceneFit:
         return material, node
 
     def _scene(self):
-        """Whatever it is called now."""
+        """The scene, even if renamed."""
         scene = self._owner.find()
         if scene is None:
             raise ExportError(f"Scene '{self.scene_name}' is gone.")
@@ -146,8 +146,8 @@ class SceneFit:
         return scene
 
     def _visit(self, engine, depsgraph):
-        """One view layer of one frame."""
-        notes = Notes()  # said by renders
+        """Observes one view layer of one frame."""
+        notes = Notes()  # reported by renders instead
         view = final_view(depsgraph, notes, whole=True)
         native_scene, materials, *_ = export_scene(depsgraph, view, notes)
         with native_scene:
@@ -176,12 +176,12 @@ def _refuse_unfit(material):
 
 
 def _identity(image):
-    """Cheap, and another one where a model was put in its place."""
+    """Cheap key that changes if the model is replaced."""
     return absolute_path(image), image.velour.sha256
 
 
 def _reader(material):
-    """Reads the measurement and the full model, beside the window."""
+    """Function that reads the measurement and the full model on the job's thread."""
     node, owner = velour_node(material), f"Material '{material.name}'"
     raw, full = (StoredFile.of(image, owner) for image in (node.velour.measurement, node.image))
     return lambda: _of_one_content(_read_raw(raw), full)

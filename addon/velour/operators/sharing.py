@@ -1,4 +1,4 @@
-"""Who else shows a material."""
+"""Finds scenes that share a material."""
 
 import bpy
 
@@ -6,8 +6,8 @@ import bpy
 def other_scenes(material, scene):
     """Names of the scenes besides `scene` that reach `material`.
 
-    Through objects, collections and their instances, modifiers and node groups, particle systems, overrides
-    of view layers, or a background scene; also where such an object is a parent or a target and is not seen.
+    Follows objects, collections and their instances, modifiers and node groups, particle systems, overrides
+    of view layers, and background scenes; includes invisible objects that are only parents or targets.
     """
     users = bpy.data.user_map()
     reached, front = {material}, [material]

@@ -1,4 +1,4 @@
-"""Images that operators make and show: in an Image Editor, large."""
+"""Images that operators make and show in an Image Editor."""
 
 import functools
 
@@ -8,7 +8,7 @@ from ..export.other_context import other_context
 
 
 def made_image(name, width, height, **options):
-    """The one that an operator made under that name, now of this size, or a new one; `options` as of
+    """The image that an operator made under that name, resized, or a new one; `options`: as for
     bpy.data.images.new()."""
     image = find_made(name)
     if image is None:
@@ -20,7 +20,7 @@ def made_image(name, width, height, **options):
 
 
 def find_made(name):
-    """The one that an operator made under that name, whatever it is called now; None: there is none."""
+    """The image that an operator made under that name, even if renamed; None if there is none."""
     for image in all_made():
         if (image.velour.made_as or image.name) == name:
             return image
@@ -33,7 +33,7 @@ def all_made():
 
 
 def show(image):
-    """In an Image Editor that is open, or in a window of its own; as soon as the operator has ended: Blender
+    """Shows an image in an open Image Editor or a new window, after the operator has ended, because Blender
     loses count of modal operators that open windows."""
     bpy.app.timers.register(functools.partial(_show, image.name))
 
@@ -51,12 +51,12 @@ def _show(name):
         area = windows[-1].screen.areas[0]
         area.type = "IMAGE_EDITOR"
     area.spaces.active.image = image
-    # The editor has its size once it has been drawn.
+    # The editor has its size only after it has been drawn.
     bpy.app.timers.register(functools.partial(_fit, image.name), first_interval=0.2)
 
 
 def _fit(name):
-    """All of the image in view, in the editors that show it."""
+    """Fits the whole image into the editors that show it."""
     for window in bpy.context.window_manager.windows:
         for area in window.screen.areas:
             if area.type != "IMAGE_EDITOR" or getattr(area.spaces.active.image, "name", "") != name:

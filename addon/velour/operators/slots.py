@@ -1,4 +1,4 @@
-"""The material slot that an operator puts its material into: a named one, or that which is active."""
+"""The material slot that an operator puts its material into: a named one or the active one."""
 
 from __future__ import annotations
 
@@ -10,20 +10,20 @@ from mathutils import Vector
 
 from .job_target import JobOwner
 
-_MOST_HIDDEN = 256  # faces of what a local view leaves out, one behind the other
-_STEP, _LEAST_STEP = 1e-5, 1e-6  # behind a face: of the way to it, and in the scene's unit
+_MOST_HIDDEN = 256  # consecutive faces of objects outside of a local view
+_STEP, _LEAST_STEP = 1e-5, 1e-6  # behind a face: relative to its distance, and minimum in scene units
 
 
 class Slot(NamedTuple):
-    """An object's, by name. One without slots gets its first one."""
+    """Slot of an object, by name. An object without slots gets its first one."""
 
     object: str
     slot: int
 
 
 def slot_under(context, event) -> Slot | None:
-    """The slot of the face under the cursor; None outside of a 3D viewport, and where there is no object."""
-    region, view = context.region, context.region_data  # each of a quad view has its own; a toolbar has none
+    """The slot of the face under the cursor; None outside of a 3D viewport, or if there is no object."""
+    region, view = context.region, context.region_data  # a quad view has one per region; a toolbar has none
     if view is None:
         return None
     cursor = event.mouse_x - region.x, event.mouse_y - region.y
@@ -32,7 +32,7 @@ def slot_under(context, event) -> Slot | None:
 
 
 def slot_along(context, origin: Vector, direction: Vector) -> Slot | None:
-    """The slot of the first face that a ray meets: what is drawn, with modifiers and instances."""
+    """The slot of the first drawn face that a ray hits, with modifiers and instances."""
     depsgraph = context.evaluated_depsgraph_get()
     for _ in range(_MOST_HIDDEN):
         hit, place, _normal, face, obj, matrix = context.scene.ray_cast(depsgraph, origin, direction)
@@ -52,7 +52,7 @@ def _slot_of(evaluated, face: int) -> Slot:
 
 
 def _is_drawn(context, depsgraph, obj, matrix) -> bool:
-    """Whether a viewport in local view shows this one: instances go by what they hang on."""
+    """Whether the viewport draws this object or instance; in local view, parents of instances decide."""
     space = context.space_data
     if getattr(space, "local_view", None) is None:
         return True
@@ -68,10 +68,10 @@ def takes_materials(obj) -> bool:
 
 
 class SlotTarget:
-    """A slot, fixed when a job begins: whatever is selected, renamed or undone until it ends."""
+    """A slot that is fixed when a job begins, regardless of selection, renaming and undo until it ends."""
 
     def __init__(self, context, slot: Slot | None = None):
-        """`slot`: None, or a number that its object has no slot for, is the active one."""
+        """`slot`: None, or a number beyond the object's slots, means the active slot."""
         obj = bpy.data.objects.get(slot.object) if slot else context.object
         self._owner = self._number = None
         self._why_none = _why_none(obj, slot)
@@ -82,29 +82,29 @@ class SlotTarget:
 
     @classmethod
     def asked(cls, context, operator):
-        """By the properties `assign`, `object` and `slot` of an operator; None: the material goes nowhere."""
+        """Uses the properties `assign`, `object` and `slot` of an operator; None: no slot is wanted."""
         if not operator.assign:
             return None
         return cls(context, Slot(operator.object, operator.slot) if operator.object else None)
 
     def take(self):
-        """The object and the slot's number, once; None where there is none, or none any more."""
+        """The object and the slot's number; None if there is none, or it is gone. Call once."""
         obj = self._owner.take() if self._owner else None
         if not takes_materials(obj) or 0 < len(obj.material_slots) <= self._number:
             return None
         return obj, self._number
 
     def put(self, material, report) -> None:
-        """Into it; where it is gone, or never was, a fake user keeps the material."""
+        """Puts the material into the slot; without a slot, a fake user keeps the material."""
         taken = self.take()
         if taken is not None:
             _put(material, *taken)
             return
-        material.use_fake_user = True  # or it would be gone after saving
+        material.use_fake_user = True  # otherwise it would be lost on saving
         self.tell(f"material '{material.name}'", report)
 
     def tell(self, what, report) -> None:
-        """Why `what`, a material, does not come into it."""
+        """Reports why `what`, a material, is not put into the slot."""
         why = self._why_none
         if self._owner:
             why = f"Slot {self._number + 1} of object '{self._owner.name}' is gone"
@@ -112,18 +112,18 @@ class SlotTarget:
 
 
 def _why_none(obj, slot: Slot | None) -> str:
-    """Of what has no slots."""
+    """Reason why there is no slot."""
     if obj is not None:
         return f"Object '{obj.name}' takes no material"
     return f"There is no object '{slot.object}'" if slot else "No object is active"
 
 
 def assign(context, material) -> None:
-    """Puts `material` into the active slot of the active object; a fake user keeps it where there is none."""
+    """Puts `material` into the active slot of the active object; without one, a fake user keeps it."""
     if takes_materials(context.object):
         context.object.active_material = material
     else:
-        material.use_fake_user = True  # or it would be gone after saving
+        material.use_fake_user = True  # otherwise it would be lost on saving
 
 
 def _put(material, obj, number):

@@ -1,4 +1,4 @@
-"""Which tile an operator is for."""
+"""The tile of an operator, and its capture options."""
 
 import os
 import re
@@ -13,7 +13,7 @@ CAPTURE_NUMBERS = ("texels", "views", "lights", "samples", "bounces")
 
 
 def find_tile(context, collection_name):
-    """The TileSource of the collection of that name, or of the active object when it is empty."""
+    """The TileSource of the collection of that name, or of the active object if the name is empty."""
     depsgraph = context.evaluated_depsgraph_get()
     if collection_name:
         collection = bpy.data.collections.get(collection_name)
@@ -32,7 +32,7 @@ def tile_of(context, owner):
 
 
 def tile_folder(tile):
-    """Where its BTF is or will be; absolute."""
+    """Absolute folder of the tile's BTF, which may not exist yet."""
     chosen = tile.owner.velour.directory
     if not chosen and not bpy.data.filepath:
         raise ExportError(f"{tile.label}: save the .blend first, or choose a folder for the capture.")
@@ -41,7 +41,7 @@ def tile_folder(tile):
 
 
 def held_out_folder(tile):
-    """Where the pairs go that models of its BTF are judged by: beside it."""
+    """Folder of the held-out pairs, beside the tile's BTF."""
     return _held_out_beside(tile_folder(tile))
 
 
@@ -50,7 +50,7 @@ def _held_out_beside(folder):
 
 
 def new_folder(tile):
-    """A setting of the tile: the first folder, numbered as Blender does, where nothing was captured yet."""
+    """Value for the tile's setting: the first unused folder, numbered as in Blender."""
     folder = tile_folder(tile)
     name = re.sub(r"\.\d{3,}$", "", folder.removesuffix(".btf"))
     number = 0
@@ -61,7 +61,7 @@ def new_folder(tile):
 
 
 def capture_options(context, tile, place):
-    """Options of capture_job, by the settings of the tile. `place`: where export_tile() has put it."""
+    """Options of capture_job() from the tile's settings. `place`: TilePlace from export_tile()."""
     settings = tile.owner.velour
     return {
         "origin": place.origin,
@@ -78,21 +78,21 @@ def capture_options(context, tile, place):
 
 
 def captured_as(owner):
-    """Changes with what a capture of the tile is asked for, and with the tile. For draw()."""
+    """Key that changes with the parameters of a capture, and with the tile. Safe in draw()."""
     return repr((asked_of(owner), _geometry(owner)))
 
 
 def asked_of(owner):
-    """What a capture of the tile is asked for. For draw()."""
+    """Parameters of the tile's capture. Safe in draw()."""
     settings = owner.velour
     names = (*CAPTURE_NUMBERS, "held_out", "sides", "use_approximate")
     return owner.name, *settings.period, *(getattr(settings, name) for name in names)
 
 
 def _geometry(owner):
-    """Of what the tile is made of that which is known without a look at its vertices."""
+    """Properties of the tile's geometry that are known without reading its vertices."""
     if isinstance(owner, bpy.types.Object):
-        return _object_geometry(owner)  # where it is does not matter
+        return _object_geometry(owner)  # its location does not matter
     parts = (obj for obj in owner.all_objects if not obj.velour.is_repeat)
     return [(_object_geometry(obj), [*map(tuple, obj.matrix_world)]) for obj in parts]
 

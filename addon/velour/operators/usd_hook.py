@@ -1,4 +1,4 @@
-"""Has Blender's USD exporter ask for the approximation of measured materials, from 4.0 on."""
+"""Hook of Blender's USD exporter, 4.0 and newer, that adds approximations of measured materials."""
 
 import importlib.util
 
@@ -17,7 +17,7 @@ class VELOUR_USD_approximation(getattr(bpy.types, "USDHook", object)):
     def on_material_export(export_context, bl_material, usd_material):
         try:
             return approximation_usd.write(export_context, bl_material, usd_material)
-        except Exception as error:  # an export goes on without it
+        except Exception as error:  # the export continues without it
             return _sorry(f"the approximation of the material '{bl_material.name}' is", error)
 
     @staticmethod
@@ -41,7 +41,7 @@ def detach():
 
 
 def _can_be_asked():
-    """Without USD's Python modules, which builds as a module may lack, any hook lets an export abort."""
+    """Whether hooks work: without USD's Python modules, as in some bpy builds, any hook aborts exports."""
     return hasattr(bpy.types, "USDHook") and all(map(_is_there, ("pxr", "pxr.Usd", "pxr.UsdShade")))
 
 

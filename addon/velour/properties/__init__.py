@@ -1,4 +1,4 @@
-"""What a .blend keeps of Velour."""
+"""Velour's properties in .blend files."""
 
 import bpy
 
@@ -25,7 +25,7 @@ _POINTERS = (
     (bpy.types.Collection, VelourTileSettings, {"LIBRARY_OVERRIDABLE"}),
     (bpy.types.WindowManager, VelourJobState, set()),
 )
-# A group comes after those that it holds.
+# A group comes after the groups that it contains.
 CLASSES = (
     VelourPlacementSettings,
     VelourBtfFitSettings,

@@ -1,4 +1,4 @@
-"""What a native node group says of the measured material that it stands for."""
+"""State of a native node group that approximates a measured material."""
 
 import bpy
 from bpy.props import BoolProperty, FloatProperty, FloatVectorProperty, StringProperty
@@ -9,11 +9,11 @@ VIEW_ANGLES = ("5", "30", "60", "75", "85")  # degrees
 
 
 class VelourApproximationState(bpy.types.PropertyGroup):
-    """`node_tree.velour`. Errors below 0: not known."""
+    """`node_tree.velour`. Errors below 0 are unknown."""
 
     saved_by: saved_by()
     is_approximation: BoolProperty()
-    fitted: StringProperty()  # JSON of operators/approximation_look; empty: an older Velour made it
-    model: StringProperty()  # SHA-256 of the model's file; empty: none is fitted yet
+    fitted: StringProperty()  # JSON from operators/approximation_look; empty: made by an older Velour
+    model: StringProperty()  # SHA-256 of the model's file; empty: no model yet
     relative_l2: FloatProperty(default=-1.0)
     by_view_angle: FloatVectorProperty(size=len(VIEW_ANGLES), default=(-1.0,) * len(VIEW_ANGLES))

@@ -1,4 +1,4 @@
-"""What Check Scene has found. Never saved."""
+"""Results of Check Scene. Never saved."""
 
 import bpy
 from bpy.props import BoolProperty, CollectionProperty, IntProperty, StringProperty
@@ -10,24 +10,24 @@ class VelourSentence(bpy.types.PropertyGroup):
 
 
 class VelourServedModel(bpy.types.PropertyGroup):
-    """A model for the scene, in one view layer. Names, as below."""
+    """A scene model in one view layer. Stores names, like VelourCheckState."""
 
     material: StringProperty(options={"SKIP_SAVE"})
-    model: StringProperty(options={"SKIP_SAVE"})  # of the image; another one has not been looked at
+    model: StringProperty(options={"SKIP_SAVE"})  # name of the image that was checked
     text: StringProperty(options={"SKIP_SAVE"})
-    is_inside: BoolProperty(options={"SKIP_SAVE"})  # of what it was fitted to
+    is_inside: BoolProperty(options={"SKIP_SAVE"})  # within the scene usage that it was fitted to
 
 
 class VelourCheckState(bpy.types.PropertyGroup):
-    """`window_manager.velour.checked`. A name, not a pointer: undo may replace the scene."""
+    """`window_manager.velour.checked`. Stores a name, not a pointer, since undo may replace the scene."""
 
-    scene: StringProperty(options={"SKIP_SAVE"})  # empty: none was looked at
+    scene: StringProperty(options={"SKIP_SAVE"})  # empty: none was checked
     frame: IntProperty(options={"SKIP_SAVE"})
     sentences: CollectionProperty(type=VelourSentence, options={"SKIP_SAVE"})
     models: CollectionProperty(type=VelourServedModel, options={"SKIP_SAVE"})
 
     def keep(self, scene, ignored, refused, served):
-        """`served`: what export/scene_models.py says of models for the scene."""
+        """`served`: list of Served from export/scene_models.py."""
         self.scene, self.frame = scene.name, scene.frame_current
         self.sentences.clear()
         for sentences, is_refusal in ((refused, True), (ignored, False)):
@@ -41,7 +41,7 @@ class VelourCheckState(bpy.types.PropertyGroup):
             item.text, item.is_inside = each.sentence, each.is_inside
 
     def of_model(self, scene, material, image):
-        """What was found of a material's model for the scene; empty where that was not looked at."""
+        """Results for a material's scene model; empty if it was not checked."""
         if self.scene != scene.name:
             return []
         return [m for m in self.models if (m.material, m.model) == (material.name, image.name)]

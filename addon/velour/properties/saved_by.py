@@ -1,8 +1,8 @@
-"""Which Velour has saved a datablock's settings last."""
+"""Version of Velour that last saved a datablock's settings."""
 
 from bpy.props import IntProperty
 
 
 def saved_by():
-    """As native.version packs it: 100 is 0.1.0. 0: they were never saved. An override has its library's."""
+    """Version packed as in native.version: 100 is 0.1.0; 0: never saved. Overrides have their library's."""
     return IntProperty(options={"HIDDEN"}, min=0)

@@ -1,17 +1,17 @@
-// Maps of a BTF of multivariate SRBFs (native/src/realtime/btf_maps.h, btf/srbf_btf.h), lit by the world and by lamps.
-// btf_terms, first row: how many levels, aspect; then of each level x, width, height of its map, and from pixel 17 on the
-// columns of the matrix from Rec. 709 to the working space. Then two rows a side, the one above first: how many
-// coefficients, first layer, lowest and highest of the relief; of each coefficient light and phase; view and whether it is
-// in the tile's frame; half and the sum of all lengths; colour.
+// Shades a BTF of multivariate SRBFs (native/src/realtime/btf_maps.h, btf/srbf_btf.h) under environment and lights.
+// btf_terms, first row: number of levels, aspect; then x, width and height of each level's map; from pixel 17 on, the
+// columns of the matrix from Rec. 709 to the working space. Then two rows per side, the side above first: number of
+// coefficients, first layer, minimum and maximum of the relief; then per coefficient: light and phase; view, and
+// whether it is in the tile's frame; half vector and the sum of all lengths; color.
 
 const int LIGHTS = 16, MOST_LAMPS = 16, MOST_LINES = 128;
 const float GOLDEN = 2.39996323;
-// From ring to ring, radians; PICTURES of them are GOLDEN and whole turns, so that all rings are one spiral,
-// whose 512 directions are the more even of the 32 numbers of whole turns that there are.
+// Rotation from ring to ring, radians. PICTURES of them add up to GOLDEN and whole turns, so that all rings form one
+// spiral; of the 32 numbers of whole turns, 17 makes its 512 directions most even.
 const float TURN = (17.0 * 2.0 * PI + GOLDEN) / PICTURES;
 
 struct Side {
-  int row, first, relief;  // of its coefficients; layers
+  int row, first, relief;  // row of its coefficients; its first layer, and that of the relief
   int coefficients;
   float bottom, top;
 };
@@ -26,7 +26,7 @@ Side side_of(bool below)
 
 vec4 level_info(int level) { return texelFetch(btf_terms, ivec2(1 + level, 0), 0); }
 
-// `texel`: from the centre of the first one, of a tile that repeats.
+// `texel`: relative to the center of the first texel; the tile repeats.
 vec4 map_at(int layer, int level, vec2 texel)
 {
   vec4 info = level_info(level);
@@ -34,8 +34,8 @@ vec4 map_at(int layer, int level, vec2 texel)
   return textureLod(btf_maps, vec3((vec2(info.x, 1) + inside + 0.5) / vec2(textureSize(btf_maps, 0).xy), layer), 0.0);
 }
 
-// Where the view's ray first is not above the relief: Relief::seen_texel, from line to line of the grid as relief_march.h
-// has it. Between lines the relief is bilinear, so steps of another length meet it elsewhere.
+// First point of the view ray that is not above the relief: Relief::seen_texel, marching between grid lines like
+// relief_march.h. The relief is bilinear between lines, so other step lengths would find other intersections.
 vec2 seen_texel(Side side, int level, vec2 place, vec3 wv)
 {
   float aspect = texelFetch(btf_terms, ivec2(0, 0), 0).y, depth = side.bottom - side.top;
@@ -43,7 +43,7 @@ vec2 seen_texel(Side side, int level, vec2 place, vec3 wv)
   vec2 shift = size * vec2(wv.x, wv.y / aspect) / max(wv.z, 1e-4), on_plane = place * size - 0.5;
   if (depth >= 0.0) return on_plane + side.bottom * shift;
   vec2 from = on_plane + side.top * shift, way = depth * shift, rate = max(abs(way), 1e-6);
-  // Times of lines of columns and of rows, the last ones before the start first.
+  // Ray parameters of the next column and row lines, beginning with the last ones before the start.
   vec2 each = max(ceil(rate / float(MOST_LINES)), 1.0) / rate;
   vec2 turn = vec2(way.x < 0.0 ? -1.0 : 1.0, way.y < 0.0 ? -1.0 : 1.0);
   vec2 when = -abs(floor(turn * from) - turn * from) / rate;
@@ -61,7 +61,7 @@ vec2 seen_texel(Side side, int level, vec2 place, vec3 wv)
   return from + way;
 }
 
-// Takes the relief's normal to +z the shortest way.
+// Smallest rotation that takes the relief's normal to +z.
 mat3 to_normal(vec2 slope)
 {
   float square = 1.0 + dot(slope, slope), size = sqrt(square), one = 1.0 / (square + size);
@@ -71,8 +71,8 @@ mat3 to_normal(vec2 slope)
   return mat3(vec3(1.0 - a * n.x * n.x, xy, n.x), vec3(xy, 1.0 - a * n.y * n.y, n.y), vec3(-n.x, -n.y, n.z));
 }
 
-// How many times a pixel's shorter side is as wide as a texel of the finest level, as a level; a longer side is left to
-// the pictures that add up to a mean, up to four times as long.
+// Mip level whose texels are as wide as a pixel's shorter side. A longer side, up to four times as long, is left to the
+// average of several images.
 float level_of_pixel(float last)
 {
   vec2 size = level_info(0).yz, dx = dFdx(coordinates) * size, dy = dFdy(coordinates) * size;
@@ -80,7 +80,7 @@ float level_of_pixel(float last)
   return clamp(log2(max(texels, 1e-6)), 0.0, last);
 }
 
-// Integral of the product of two Gaussians, each of an integral of 1.
+// Integral of the product of two Gaussians, each with integral 1.
 float product(vec3 a, float la, vec3 b, float lb)
 {
   vec3 apart = a - b;
@@ -89,14 +89,15 @@ float product(vec3 a, float la, vec3 b, float lb)
   return both * la / (2.0 * PI * (1.0 - exp(-2.0 * la))) * lb / (2.0 * PI * (1.0 - exp(-2.0 * lb)));
 }
 
-// Directions of light and what comes from them, times the cosine.
+// Light directions, and the incident light times the cosine.
 vec3 wl[LIGHTS + MOST_LAMPS], arrives[LIGHTS + MOST_LAMPS];
 int count = 0;
 
-// Of the lobe of a direction: half of its share of a picture, for wider ones reach below the horizon.
+// Bandwidth of a direction's lobe, which covers half of its share of an image's directions: wider lobes would reach
+// below the horizon.
 float bandwidth_of(vec3 local) { return max(4.0 * float(LIGHTS) * local.z, 1.0); }
 
-// RealtimeScene.check() has that all fit; what is written here never leaves the arrays.
+// RealtimeScene.check() ensures that all lights fit; this never writes outside of the arrays.
 void add_lamp(vec3 local, vec3 irradiance)
 {
   if (local.z <= 0.0 || count == LIGHTS + MOST_LAMPS) return;
@@ -104,7 +105,7 @@ void add_lamp(vec3 local, vec3 irradiance)
   arrives[count++] = local.z * irradiance;
 }
 
-// Even directions of the cosine, others in each picture of the mean, whose number is `emission.w`; then lamps.
+// Evenly spread cosine-weighted directions, different ones in each averaged image (number `emission.w`); then lights.
 void gather_light(mat3 frame)
 {
   float ring = mod(7.0 * emission.w + 0.5 * PICTURES, PICTURES);
@@ -114,7 +115,7 @@ void gather_light(mat3 frame)
     arrives[i] = PI / float(LIGHTS) * mean_light(1.0 + LEVELS_OF_OCTAVE * log2(bandwidth_of(wl[i])), frame * wl[i]);
   }
   count = LIGHTS;
-  // Narrow lobes of the world are lamps: directions so far apart would blur them.
+  // Narrow lobes of the environment are treated as lights, since directions this far apart would blur them.
   for (int narrow = 0; narrow < layout_.w; ++narrow) {
     int lamp = int(gain.w) + narrow;
     vec3 axis = lamp_pixel(lamp, 0).xyz;
@@ -133,7 +134,7 @@ void gather_light(mat3 frame)
   }
 }
 
-// What the place of the tile reflects of that.
+// Light that a point of the tile reflects.
 vec3 reflected(Side side, vec2 place, float level, vec3 wv)
 {
   int fine = int(level);
@@ -155,7 +156,7 @@ vec3 reflected(Side side, vec2 place, float level, vec3 wv)
       vec4 of_light = texelFetch(btf_terms, ivec2(at, side.row), 0), of_view = texelFetch(btf_terms, ivec2(at + 1, side.row), 0);
       vec4 of_half = texelFetch(btf_terms, ivec2(at + 2, side.row), 0);
       vec3 color = value[k] * texelFetch(btf_terms, ivec2(at + 3, side.row), 0).rgb;
-      // What is of the relief's frame is turned into the tile's: dot(a, turn b) = dot(a turn, b).
+      // Vectors in the relief's frame are rotated to the tile's: dot(a, turn b) = dot(a turn, b).
       bool in_tile = of_view.w > 0.5;
       vec3 light = in_tile ? of_light.xyz : of_light.xyz * turn, half_way = in_tile ? of_half.xyz : of_half.xyz * turn;
       float from_view = dot(in_tile ? of_view.xyz : of_view.xyz * turn, wv) - of_half.w;
@@ -180,7 +181,7 @@ void main()
 {
   float level = level_of_pixel(texelFetch(btf_terms, ivec2(0, 0), 0).x - 1.0);
   Site site = site_here(level_info(0).yz);
-  // At a point: a footprint would average the holes in once more.
+  // Point lookup: a footprint would average the holes in a second time.
   if (site.is_holed) level = 0.0;
   mat3 frame = frame_about(site.normal, site.along_u);
   if (dot(frame[1], site.along_v) < 0.0) frame[1] = -frame[1];

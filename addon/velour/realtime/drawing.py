@@ -1,4 +1,4 @@
-"""Draws a RealtimeScene into a texture. All of it on the main thread, while a viewport is drawn."""
+"""Draws a RealtimeScene into a texture. Runs on the main thread, while a viewport is drawn."""
 
 from __future__ import annotations
 
@@ -16,13 +16,13 @@ from .shaders import PICTURES, sky_shader
 from .targets import Targets, full_screen
 from .textures import texture
 
-_WIDTH = 1020  # pixels of a row of the texture of instances: whole instances
+_WIDTH = 1020  # width of the texture of instances in pixels: a row holds whole instances
 _FLOATS = 4
-_NARROW, _MOST_NARROW = 60.0, 8  # bandwidth of lobes of the world, and how many
+_NARROW, _MOST_NARROW = 60.0, 8  # least bandwidth of the environment's narrow lobes, and their maximum number
 
 
 class _Draw(NamedTuple):
-    """Of a group's instances what one slot shows."""
+    """One material slot of a group's instances."""
 
     batch: object
     material: int
@@ -32,21 +32,21 @@ class _Draw(NamedTuple):
 
 
 class Drawing:
-    """What a scene needs on the graphics processor."""
+    """GPU resources of a scene."""
 
     def __init__(self, cache_folder):
         self._cache_folder = cache_folder
         self.jobs = JobLine()
-        self.tables = KeptTables(self.jobs)  # of materials
-        self._light = None  # texture
-        self.light_report = {}  # of the job that made it
+        self.tables = KeptTables(self.jobs)  # tables of materials
+        self._light = None  # light map texture
+        self.light_report = {}  # report of the job that made the light map
         self._light_job = None
-        self._light_key = None  # of the world that it is of, or the job
+        self._light_key = None  # world key of the light map, or of its job
         self._has_tables = False
         self._targets = None
-        self.count = 0  # of pictures in the mean
-        self._lamps = None  # texture
-        self._instances = None  # the groups that are in the texture, and it
+        self.count = 0  # number of images in the average
+        self._lamps = None  # texture of lights
+        self._instances = None  # the groups in the texture, and the texture
 
     def close(self):
         self._drop_light_job()
@@ -55,9 +55,9 @@ class Drawing:
         self.__init__(self._cache_folder)
 
     def is_ready(self, scene):
-        """Whether all tables are there that draw() needs; a changed world is drawn as it was until then.
+        """Whether all tables that draw() needs exist; a changed environment is drawn as before until then.
 
-        `jobs` make them, once somebody lets those go on.
+        `jobs` make them once JobLine.go_on() is called.
         """
         import gpu
 
@@ -66,7 +66,7 @@ class Drawing:
         return self._light is not None and self._has_tables
 
     def is_waiting(self):
-        """Whether there will be more to draw without that anything changes."""
+        """Whether there is more to draw even if nothing changes."""
         return self._light_job is not None or not self._has_tables or self.count < PICTURES
 
     def _follow_light(self, gpu, scene):
@@ -86,13 +86,13 @@ class Drawing:
         self._light_job = None
 
     def restart(self):
-        """What is drawn next is another picture than the last."""
+        """Starts a new average, since the next image differs from the last."""
         self.count = 0
 
     def draw(self, scene, view, exposure, shows_world):
-        """A texture of the view's size: scene-linear, premultiplied. Only once is_ready().
+        """A texture of the view's size: scene-linear, premultiplied. Call only if is_ready().
 
-        Since restart() pictures add up to a mean, which smooths edges; with PICTURES it stays.
+        Images since restart() are averaged for antialiasing; after PICTURES the average remains.
         """
         import gpu
 
@@ -110,7 +110,7 @@ class Drawing:
         return self._targets.mean()
 
     def last(self):
-        """The texture that draw() made last; None: there is none."""
+        """The last texture that draw() made, or None."""
         return self._targets.mean() if self._targets else None
 
     def _free_targets(self):
@@ -128,13 +128,13 @@ class Drawing:
             self._draw_surfaces(gpu, scene, matrix, eye, exposure)
             if shows_world:
                 self._draw_sky(gpu, matrix, exposure)
-        finally:  # what fails is followed by the ray tracer's picture
+        finally:  # on failure the ray tracer draws next
             gpu.state.depth_mask_set(False)
             gpu.state.depth_test_set("NONE")
 
     def _draw_surfaces(self, gpu, scene, matrix, eye, exposure):
         narrow = _narrow_lobes(self.light_report["mixture"])
-        self._lamps = _lamps_texture(gpu, [*scene.lamps, *narrow])  # alive until all is drawn
+        self._lamps = _lamps_texture(gpu, [*scene.lamps, *narrow])  # kept alive until everything is drawn
         for shader, draws in self._draws(gpu, scene).items():
             shader.bind()
             shader.uniform_float("view_projection", _columns(matrix))
@@ -152,7 +152,7 @@ class Drawing:
                 _draw_instances(shader, draw, layout, scene.looks[draw.material].hides_backs)
 
     def _draws(self, gpu, scene):
-        """By shader."""
+        """Lists of _Draw by shader."""
         draws, first = {}, 0
         for group in scene.groups:
             for slot, batch in enumerate(scene.meshes[group.mesh].batches(gpu)):
@@ -205,12 +205,12 @@ def _draw_instances(shader, draw, layout, hides_backs):
 
 
 def _first(instance, hides_backs):
-    """As surface.vert.glsl takes it: uniforms have no room for more."""
+    """Encoded for surface.vert.glsl, since there is no room for another uniform."""
     return ~instance if hides_backs else instance
 
 
 def _columns(matrix):
-    """As uniforms take it."""
+    """Matrix type for uniforms."""
     from mathutils import Matrix
 
     return Matrix(matrix.tolist())
@@ -221,7 +221,7 @@ def _lamps_texture(gpu, lamps):
 
 
 def _narrow_lobes(mixture):
-    """The brightest that are narrower than the directions of light of BTFs, as pixels of lamps."""
+    """The brightest lobes that are narrower than the light directions of BTFs, as pixels of lights."""
     lobes = np.array(mixture, float).reshape(-1, 7)
     lobes = lobes[lobes[:, 3] > _NARROW]
     whole = 2 * np.pi / lobes[:, 3]

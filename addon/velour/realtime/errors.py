@@ -1,4 +1,4 @@
-"""What real time does not show."""
+"""Errors of the real-time viewport."""
 
 import contextlib
 import logging
@@ -7,15 +7,15 @@ log = logging.getLogger(__package__)
 
 
 class UnshownError(Exception):
-    """Something that only the ray tracer shows; a sentence says what."""
+    """Only the ray tracer supports the scene; the message says why."""
 
 
-LOST = (RuntimeError, SystemError, ReferenceError)  # what Blender raises where its context is gone
+LOST = (RuntimeError, SystemError, ReferenceError)  # raised by Blender if its context is gone
 
 
 @contextlib.contextmanager
 def asking_for(what, errors=Exception):
-    """Around what the graphics processor is asked to make: it may have no room, or be gone."""
+    """Turns errors of GPU allocations into UnshownError: the GPU may be out of memory, or lost."""
     try:
         yield
     except UnshownError:

@@ -1,4 +1,4 @@
-"""The library's jobs for a viewport: one at a time, for each takes all the threads that they have."""
+"""Queue of the library's jobs for a viewport: one at a time, since each uses all of their threads."""
 
 import threading
 
@@ -6,11 +6,11 @@ _STOPPED, _ENDED = ("ready", "cancelled"), ("done", "failed")
 
 
 class JobLine:
-    """Jobs that begin, and begin anew, with go_on() alone."""
+    """Queue of jobs that only go_on() starts and restarts."""
 
     def __init__(self):
-        self._jobs = []  # not taken yet; the first of those that are not done runs, or is to
-        self._closing = threading.Lock()  # of jobs, which other threads pause
+        self._jobs = []  # not taken yet; the first unfinished one is running or next
+        self._closing = threading.Lock()  # guards closing of jobs, which other threads pause
 
     def add(self, job):
         self._jobs.append(job)
@@ -22,7 +22,7 @@ class JobLine:
             job.close()
 
     def go_on(self):
-        """Starts the next one unless one runs."""
+        """Starts the next job unless one is running."""
         for job in self._jobs:
             state = job.poll().state
             if state in _STOPPED:
@@ -31,11 +31,11 @@ class JobLine:
                 return
 
     def pause(self):
-        """Called from any thread."""
+        """Stops all jobs until go_on(). May be called from any thread."""
         with self._closing:
             for job in self._jobs:
                 job.cancel()
 
     def has(self, job):
-        """Whether the job has its result; raises what it failed with."""
+        """Whether the job has its result; raises its error if it failed."""
         return job.poll().state in _ENDED and job.wait(timeout=0)

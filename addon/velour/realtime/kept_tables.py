@@ -1,4 +1,4 @@
-"""Tables of materials by what they are made of: another export of the same makes nothing anew."""
+"""Cache of materials' tables by content, so that another export of the same materials reuses them."""
 
 from __future__ import annotations
 
@@ -11,14 +11,14 @@ from .job_line import JobLine
 
 
 class Part(NamedTuple):
-    """Of a material: a table of the library, and what becomes of it."""
+    """Part of a material: the key of a table of the library, and what the table is turned into."""
 
-    key: tuple  # of all that it is made of
-    tables: object  # called with gpu, the job, and the map to the working space
+    key: tuple  # identifies everything that it is made from
+    tables: object  # called with gpu, the job, and the matrix to the working space
 
 
 class KeptTables:
-    """Those of a viewport, which outlive its scenes, and the jobs of those to come."""
+    """Tables of a viewport, which outlive its scenes, and the jobs of pending ones."""
 
     def __init__(self, line=None):
         self._line = JobLine() if line is None else line
@@ -31,12 +31,12 @@ class KeptTables:
         self.__init__(self._line)
 
     def ask(self, key, make_job):
-        """Puts what is neither there nor on its way into the line."""
+        """Queues the job of a table unless that exists or is pending."""
         if key not in self._made and key not in self._jobs:
             self._jobs[key] = self._line.add(make_job())
 
     def has(self, gpu, parts, to_working):
-        """Whether all Parts are there, which were asked for; others go."""
+        """Whether all Parts exist, which must have been requested; drops all others."""
         wanted = {part.key: part.tables for part in parts}
         for key in self._jobs.keys() - wanted.keys():
             self._line.drop(self._jobs.pop(key))
@@ -55,7 +55,7 @@ class KeptTables:
 
 
 def digest(content):
-    """Of bytes or an array: equal for equal content alone."""
+    """Hash of bytes or an array, equal only for equal content."""
     return hashlib.blake2b(
         np.ascontiguousarray(content) if isinstance(content, np.ndarray) else content
     ).digest()

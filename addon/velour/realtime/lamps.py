@@ -1,4 +1,4 @@
-"""Lamps as five pixels of a texture each (site.glsl), in the terms of native/src/render/lamp.h."""
+"""Lights as five texture pixels each (site.glsl), in the terms of native/src/render/lamp.h."""
 
 import math
 
@@ -7,12 +7,12 @@ import numpy as np
 PIXELS = 5
 
 _SUN, _POINT, _AREA, _SPOT = range(4)
-_LEAST_SPREAD = math.radians(1)  # as in Blender
+_LEAST_SPREAD = math.radians(1)  # same as Blender
 _MOST_ASPECT = 2.0
 
 
 def lamp_pixels(kind, color, matrix, values):
-    """[5 x 4] float32. Arguments as of Scene.add_light: a sun's irradiance, of others the power."""
+    """[5 x 4] float32. Arguments as for Scene.add_light: irradiance of a sun, power of other lights."""
     color, axis, place = np.asarray(color, float), -matrix[:, 2], matrix[:, 3]
     axis = axis / max(np.linalg.norm(axis), 1e-12)
     pixels = np.zeros((PIXELS, 4), np.float32)
@@ -23,7 +23,7 @@ def lamp_pixels(kind, color, matrix, values):
         return pixels
     width, height = values.get("size", (0.0, 0.0))
     if kind in ("rectangle", "disk"):
-        # A disk of the same area; it radiates as the cosine.
+        # A disk of the same area, with Lambertian emission.
         area = width * height * (1.0 if kind == "rectangle" else math.pi / 4)
         pixels[2, 3], focus = _spread(values.get("spread", math.pi))
         pixels[0] = *place, _AREA
@@ -37,7 +37,7 @@ def lamp_pixels(kind, color, matrix, values):
 
 
 def is_simpler(kind, values):
-    """Whether the ray tracer shows it otherwise: what is long is no disk, whose rim a spread lets be seen."""
+    """Whether the ray tracer's result differs: elongated areas are not disks, whose rim a spread reveals."""
     if kind not in ("rectangle", "disk") or values.get("spread", math.pi) >= math.pi:
         return False
     low, high = sorted(values["size"])
@@ -45,7 +45,7 @@ def is_simpler(kind, values):
 
 
 def _spread(angle):
-    """Cotangent of half the angle, 0 where it shines everywhere, and radiance along the normal."""
+    """Cotangent of half the angle (0: emits everywhere), and radiance along the normal."""
     half = max(angle, _LEAST_SPREAD) / 2
     if half >= math.pi / 2:
         return 0.0, 1.0

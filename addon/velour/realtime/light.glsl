@@ -17,7 +17,7 @@ vec3 light_of_level(int level, vec2 square)
   return textureLod(light_map, (map.xy + square * map.z) / vec2(textureSize(light_map, 0)), 0.0).rgb;
 }
 
-// The light's mean over the lobe of `level` about unit `w`.
+// Mean of the light over the lobe of `level` around the unit vector `w`.
 vec3 mean_light(float level, vec3 w)
 {
   vec2 square = octahedral(w);

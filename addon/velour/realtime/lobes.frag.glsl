@@ -1,4 +1,4 @@
-// Rows of lobes of the library (native/src/realtime/lobe_rows.h), lit by the world and by lamps, without shadows.
+// Shades the library's rows of lobes (native/src/realtime/lobe_rows.h) under environment and lights, without shadows.
 
 struct Lobe {
   vec3 center;
@@ -7,8 +7,8 @@ struct Lobe {
 };
 
 struct Place {
-  ivec2 low;   // of the grid of views
-  vec2 share;  // of what follows
+  ivec2 low;   // lower row and column of the grid of views
+  vec2 share;  // weights of the next ones
 };
 
 int side() { return abs(layout_.z); }
@@ -24,7 +24,7 @@ Place place_of(vec3 wv)
   return Place(ivec2(low), at - low);
 }
 
-vec3 base_color = vec3(0);  // where that is a picture
+vec3 base_color = vec3(0);  // only with PICTURE
 
 void add_row(int lobe, int row, float share, inout vec4 shape, inout vec3 color)
 {
@@ -51,7 +51,7 @@ Lobe lobe_at(Place place, int lobe)
   return Lobe(normalize(shape.xyz), shape.w, color);
 }
 
-// Of a normalised Gaussian, or of the clipped cosine over pi; a lamp of an own bandwidth blurs both into one.
+// Density of a normalized Gaussian, convolved with the light's own bandwidth, or of the clamped cosine over pi.
 float density(Lobe lobe, vec3 normal, vec3 center, vec3 light, float lamp_bandwidth)
 {
   if (lobe.level < 0.5) return max(dot(normal, light), 0.0) / PI;

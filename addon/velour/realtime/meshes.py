@@ -1,4 +1,4 @@
-"""Meshes as a graphics processor takes them: a vertex a corner, triangles by the slot of their material."""
+"""Meshes for the GPU: one vertex per corner, triangles grouped by material slot."""
 
 from __future__ import annotations
 
@@ -7,11 +7,11 @@ import numpy as np
 from .errors import asking_for
 from .tile_widths import TileWidths
 
-_ATTRIBUTES = {"position": 3, "normal": 3, "uv": 2, "lift": 3}  # of the surface shaders
+_ATTRIBUTES = {"position": 3, "normal": 3, "uv": 2, "lift": 3}  # attributes of the surface shaders
 
 
 def split_meshes(meshes):
-    """Of what Scene.add_meshes takes, for each mesh its arrays by name, flat; None: not given."""
+    """Splits the argument of Scene.add_meshes into each mesh's flat arrays by name; None: not given."""
     starts = {name: np.concatenate(([0], np.cumsum(sizes))) for name, (_values, sizes) in meshes.items()}
     count = len(next(iter(meshes.values()))[1])
     for i in range(count):
@@ -22,14 +22,14 @@ def split_meshes(meshes):
 
 
 class GpuMesh:
-    """Arrays, until something is drawn with them."""
+    """A mesh, kept as arrays until it is first drawn."""
 
     def __init__(self, arrays):
         get = arrays.get
         self.triangles = get("triangles").reshape(-1, 3)
         positions = get("positions").reshape(-1, 3)
         vertices = get("corner_vertices")
-        if vertices is None:  # triangles name vertices; the other arrays have three corners of each
+        if vertices is None:  # triangles index vertices; other arrays have three corners each
             vertices = self.triangles.reshape(-1)
             self.triangles = np.arange(len(vertices), dtype=np.uint32).reshape(-1, 3)
         corners = len(vertices)
@@ -39,19 +39,19 @@ class GpuMesh:
         self.uvs = np.zeros((corners, 2), np.float32) if uvs is None else uvs.reshape(-1, 2)
         self.has_uvs = uvs is not None
         self.slots = get("material_slots")
-        self.lifts = self.widths = None  # of shells
+        self.lifts = self.widths = None  # for shells
         self._vertices = vertices
         self._batches = None
 
     def prepare_shell(self):
-        """Whether it can be drawn as the top of a shell: not once it was handed on without."""
+        """Prepares drawing as the top of a shell; False if the mesh was uploaded without it."""
         if self.lifts is None and self.positions is not None:
             self.lifts = self._lifted()
             self.widths = TileWidths(self.positions, self.uvs, self.triangles, self.slots)
         return self.lifts is not None
 
     def _lifted(self):
-        """Of each corner the mean normal of its vertex's corners, not normalised."""
+        """Sum of the normals of all corners at a corner's vertex, for each corner; not normalized."""
         normals = self.normals[self.triangles]
         corner = self.positions[self.triangles]
         across = np.cross(corner[:, 1] - corner[:, 0], corner[:, 2] - corner[:, 0])
@@ -62,7 +62,7 @@ class GpuMesh:
         return np.stack(sums, axis=1)[self._vertices].astype(np.float32)
 
     def _corner_normals(self, get, vertices, corners):
-        """Zero where a triangle is flat: the shader then has its own."""
+        """Corner normals; zero on flat triangles, for which the shader computes its own."""
         if get("corner_normals") is not None:
             return get("corner_normals").reshape(-1, 3)
         of_vertices, smooth = get("vertex_normals"), get("smooth")
@@ -74,7 +74,7 @@ class GpuMesh:
         return normals
 
     def batches(self, gpu):
-        """Of each slot its GPUBatch; None: it has no triangle."""
+        """GPUBatch of each slot; None if it has no triangle."""
         if self._batches is None:
             with asking_for(f"a mesh of {len(self.triangles):,} triangles"):
                 self._batches = self._made_batches(gpu)

@@ -1,5 +1,5 @@
-// The picture of a base colour (pictures.py), looked up as material/texture.h does it at a point.
-// picture_terms: both rows of the matrix from (u, v, 1) to the picture, then wrap and filter.
+// Base color texture (pictures.py), with the point lookup of material/texture.h.
+// picture_terms: both rows of the matrix from (u, v, 1) to the image, with wrap and filter as fourth components.
 #ifdef PICTURE
 
 const int REPEAT = 0, EXTEND = 1, CLIP = 2, CLOSEST = 0;

@@ -1,4 +1,4 @@
-"""Pictures of base colours."""
+"""Base color textures."""
 
 from __future__ import annotations
 
@@ -9,13 +9,13 @@ from ..native.table import FILTERS, WRAPS
 from .kept_tables import digest
 from .textures import half_texture, texture
 
-_MOST = 2048  # pixels of a side
+_MOST = 2048  # maximum pixels along a side
 
 
 class GpuTexture(Texture):
-    """A texture of the library whose colours can be drawn, too."""
+    """A texture of the library whose colors can also be drawn on the GPU."""
 
-    colors = None  # [height x width x 4]; None: it is no colour
+    colors = None  # [height x width x 4]; None: it is not a color
 
     @classmethod
     def from_pixels(cls, pixels, **options):
@@ -31,7 +31,7 @@ class GpuTexture(Texture):
 
 
 class Picture:
-    """Of a TextureSlot with a GpuTexture on the first set of texture coordinates."""
+    """Image of a TextureSlot with a GpuTexture on the first set of texture coordinates."""
 
     def __init__(self, slot):
         self._texture, self._uv_map = slot.texture, np.asarray(slot.uv_map, np.float32)
@@ -52,7 +52,7 @@ class Picture:
 
 
 def _colors(pixels):
-    """Of [height x width x channels]; of one or two the first. Larger than _MOST: means of squares."""
+    """RGBA of [height x width x channels]; gray is the first channel. Downsampled to at most _MOST."""
     step = -(-max(pixels.shape[:2]) // _MOST)
     height, width = (max(size // step, 1) for size in pixels.shape[:2])
     found = np.ones((height, width, 4), np.float32)

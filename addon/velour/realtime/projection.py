@@ -1,4 +1,4 @@
-"""A View as the matrices of a graphics processor."""
+"""A View as GPU matrices."""
 
 from __future__ import annotations
 
@@ -8,17 +8,17 @@ from .shaders import PICTURES
 
 
 def jitter(i):
-    """Where in its pixel picture i of PICTURES is taken, -1/2 to 1/2 each way; the first near the middle.
+    """Subpixel offset of image i of PICTURES, -1/2 to 1/2 per axis; the first is near the center.
 
-    A lattice: with the rings of btf.frag.glsl, of step 7, the most even of three dimensions.
+    A lattice: together with the rings of btf.frag.glsl (step 7), the most even one in three dimensions.
     """
     return tuple(((step * i + PICTURES // 2) % PICTURES + 0.5) / PICTURES - 0.5 for step in (21, 19))
 
 
 def view_projection(view, shift=(0.0, 0.0)):
-    """[4 x 4], and the eye: its place and 1, or of parallel rays the direction towards it and 0.
+    """[4 x 4], and the eye: its position and 1, or for parallel rays the direction towards it and 0.
 
-    `shift`: of the picture, in pixels.
+    `shift`: shift of the image, in pixels.
     """
     left, right, bottom, top = view.window
     near, far = max(view.clip_start, 1e-6), max(view.clip_end, view.clip_start + 1e-5)

@@ -1,4 +1,4 @@
-"""What a graphics processor draws, in the place of the library's scene: filled by the same exports."""
+"""Scene for the GPU, filled by the same exports as the library's scene."""
 
 from __future__ import annotations
 
@@ -26,9 +26,9 @@ from .tables import (
     WhiteTables,
 )
 
-_MOST_DRAWS = 20_000  # of instances: more are slower than rays
-_MOST_LAMPS = 8  # on BTFs: with as many narrow lobes of the world all that btf.frag.glsl has room for
-# Of numbers of a material that may exceed 1. The library's own end: nine tenths at normal incidence.
+_MOST_DRAWS = 20_000  # instance draws; more are slower than ray tracing
+_MOST_LAMPS = 8  # with BTFs: btf.frag.glsl has room for these and as many narrow lobes of the environment
+# Limits of parameters that may exceed 1; like the library's, a reflectance of 0.9 at normal incidence.
 _MOST = {"specular": 11.25, "coat_index": 38.0}
 _NUMBERS = ("metallic", "roughness", "specular", "coat", "coat_roughness", "coat_index")
 _UNPLACED = np.array(((1, 0, 0), (0, 1, 0)), np.float32)
@@ -37,12 +37,12 @@ _UNPLACED = np.array(((1, 0, 0), (0, 1, 0)), np.float32)
 class Look(NamedTuple):
     """A material."""
 
-    parts: tuple  # of Part; the first says how it is drawn, the last may be of its outline
+    parts: tuple  # Parts; the first determines the shader, the last may be the VOTF
     emission: tuple = (0.0, 0.0, 0.0)
-    is_simpler: bool = False  # than the ray tracer shows it
-    shell_aspect: float | None = None  # of its outline; None: it has none
-    shell_tile: float = 0.0  # metres; 0: as the texture coordinates say
-    hides_backs: bool = False  # from the camera
+    is_simpler: bool = False  # drawn in a simpler way than by the ray tracer
+    shell_aspect: float | None = None  # aspect of the VOTF's tile; None: no VOTF
+    shell_tile: float = 0.0  # meters; 0: from the texture coordinates
+    hides_backs: bool = False  # hides back faces from the camera
 
     @property
     def has_shell(self):
@@ -50,21 +50,21 @@ class Look(NamedTuple):
 
 
 class Group(NamedTuple):
-    """Instances that differ in where they are alone."""
+    """Instances that differ only in their transforms."""
 
     mesh: int
     materials: tuple  # None: the slot is not drawn
-    # [instances x 5 x 4]: matrix, then the map of texture coordinates; a tile's width, metres, at [3, 3],
-    # and at [4, 3] 1 of a holdout
+    # [instances x 5 x 4]: matrix, then the map of texture coordinates; [3, 3] is the tile's width in meters,
+    # [4, 3] is 1 for a holdout
     rows: np.ndarray
-    in_shell: bool  # what is drawn is the top of a shell
+    in_shell: bool  # the mesh is drawn as the top of a shell
 
 
 class RealtimeScene(Scene):
-    """Takes what export/ says of a scene. The library's own scene in it has the world, and nothing else."""
+    """Receives a scene from export/. The library's scene in it contains only the environment."""
 
     def __init__(self, tables=None, threads=0):
-        """`tables`: KeptTables, which it asks for what its materials need; `threads`: of a job, 0: all."""
+        """`tables`: KeptTables that make the tables of materials; `threads`: threads per job, 0: all."""
         super().__init__()
         self.threads = threads
         self._tables = KeptTables() if tables is None else tables
@@ -73,11 +73,11 @@ class RealtimeScene(Scene):
         self.groups = []
         self.gains = []
         self.lamps = []
-        self.simpler_lamps = 0  # than the ray tracer shows them
+        self.simpler_lamps = 0  # number of lights drawn in a simpler way than by the ray tracer
         self.to_working = np.eye(3, dtype=np.float32)
-        self._world = None  # what of it place_world() leaves as it is
-        self.world_key = None  # of all that it is made of
-        self.is_stale = False  # something changed that only another export shows
+        self._world = None  # part of world_key that place_world() does not change
+        self.world_key = None  # identifies everything that the environment is made from
+        self.is_stale = False  # something changed that requires another export
 
     def set_working_space(self, rec709_to_working):
         super().set_working_space(rec709_to_working)
@@ -106,7 +106,7 @@ class RealtimeScene(Scene):
             self._add_group(int(mesh), object_to_world[meshes == mesh], materials, _UNPLACED, hidden)
 
     def _add_group(self, mesh, matrices, materials, placed, hidden, only=None):
-        """`only`: the slot that is drawn; None: all."""
+        """`only`: the only slot to be drawn; None: all slots."""
         if "camera" in hidden:
             return
         is_holdout = "holdout" in hidden
@@ -114,7 +114,7 @@ class RealtimeScene(Scene):
         plain = []
         for slot in slots:
             widths = self._tile_widths(mesh, matrices, materials, slot, placed)
-            if widths is None or not widths.all():  # nothing tells how high the shell would be
+            if widths is None or not widths.all():  # the height of the shell is unknown
                 plain.append(slot)
             else:
                 self.groups.append(_group(mesh, matrices, materials, placed, [slot], is_holdout, widths))
@@ -122,7 +122,7 @@ class RealtimeScene(Scene):
             self.groups.append(_group(mesh, matrices, materials, placed, plain, is_holdout))
 
     def _tile_widths(self, mesh, matrices, materials, slot, placed):
-        """Metres, of a material with an outline; None: it has none."""
+        """Tile widths in meters for a material with a VOTF; None without one."""
         look, gpu_mesh = self.looks[materials[slot]], self.meshes[mesh]
         if not look.has_shell or not gpu_mesh.has_uvs:
             return None
@@ -169,7 +169,7 @@ class RealtimeScene(Scene):
         if not is_drawn:
             return self._add_look(Look((self._rows(values, PrincipledTables),), emission, is_simpler))
         picture = Picture(slot)
-        # Light between facets of rough metals is no even share of white's: dark colours are drawn too bright.
+        # Multiple scattering of rough metals is not linear in the color: dark colors are drawn too bright.
         is_simpler = is_simpler or (values.get("metallic", 0.0) > 0.0 and values.get("lobe") == "whole")
         black = self._rows({**values, "base_color": (0.0, 0.0, 0.0)}, BlackTables)
         white = self._rows({**values, "base_color": (1.0, 1.0, 1.0)}, WhiteTables, picture)
@@ -179,7 +179,7 @@ class RealtimeScene(Scene):
         return self._add_look(Look((self._rows({}, PrincipledTables),), is_simpler=True))
 
     def replace_material(self, material):
-        self.is_stale |= self.looks[material].has_shell or self.looks[-1].has_shell  # other surfaces
+        self.is_stale |= self.looks[material].has_shell or self.looks[-1].has_shell  # other meshes are drawn
         self.looks[material], self.gains[material] = self.looks.pop(), self.gains.pop()
 
     def set_gain(self, material, gain):
@@ -190,22 +190,22 @@ class RealtimeScene(Scene):
         self.looks[material] = look._replace(hides_backs="camera" in hidden and not look.has_shell)
 
     def set_drawn_to(self, material, drawn):
-        """Surfaces that glow light nothing else here."""
+        """Ignored: emissive surfaces do not light others here."""
 
     def set_shell_tile(self, material, metres):
         self.looks[material] = self.looks[material]._replace(shell_tile=metres)
 
     def set_shell_softness(self, material, widths):
-        """Edges are hard."""
+        """Ignored: edges are always hard."""
 
     def _part(self, content, tables, make_job, *shown):
-        """Begins what is to become `tables` of *shown."""
+        """Requests a table, from which `tables` is made with the arguments *shown; returns its Part."""
         key = (tables, content, self.to_working.tobytes(), *(each.key for each in shown))
         self._tables.ask(key, make_job)
         return Part(key, partial(tables, *shown))
 
     def _rows(self, values, tables, *shown):
-        """The Part of a Principled material of these numbers."""
+        """The Part of a Principled material with these parameters."""
         values = _principled(values)
         key = tuple(sorted(values.items()))
         return self._part(key, tables, lambda: principled_rows_job(threads=self.threads, **values), *shown)
@@ -233,7 +233,7 @@ class RealtimeScene(Scene):
         self._note_world(("pixels", digest(pixels), pixels.shape), strength, world_to_image)
 
     def set_world_file(self, path, strength=1.0, world_to_image=None, **options):
-        stamp = _stamp(path)  # of before it is read
+        stamp = _stamp(path)  # taken before the file is read
         super().set_world_file(path, strength, world_to_image, **options)
         self._note_world(("file", path, stamp, *options.values()), strength, world_to_image)
 
@@ -246,7 +246,7 @@ class RealtimeScene(Scene):
         self._world, self.world_key = world, (world, strength, turn, self.to_working.tobytes())
 
     def check(self):
-        """Raises UnshownError where the whole is too much."""
+        """Raises UnshownError if the scene exceeds the limits."""
         if self.draws > _MOST_DRAWS:
             raise UnshownError(f"more than {_MOST_DRAWS:,} instances are shown by the ray tracer alone")
         if len(self.lamps) > _MOST_LAMPS and any(
@@ -256,12 +256,12 @@ class RealtimeScene(Scene):
 
     @property
     def draws(self):
-        """How many times something is drawn, where each instance is drawn by itself."""
+        """Number of draws if each instance is drawn separately."""
         return sum(len(group.rows) * len(group.materials) for group in self.groups)
 
 
 def _group(mesh, matrices, materials, placed, slots, is_holdout, widths=None):
-    """Of what these slots show; `widths`: of tiles, where that is the top of a shell."""
+    """The Group that draws these slots; `widths`: tile widths if it is the top of a shell."""
     rows = np.zeros((len(matrices), 5, 4), np.float32)
     rows[:, :3] = matrices
     rows[:, 3:, :3] = placed
@@ -273,7 +273,7 @@ def _group(mesh, matrices, materials, placed, slots, is_holdout, widths=None):
 
 
 def _stamp(path):
-    """Another one for another content; of no file too, which is refused by whoever reads it."""
+    """A value that differs for changed content; None if there is no file, which the reader refuses."""
     with contextlib.suppress(OSError):
         found = os.stat(path)
         return found.st_mtime_ns, found.st_size
@@ -281,7 +281,7 @@ def _stamp(path):
 
 
 def _principled(values):
-    """Of numbers of a material those that its rows are made of, as principled_rows_job takes them."""
+    """Clamped parameters that determine a material's rows, as keywords of principled_rows_job."""
     known = {name: values[name] for name in _NUMBERS if name in values}
     choices = {name: values[name] for name in ("formula", "lobe", "coat_lobe") if name in values}
     color = tuple(min(max(c, 0.0), 1.0) for c in values.get("base_color", (0.8, 0.8, 0.8)))

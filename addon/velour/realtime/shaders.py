@@ -1,18 +1,18 @@
-"""The shaders, compiled once a session."""
+"""The shaders, compiled once per session."""
 
 from functools import wraps
 from pathlib import Path
 
 from .errors import UnshownError, log
 
-PICTURES = 32  # in a mean
+PICTURES = 32  # number of averaged images
 _FOLDER = Path(__file__).parent
 
-_compiled = {}  # None: one that does not compile
+_compiled = {}  # None: failed to compile
 
 
 def _once(make):
-    """What does not compile is not tried again: a driver has no other answer, and says at length why."""
+    """Does not retry shaders that fail to compile: the driver would fail again and log a long message."""
 
     @wraps(make)
     def shader(*arguments):
@@ -42,12 +42,12 @@ def _check(shader):
 
 
 def all_compile():
-    """Of those that were asked for so far."""
+    """Whether all shaders that were requested so far have compiled."""
     return None not in _compiled.values()
 
 
 def check():
-    """Raises UnshownError once one did not compile."""
+    """Raises UnshownError if a shader has failed to compile."""
     for shader in _compiled.values():
         _check(shader)
 
@@ -58,13 +58,13 @@ def _source(*names):
 
 @_once
 def lobes_shader(has_shell):
-    """Of BRDFs. A GPUShader; raises UnshownError where it does not compile."""
+    """GPUShader of BRDFs; raises UnshownError if it does not compile."""
     return _surface_shader("lobes", (("FLOAT_2D", "lobe_rows"),), has_shell)
 
 
 @_once
 def picture_shader(_has_shell):
-    """The same of those whose base colour is a picture; they have no shell."""
+    """GPUShader of BRDFs with a base color texture, which have no shell."""
     more = (("FLOAT_2D", "white_rows"), ("FLOAT_2D", "picture"), ("FLOAT_2D", "picture_terms"))
     return _surface_shader("lobes", (("FLOAT_2D", "lobe_rows"), *more), False, ("PICTURE",))
 
@@ -75,7 +75,7 @@ def btf_shader(has_shell):
 
 
 def _surface_shader(name, tables, has_shell, defines=()):
-    """`has_shell`: of meshes that have the attribute `lift`, whose surface is in a shell over them."""
+    """`has_shell`: for meshes with the attribute `lift`, whose surface is in a shell over them."""
     import gpu
 
     info = gpu.types.GPUShaderCreateInfo()
@@ -91,9 +91,9 @@ def _surface_shader(name, tables, has_shell, defines=()):
     for slot, (kind, sampler) in enumerate((*shared, *tables)):
         info.sampler(slot, kind, sampler)
     info.push_constant("MAT4", "view_projection")
-    info.push_constant("VEC4", "eye")  # where it is, 1; or the direction towards it, 0
-    info.push_constant("VEC4", "gain")  # and how many lamps there are
-    info.push_constant("VEC4", "emission")  # and how many pictures there were before
+    info.push_constant("VEC4", "eye")  # its position, 1; or the direction towards it, 0
+    info.push_constant("VEC4", "gain")  # w: number of lights
+    info.push_constant("VEC4", "emission")  # w: number of previous images
     info.push_constant("IVEC4", "layout_")
     for slot, (kind, attribute) in enumerate(attributes):
         info.vertex_in(slot, kind, attribute)
@@ -101,8 +101,8 @@ def _surface_shader(name, tables, has_shell, defines=()):
     between.smooth("VEC3", "world")
     between.smooth("VEC3", "shading_normal")
     between.smooth("VEC2", "coordinates")
-    between.smooth("FLOAT", "handed")  # -1: of an instance that is mirrored
-    between.smooth("FLOAT", "holdout")  # 1: of it and what is behind nothing is seen
+    between.smooth("FLOAT", "handed")  # -1: mirrored instance
+    between.smooth("FLOAT", "holdout")  # 1: cuts a hole into the image
     if has_shell:
         between.smooth("VEC3", "up")
         between.smooth("FLOAT", "tile_width")

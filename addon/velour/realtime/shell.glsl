@@ -1,17 +1,17 @@
-// Where a pixel's surface is: the structure that the view's ray meets in the shell (VOTF) under the top, which is what is
-// drawn; a ray that meets none goes on. As votf/shell_trace.h and render/shell_crossing.h have it, in steps of the
-// distance. shell_maps: native/src/realtime/shell_maps.h; shell_terms: bottom, top, reference, aspect; then the longest
-// distance that is told apart, and whether the structure is open.
+// Surface of a pixel in a shell (VOTF): the structure that the view ray hits below the top, which is the drawn mesh;
+// rays without a hit pass through. Sphere tracing as in votf/shell_trace.h and render/shell_crossing.h.
+// shell_maps: native/src/realtime/shell_maps.h; shell_terms: bottom, top, reference, aspect; then the largest distance
+// that the maps resolve, and whether the structure is open.
 
 const int DEPTH_LOOKS = 64;
-const int LOOKS = 160;  // a ray that glides along the structure for so long has met it
-const float WITHIN = 0.03, LEAST_STEP = 0.1;  // of the distance from point to point
-const float STRIDE = 1.6;                     // distances that a step is long
+const int LOOKS = 160;  // a ray that grazes the structure for this many steps counts as a hit
+const float WITHIN = 0.03, LEAST_STEP = 0.1;  // relative to the spacing of points
+const float STRIDE = 1.6;                     // step length relative to the distance
 const float LEAST_COSINE = 0.15;
 
 vec4 shell_terms_here() { return texelFetch(shell_terms, ivec2(0), 0); }
 
-// Distance and slope at `q`, widths of the tile.
+// Distance and its gradient at `q`, in tile widths.
 vec4 shell_at(vec3 q)
 {
   vec4 terms = shell_terms_here();
@@ -26,10 +26,10 @@ vec4 shell_at(vec3 q)
 struct ShellWay {
   vec2 place, along;
   float sine, cosine, curvature, scale, begin, end;
-  float speed;  // at most, widths a metre
+  float speed;  // upper bound, in tile widths per meter
 };
 
-// ShellRay::at, over the surface.
+// ShellRay::at, relative to the surface.
 vec3 way_at(ShellWay way, float s, float top)
 {
   float a = s * way.sine, bent = way.curvature * a, far = abs(bent);
@@ -40,8 +40,8 @@ vec3 way_at(ShellWay way, float s, float top)
   return vec3(way.place + way.along * across, top + way.scale * deeper);
 }
 
-// How far behind the top's crossing the ray leaves the shell, metres; nothing where it leaves through the top again and
-// is seen from within: that way was decided where it came in.
+// Distance in meters from the crossing of the top to the exit from the shell; 0 if the ray leaves through the top again
+// and is seen from within, since it is handled at its entry.
 float way_end(ShellWay way, float depth, bool leaves)
 {
   float down = depth / way.scale, fall = down * (2.0 - way.curvature * down);
@@ -59,12 +59,12 @@ float way_speed(ShellWay way, float depth)
                      way.scale * (way.curvature < 0.0 ? 1.0 : way.cosine)));
 }
 
-// Whether the structure is met, and where: with the steps of votf/shell_march-inl.h, for near an outline the light is
-// sensitive to where.
+// Whether the ray hits the structure, and where. Takes the steps of votf/shell_march-inl.h, since shading near a
+// silhouette is sensitive to the hit point.
 bool met(ShellWay way, float top, out float s)
 {
   float pitch = pitch(), turn = way.end < way.begin ? -1.0 : 1.0, per_speed = turn / way.speed;
-  float free = 0.0, stride = 0.0;  // the last look was `stride` before, in widths, and `free` of any surface
+  float free = 0.0, stride = 0.0;  // last sample: `stride` tile widths back, and `free` away from any surface
   s = way.begin;
   for (int i = 0; i < LOOKS; ++i) {
     float distance = shell_at(way_at(way, s, top)).x;
@@ -72,7 +72,7 @@ bool met(ShellWay way, float top, out float s)
       if (i > 0) s -= per_speed * stride * min(1.0, distance / (distance - free));
       return true;
     }
-    if (free + distance < stride) {  // between the two there may be something: back to what is free for certain
+    if (free + distance < stride) {  // there may be structure in between: go back to the certainly free part
       s -= per_speed * (stride - free);
       stride = free;
       continue;
@@ -85,8 +85,8 @@ bool met(ShellWay way, float top, out float s)
   return true;
 }
 
-// How deep within the structure a way comes from `from` on, and where; once that is `most`, what lies further on is left
-// out. ShellDepth.
+// Largest depth within the structure along a ray from `from` on, and where; stops once it reaches `most`. See
+// ShellDepth.
 vec2 deepest_behind(ShellWay way, float top, float from, float most)
 {
   float far = abs(way.end - from), stride = max(pitch() / way.speed, far / float(DEPTH_LOOKS));
@@ -99,7 +99,7 @@ vec2 deepest_behind(ShellWay way, float top, float from, float most)
   return deepest;
 }
 
-// ShellField::gradient: within thin structure the slopes of the table are too smooth.
+// ShellField::gradient, since the gradients of the table are too smooth within thin structure.
 vec3 slope_at(vec3 q)
 {
   vec3 slope;
@@ -125,20 +125,20 @@ vec2 beyond_outline(ShellWay way, float top, float s, vec2 texels)
   float depth = deepest.x, square = dot(outside, outside);
   if (depth <= 0.0 || depth >= 1.5 * length(outside * texel) || square <= 0.0) return vec2(0);
   vec2 over = outside * (2.0 * depth / square);
-  // Where other structure lies behind, there is no outline.
+  // There is no silhouette if other structure is behind.
   way.place += over;
   return deepest_behind(way, top, way.begin, 0.0).x > 0.0 ? vec2(0) : over / widths;
 }
 
-// `texels`: of a BTF in a tile, whose place is where the ray crosses the plane of its texels, with the smooth surface's
-// normal; 0: of no BTF, the normal is the structure's own.
+// `texels`: number of texels of a BTF's tile, whose place is where the ray crosses the plane of its texels, with the
+// normal of the smooth surface; 0: no BTF, and the normal is that of the structure.
 Site site_here(vec2 texels)
 {
   Site site;
   site.view = view_from_here();
   tangents(site.along_u, site.along_v);
   vec4 terms = shell_terms_here();
-  // What changes along x and y of the picture, in terms of ways along the surface.
+  // Gradients of the image's x and y along the surface, to convert screen-space derivatives.
   vec3 px = dFdx(world), py = dFdy(world), across = cross(px, py), n = normalize(up);
   float area = max(dot(across, across), 1e-30);
   vec3 per_x = cross(py, across) / area, per_y = cross(across, px) / area;

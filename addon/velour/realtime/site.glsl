@@ -1,25 +1,25 @@
-// What a pixel knows of its surface, and the lamps that light it.
+// A pixel's surface point, and the lights that illuminate it.
 
 struct Site {
   vec3 view, normal;        // towards the viewer
   vec2 place;               // texture coordinates
-  vec3 along_u, along_v;    // where these grow, not normalised
-  bool is_behind;           // seen from where the surface's normal does not point to
-  bool is_holed;            // of a BTF, whose values are means with the holes of its structure
-  vec2 beyond;              // HoledBtfMaterial: from there to its mirror image beyond an outline; 0: none is near
+  vec3 along_u, along_v;    // directions in which these grow, not normalized
+  bool is_behind;           // seen from the side opposite to the surface's normal
+  bool is_holed;            // BTF whose values are averages that include the holes of its structure
+  vec2 beyond;              // HoledBtfMaterial: offset to its mirror image beyond a silhouette; 0: none nearby
 };
 
-// Towards the viewer.
+// Direction towards the viewer.
 vec3 view_from_here() { return eye.w > 0.0 ? normalize(eye.xyz - world) : eye.xyz; }
 
-// Interpolated normals may face away at an outline.
+// Interpolated normals may face away at a silhouette.
 vec3 facing(vec3 n, vec3 view)
 {
   float cosine = dot(n, view);
   return cosine < 0.01 ? normalize(n + (0.01 - cosine) * view) : n;
 }
 
-// A mirrored triangle goes round the other way.
+// Mirrored triangles have the opposite winding.
 bool is_back() { return gl_FrontFacing == (handed < 0.0); }
 
 vec3 normal_towards(vec3 view, out bool is_behind)
@@ -33,10 +33,10 @@ vec3 normal_towards(vec3 view, out bool is_behind)
   return facing(n, view);
 }
 
-// What is seen of a surface that reflects `light`.
+// Pixel of a surface that reflects `light`.
 vec4 seen(vec3 light) { return holdout > 0.5 ? vec4(0) : vec4(light, 1); }
 
-// Where texture coordinates grow on the surface, not normalised: along u, and along v.
+// Directions on the surface in which u and v grow, not normalized.
 void tangents(out vec3 along_u, out vec3 along_v)
 {
   vec3 px = dFdx(world), py = dFdy(world);
@@ -46,7 +46,7 @@ void tangents(out vec3 along_u, out vec3 along_v)
   along_v = turn * (py * tx.x - px * ty.x);
 }
 
-// About n, x as `along` as it can be.
+// Frame with z = n, and x as close to `along` as possible.
 mat3 frame_about(vec3 n, vec3 along)
 {
   vec3 x = along - dot(along, n) * n;
@@ -55,15 +55,15 @@ mat3 frame_about(vec3 n, vec3 along)
   return mat3(x, cross(n, x), n);
 }
 
-// Five pixels a lamp: place or direction, kind; colour, radius squared; axis, of a spot the cosine where its cone ends,
-// of an area the cotangent of half its spread (0: it shines everywhere); of a spot its axes over the scale of its cone
-// (0: that is 1), with the width of the rim, and whether its light falls with the cosine.
+// Five pixels per light: position or direction, kind; color, squared radius; axis, with the cosine at the edge of a
+// spot's cone or the cotangent of half an area light's spread (0: emits everywhere); for a spot, its axes over the
+// scale of its cone (0: scale 1), with the width of the rim, and whether its light falls off with the cosine.
 const int LAMP_PIXELS = 5;
 const float SUN = 0.0, AREA = 2.0, SPOT = 3.0;
 
 vec4 lamp_pixel(int lamp, int i) { return texelFetch(lamps, ivec2(LAMP_PIXELS * lamp + i, 0), 0); }
 
-// Mean of max(t, 0) over a disk, where t goes up by `blur` from its middle to its edge and is `middle` there.
+// Mean of max(t, 0) over a disk, where t is `middle` at its center and rises by `blur` towards its edge.
 float mean_above(float middle, float blur)
 {
   if (abs(middle) >= blur) return max(middle, 0.0);
@@ -71,8 +71,8 @@ float mean_above(float middle, float blur)
   return blur * ((2.0 + y * y) * sqrt(1.0 - y * y) / (3.0 * PI) + y * (0.5 + asin(y) / PI));
 }
 
-// What a disk's spread leaves of its light, Lamp::falloff, in the mean over the disk, to 2 % where it is up to a third as
-// wide as what it lights; `path`, to its middle, and the radius squared become those of the part that shines here.
+// Mean of Lamp::falloff over a disk light with a spread, accurate to 2% if the disk is at most a third as wide as what
+// it lights. `path`, to its center, and the squared radius become those of the part that emits towards this point.
 float spread_share(vec4 axis, inout vec3 path, inout float radius_sq)
 {
   float height = max(-dot(path, axis.xyz), 1e-6);
@@ -84,7 +84,7 @@ float spread_share(vec4 axis, inout vec3 path, inout float radius_sq)
   return mean_above(1.0 - far, size * off / max(far, 1e-6));
 }
 
-// Lamp::falloff of a spot; `direction`: from it, unit.
+// Lamp::falloff of a spot; `direction`: unit vector from it.
 float cone_share(int lamp, vec3 direction, vec4 axis)
 {
   vec4 x = lamp_pixel(lamp, 3), y = lamp_pixel(lamp, 4);
@@ -93,7 +93,7 @@ float cone_share(int lamp, vec3 direction, vec4 axis)
   return smoothstep(0.0, 1.0, (cosine - axis.w) / max(x.w, 1e-6)) * (y.w > 0.0 ? max(cosine, 0.0) : 1.0);
 }
 
-// Irradiance of a plane that faces the lamp; `light`: unit, towards it; `bandwidth`: of what is seen of it.
+// Irradiance of a plane that faces the light; `light`: unit vector towards it; `bandwidth`: of its visible extent.
 vec3 lamp_light(int lamp, out vec3 light, out float bandwidth)
 {
   vec4 where = lamp_pixel(lamp, 0), color = lamp_pixel(lamp, 1), axis = lamp_pixel(lamp, 2);

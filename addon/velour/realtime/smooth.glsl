@@ -1,4 +1,4 @@
-// Where a pixel's surface is: on the mesh itself.
+// Surface of a pixel: the mesh itself.
 
 Site site_here(vec2 texels)
 {

@@ -1,6 +1,7 @@
-// Of a mesh, or with SHELL of the top of its shell: shell.glsl.
-// layout_: first instance, all its bits turned round where backs are hidden, then what the tables say (tables.py): of a BRDF lobes of a place, places along a side
-// (negative: anisotropic), whether places blend; of a BTF how many sides, whether roots are stored, narrow lobes.
+// Vertices of a mesh or, with SHELL, of the top of its shell (shell.glsl).
+// layout_: first instance, bitwise inverted if backs are hidden, then three values from the tables (tables.py). BRDF:
+// lobes per place, places along a side (negative: anisotropic), whether places blend. BTF: number of sides, whether
+// roots are stored, number of narrow lobes.
 
 void main()
 {
@@ -10,7 +11,7 @@ void main()
   vec4 row[5];
   for (int i = 0; i < 5; ++i) row[i] = texelFetch(instances, ivec2((at + i) % width, (at + i) / width), 0);
   world = vec3(dot(row[0], vec4(position, 1)), dot(row[1], vec4(position, 1)), dot(row[2], vec4(position, 1)));
-  // Cofactors: the inverse transpose but for a factor, whose sign mirrored instances keep.
+  // Cofactors: the inverse transpose times the determinant, whose sign `turn` removes.
   mat3 cofactors = mat3(cross(row[1].xyz, row[2].xyz), cross(row[2].xyz, row[0].xyz), cross(row[0].xyz, row[1].xyz));
   float turn = sign(dot(row[0].xyz, cofactors[0]));
   shading_normal = turn * (normal * cofactors);

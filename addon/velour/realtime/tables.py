@@ -1,4 +1,4 @@
-"""The library's tables of a material as textures, and what its shader is told of them."""
+"""The library's tables of a material as textures, and their parameters for its shader."""
 
 from __future__ import annotations
 
@@ -7,12 +7,12 @@ import numpy as np
 from .shaders import btf_shader, lobes_shader, picture_shader
 from .textures import array_texture, texture, volume_texture
 
-MOST_TERMS = 512  # of a BTF: a pixel looks at all of them
-_WORKING = 17  # pixel of the first row of terms
+MOST_TERMS = 512  # maximum for a BTF, since each pixel evaluates all of them
+_WORKING = 17  # pixel in the first row of terms where the matrix to the working space starts
 
 
 class LobeTables:
-    """Of a BRDF."""
+    """Tables of a BRDF."""
 
     shader = staticmethod(lobes_shader)
     is_shell = False
@@ -32,20 +32,20 @@ class LobeTables:
 
 
 class PrincipledTables(LobeTables):
-    """Of a Principled material, whose colours are those of the working space."""
+    """Tables of a Principled material, whose colors are already in the working space."""
 
     def __init__(self, gpu, job, _to_working):
         super().__init__(gpu, job, np.eye(3, dtype=np.float32))
 
 
 class BlackTables(PrincipledTables):
-    """Of one whose base colour is a picture: what it is where that is black."""
+    """Tables of a material with a base color texture, for the color black."""
 
     shader = staticmethod(picture_shader)
 
 
 class WhiteTables:
-    """And where it is white; between the two colours go in step with the picture's."""
+    """Table for the color white; other colors are linear interpolations between black and white."""
 
     is_shell = False
 
@@ -59,7 +59,7 @@ class WhiteTables:
 
 
 class BtfTables:
-    """Of a BTF of SRBFs: the side above, and the one below where there is one."""
+    """Tables of a BTF of SRBFs: the side above, and the one below if there is one."""
 
     shader = staticmethod(btf_shader)
     is_shell = False
@@ -72,7 +72,7 @@ class BtfTables:
         self._layout = len(report["sides"]), int(report["root"])
 
     def layout(self, narrow):
-        """`narrow`: how many lobes of the world stand behind the lamps."""
+        """`narrow`: number of environment lobes that follow the lights."""
         return *self._layout, narrow
 
     def bind(self, shader):
@@ -81,7 +81,7 @@ class BtfTables:
 
 
 class ShellTables:
-    """Of an outline, beside those of its material."""
+    """Tables of a VOTF, in addition to those of its material."""
 
     is_shell = True
 
@@ -97,7 +97,7 @@ class ShellTables:
 
 
 def _terms(report, to_working):
-    """[rows x width x 4], as btf.frag.glsl reads it."""
+    """[rows x width x 4], as read by btf.frag.glsl."""
     sides, levels = report["sides"], report["levels"]
     most = max(len(side["terms"]) for side in sides)
     pixels = np.zeros((1 + 2 * len(sides), max(4 * most, _WORKING + 3), 4), np.float32)

@@ -1,11 +1,11 @@
-"""The textures that are drawn into."""
+"""Render targets."""
 
 from .errors import asking_for
 from .shaders import average_shader
 
 
 class Targets:
-    """What is drawn, and the mean of what has been drawn, of a size."""
+    """Render targets of one size: the latest image, and the average of all images."""
 
     def __init__(self, gpu, size):
         self.size = size
@@ -18,7 +18,7 @@ class Targets:
             target.free()
 
     def average(self, gpu, share):
-        """What is drawn becomes that share of the mean; 1: all of it."""
+        """Blends the latest image into the average with weight `share`; 1 replaces the average."""
         shader = average_shader()
         before, after = self._means
         with after.bind():

@@ -1,4 +1,4 @@
-"""numpy arrays as textures of floats."""
+"""Float textures from numpy arrays."""
 
 import numpy as np
 
@@ -6,25 +6,25 @@ from .errors import asking_for
 
 
 def texture(gpu, table):
-    """Of [height x width x 4]."""
+    """Texture from [height x width x 4]."""
     height, width = table.shape[:2]
     return _texture(gpu, (width, height), table, format="RGBA32F")
 
 
 def half_texture(gpu, table):
-    """The same in half floats."""
+    """Half float texture from [height x width x 4]."""
     height, width = table.shape[:2]
     return _texture(gpu, (width, height), table, format="RGBA16F")
 
 
 def array_texture(gpu, tables):
-    """Of [layers x height x width x 4]."""
+    """Half float array texture from [layers x height x width x 4]."""
     layers, height, width = tables.shape[:3]
     return _texture(gpu, (width, height), tables, layers=layers, format="RGBA16F")
 
 
 def volume_texture(gpu, tables):
-    """Of [depth x height x width x 4]."""
+    """Half float 3D texture from [depth x height x width x 4]."""
     depth, height, width = tables.shape[:3]
     return _texture(gpu, (width, height, depth), tables, format="RGBA16F")
 

@@ -1,4 +1,4 @@
-"""How wide a tile is that covers one unit of texture coordinates: outlines are as high as that says."""
+"""Width of a tile that covers one unit of texture coordinates, which scales the height of VOTFs."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ import numpy as np
 
 class TileWidths:
     def __init__(self, positions, uvs, triangles, slots):
-        """Corners [n x 3] and [n x 2] of `triangles` [m x 3], which have these slots of materials."""
+        """Corner positions [n x 3] and UVs [n x 2] of `triangles` [m x 3] with these material slots."""
         corner, place = positions[triangles].astype(float), uvs[triangles].astype(float)
         self._across = np.cross(corner[:, 1] - corner[:, 0], corner[:, 2] - corner[:, 0])
         along, beside = place[:, 1] - place[:, 0], place[:, 2] - place[:, 0]
@@ -17,9 +17,9 @@ class TileWidths:
         self._slots = np.zeros(len(triangles), int) if slots is None else slots
 
     def of_instances(self, matrices, slot, last_slot, stretch, aspect):
-        """Metres, of instances [n x 3 x 4], as Scene::tile_width; 0: there is no area.
+        """Tile widths in meters of instances [n x 3 x 4], as in Scene::tile_width; 0 if there is no area.
 
-        `stretch`: of areas of texture coordinates. Triangles of slots beyond the last are of the last.
+        `stretch`: scale of areas in texture coordinates. Slots beyond the last one count as the last.
         """
         chosen = np.minimum(self._slots, last_slot) == slot
         tiles = self._covered[chosen].sum() * stretch * aspect
@@ -30,7 +30,7 @@ class TileWidths:
 
 
 def _width(across, tiles, matrix, known):
-    """`known`: of matrices that differ by a turn."""
+    """`known`: cache of widths, shared by matrices that differ only by a rotation."""
     metric = (matrix.astype(float).T @ matrix).astype(np.float32).tobytes()
     if metric not in known:
         x, y, z = matrix.astype(float)

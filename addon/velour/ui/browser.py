@@ -1,6 +1,6 @@
-"""What the browser of measurements shows: a folder's files, and pictures of those that are looked at.
+"""Contents of the measurement browser: a folder's files, and thumbnails of those shown.
 
-Both are found beside the thread that draws. What was asked for last comes first; pictures wait for renders.
+Neither is made on the drawing thread. The latest request comes first; thumbnails wait for renders.
 """
 
 import collections
@@ -18,22 +18,22 @@ from ..export.caches import cache_folder
 from ..native import VelourError
 from .summaries import redraw_panels
 
-_KEPT = 600  # pictures; 64 kB each
+_KEPT = 600  # thumbnails; 64 kB each
 _ASKED = 100
 _TURN_SECONDS = 0.1
 _found = {}  # (folder, visits): Found; one at most
 _wanted = []  # (folder, visits); one at most
 _searches = {}  # (folder, visits): _Search; one at most
 _pictures = {}  # MeasurementFile: Picture; oldest first
-_asked = collections.OrderedDict()  # MeasurementFile: None; what was asked for last comes first
-_works = []  # of _Work; one at most
+_asked = collections.OrderedDict()  # MeasurementFile: None; latest request first
+_works = []  # _Work; one at most
 _previews = None
 
 
 class Picture(NamedTuple):
-    icon: int  # 0: there is none
+    icon: int  # 0: none
     facts: dict
-    sentence: str | None  # why there is none
+    sentence: str | None  # why there is no icon
 
 
 class _Search:
@@ -43,20 +43,20 @@ class _Search:
 
 
 class _Work:
-    """Makes pictures of what was asked for by now."""
+    """Makes the thumbnails that have been requested so far."""
 
     def __init__(self):
-        self._made = collections.deque()  # the thread puts them in at one end
+        self._made = collections.deque()  # appended to by the job's thread
         self.job = ThumbnailJob(_asked, Path(cache_folder()), lambda *made: self._made.append(made)).start()
 
     def take(self):
-        """MeasurementFile and Thumbnail of each that was made since the last call."""
+        """Yields MeasurementFile and Thumbnail of each thumbnail made since the last call."""
         while self._made:
             yield self._made.popleft()
 
 
 def found(folder, visits):
-    """The files of the folder; None: it is being looked through. For draw()."""
+    """The files of the folder; None while it is searched. Safe in draw()."""
     key = folder, visits
     if key not in _found and key not in _searches:
         _wanted[:] = [key]
@@ -65,12 +65,12 @@ def found(folder, visits):
 
 
 def picture(file):
-    """None: there is none yet. For draw()."""
+    """The Picture of a file; None if there is none yet. Safe in draw()."""
     return _pictures.get(file)
 
 
 def ask(files):
-    """Pictures of them are wanted, of the first one first. For draw()."""
+    """Requests thumbnails of files, in this order. Safe in draw()."""
     for file in reversed([file for file in files if file not in _pictures]):
         _asked[file] = None
         _asked.move_to_end(file, last=False)
@@ -81,7 +81,7 @@ def ask(files):
 
 
 def is_at_rest():
-    """Whether all that was asked for is there."""
+    """Whether all requests are done."""
     return not _wanted and not _searches and not _asked and not _works
 
 
@@ -106,14 +106,14 @@ def _go_on():
 
 
 def _turn():
-    """A timer: runs on the main thread between two redraws, and waits for nothing."""
+    """Timer on the main thread, between redraws; never blocks."""
     _search()
     _make()
     return None if is_at_rest() else _TURN_SECONDS
 
 
 def _search():
-    """Threads begin here and not in draw(), which would let others in on the way (engine/write_lock.py)."""
+    """Starts threads here, not in draw(), where that would let other threads run (engine/write_lock.py)."""
     if _wanted:
         for search in _searches.values():
             search.stopped = True
@@ -168,7 +168,7 @@ def _icon(name, pixels):
     global _previews
     if _previews is None:
         _previews = bpy.utils.previews.new()
-    _previews.pop(name, None)  # of the file as it was
+    _previews.pop(name, None)  # outdated icon of the file
     preview = _previews.new(name)
     preview.image_size = pixels.shape[1], pixels.shape[0]
     preview.image_pixels_float.foreach_set((pixels / np.float32(255)).ravel())

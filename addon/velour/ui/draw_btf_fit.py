@@ -1,4 +1,4 @@
-"""What a fit of a BTF is asked for, in the panels of tiles and of materials."""
+"""Parameters of a BTF fit, in the panels of tiles and of materials."""
 
 from ..operators.compress_btf import VELOUR_OT_compress_btf
 from ..operators.estimate_fit import VELOUR_OT_estimate_fit
@@ -7,7 +7,7 @@ from .text import draw_sentence
 
 
 def draw_btf_fit(context, layout, settings, key, button, **whose):
-    """`key`: of asked_fit.py; `button`: text and icon; `whose`: arguments of the operators."""
+    """`key`: from fitted_as() or refitted_as(); `button`: text and icon; `whose`: operator arguments."""
     column = layout.column(align=True)
     for name in ("method", *SHAPE_OF.get(settings.method, ()), "tolerance", "megabytes"):
         column.prop(settings, name)

@@ -1,4 +1,4 @@
-"""Files that are dropped into a window, where Blender knows of that (4.1 and newer)."""
+"""Drag and drop of files into a window, in Blender 4.1 and newer."""
 
 import bpy
 
@@ -17,7 +17,7 @@ if hasattr(bpy.types, "FileHandler"):
 
         @classmethod
         def poll_drop(cls, context):
-            """Where materials are at home; not an image editor, nor a text."""
+            """Only editors that show materials; not image or text editors."""
             return context.area is not None and context.area.type in {"VIEW_3D", "PROPERTIES"}
 
     CLASSES = (VELOUR_FH_measured,)

@@ -1,4 +1,4 @@
-"""The view layer in the properties editor, in the words of Cycles: what it leaves out, what it overrides."""
+"""View layer filter and overrides in the Properties editor, worded as in Cycles."""
 
 import bpy
 
@@ -34,7 +34,7 @@ class VELOUR_VIEWLAYER_PT_override(LayerPanel, bpy.types.Panel):
         layout, layer = self.layout, context.view_layer
         layout.use_property_split = True
         layout.use_property_decorate = False
-        layout.prop(layer, "material_override", text="Material")  # the whole name is cut in a narrow editor
+        layout.prop(layer, "material_override", text="Material")  # the full name does not fit narrow editors
         if hasattr(layer, "world_override"):  # 4.3 and newer
             layout.prop(layer, "world_override", text="World")
         layout.prop(layer, "samples")

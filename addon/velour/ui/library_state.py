@@ -1,4 +1,4 @@
-"""The library's state in words, found out once at registration: drawing must neither wait nor call out."""
+"""The library's state, determined once at registration, since drawing must not block or call the library."""
 
 from ..native import VelourError, library
 
@@ -7,7 +7,7 @@ _lines = ()
 
 
 def refresh():
-    """Opens the library, or learns why that fails."""
+    """Loads the library, or stores the reason why that fails."""
     global _problem, _lines
     try:
         library.load()
@@ -17,12 +17,12 @@ def refresh():
 
 
 def problem():
-    """One sentence on what is wrong with the library, or "" when it works."""
+    """One sentence on what is wrong with the library, or "" if it works."""
     return _problem
 
 
 def lines():
-    """What the preferences show of a library that works."""
+    """Description of a working library for the preferences."""
     return _lines
 
 

@@ -1,4 +1,4 @@
-"""Lamps in the Properties editor. Blender's own panels are EEVEE's, whose factors Velour does not read."""
+"""Lights in the Properties editor. Blender's own panels are EEVEE's, whose factors Velour does not read."""
 
 import bpy
 
@@ -74,7 +74,7 @@ _DRAW_SHAPE = {"SUN": _draw_sun, "POINT": _draw_point, "SPOT": _draw_spot, "AREA
 
 
 def _draw_shadow(column, light):
-    """In 3.4 Cycles has a switch of its own, which counts too: it is shown where it takes the shadow away."""
+    """Cycles' own shadow switch of 3.4 counts, too; it is shown only if it disables the shadow."""
     if hasattr(light, "use_shadow"):
         column.prop(light, "use_shadow", text="Cast Shadow")
     cycles = getattr(light, "cycles", None)

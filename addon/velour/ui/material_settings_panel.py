@@ -1,11 +1,11 @@
-"""What of a material is set outside of its nodes."""
+"""Settings of a material outside of its nodes."""
 
 import bpy
 
 from ..export.nodes import velour_node
 from .layer_panels import LayerPanel
 
-# Of materials that are not measured; kept with Cycles, while that is enabled.
+# Settings of materials that are not measured; stored with Cycles, and available while it is enabled.
 _OF_CYCLES = {
     "emission_sampling": "Emission Sampling",  # 3.5 and newer
     "sample_as_light": "Multiple Importance",  # before

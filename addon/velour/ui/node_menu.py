@@ -1,13 +1,13 @@
-"""The shaders that Velour renders, in the Add menu of a material's nodes.
+"""Adds the shaders that Velour supports to the Add menu of a material's nodes.
 
-Blender 3.4 offers them to EEVEE and Cycles alone. The menus of 4.0 and newer ask for no engine but EEVEE.
+Blender 3.4 offers them only to EEVEE and Cycles. Menus of 4.0 and newer check for no engine but EEVEE.
 """
 
 import bpy
 
 try:
     import nodeitems_utils
-except ImportError:  # of older menus; the newest Blender that is tested still has it
+except ImportError:  # used by older menus; the newest tested Blender still has it
     nodeitems_utils = None
 
 from ..engine.engine import VelourRenderEngine
@@ -15,7 +15,7 @@ from ..export.shaders.readers import READERS
 
 _RENDERED = {"ShaderNodeOutputMaterial", "ShaderNodeMixShader", "ShaderNodeAddShader", *READERS}
 
-_opened = []  # entries of the menu, and what each asked before
+_opened = []  # menu entries with their original poll functions
 
 
 def open_to_engine():

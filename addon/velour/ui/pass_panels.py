@@ -1,4 +1,4 @@
-"""Passes in the properties editor, in the order and words of Cycles: of the layer, and of mist."""
+"""Passes of a view layer, and mist, in the Properties editor, in Cycles' order and words."""
 
 import bpy
 

@@ -1,6 +1,6 @@
-"""What panels show of a material on the active object, measured between redraws.
+"""Measures a material's placement on the active object for panels, between redraws.
 
-engine/write_lock.py says why."""
+engine/write_lock.py explains why."""
 
 import time
 from typing import NamedTuple
@@ -15,22 +15,22 @@ from ..export.placement_report import PlacementReport, report_on, report_on_brus
 from ..operators.job_target import key_of
 from .summaries import model_summary
 
-_QUIET_SECONDS = 0.3  # while something is dragged nothing is measured
+_QUIET_SECONDS = 0.3  # nothing is measured during changes such as dragging
 
 
 class Measured(NamedTuple):
-    placement: PlacementReport | None = None  # of a material with tiles, or an anisotropic one
-    outline: OutlineReport | None = None  # of one with an outline, on an object with texture coordinates
+    placement: PlacementReport | None = None  # if the material has tiles or is anisotropic
+    outline: OutlineReport | None = None  # if it has a VOTF, and the object has texture coordinates
 
 
-_key = None  # of what was drawn last
-_report = None  # of _key, perhaps of a moment ago
+_key = None  # identifies what was drawn last
+_report = None  # report for _key, possibly outdated
 _is_fresh = False
 _changed = 0.0  # time.monotonic() of the last change
 
 
 def measured(context, material):
-    """Of the active object, which there is; None while there is nothing yet."""
+    """Measured of the active object, which must exist; None while there is none yet."""
     global _key, _report, _is_fresh
     shown = (context.object, material, context.scene)
     key = (*map(key_of, shown), context.scene.frame_current)
@@ -55,13 +55,13 @@ def detach():
 
 @persistent
 def _note_change(_scene, _depsgraph):
-    """Renders may call it from their thread: it only takes notes."""
+    """Only records the change, since renders may call it from their thread."""
     global _is_fresh, _changed
     _is_fresh, _changed = False, time.monotonic()
 
 
 def _measure():
-    """A timer: runs on the main thread between two redraws."""
+    """Timer on the main thread, between redraws."""
     global _report, _is_fresh
     quiet = time.monotonic() - _changed
     if quiet < _QUIET_SECONDS:

@@ -1,4 +1,4 @@
-"""Plots as icons, which is what a panel shows: once a content, size and theme, by jobs between redraws."""
+"""Plots as icons for panels, made by jobs once per content, size and theme."""
 
 from typing import NamedTuple
 
@@ -11,11 +11,11 @@ from ..operators.plot_colors import theme_colors
 from .plot_work import PlotWork, close_source
 from .summaries import identity, redraw_panels
 
-_KEPT = 64  # pictures; of 400 pixels 2.5 MB each
+_KEPT = 64  # images; 2.5 MB each at 400 x 400 pixels
 _TURN_SECONDS = 0.02
 _previews = None
 _pictures = {}  # _Wanted: _Made; oldest first
-_waiting = {}  # _Wanted: names of the images of model and measurement; what was asked for last comes first
+_waiting = {}  # _Wanted: names of the images of model and measurement; latest request first
 _works = {}  # _Wanted: PlotWork; one at most
 
 
@@ -28,17 +28,17 @@ class _Wanted(NamedTuple):
 
 
 class _Made(NamedTuple):
-    name: str | None  # in _previews
+    name: str | None  # key in _previews
     sentence: str | None
 
 
 class PlotPicture(NamedTuple):
-    icon: int  # 0: there is none yet, or ever
-    sentence: str | None  # why there is none, or what is missing in it
+    icon: int  # 0: none yet, or none at all
+    sentence: str | None  # why there is no plot, or what is missing in it
 
 
 def plot_picture(context, model, measurement, kind, side):
-    """The plot `side` pixels wide in the theme's colours, of image datablocks. Cheap: for draw()."""
+    """Plot of image datablocks, `side` pixels wide, in the theme's colors. Cheap and safe in draw()."""
     wanted = _wanted(context, model, measurement, kind, side)
     if wanted not in _pictures and wanted not in _works:
         _forget_other_angles(wanted)
@@ -52,12 +52,12 @@ def plot_picture(context, model, measurement, kind, side):
 
 
 def is_at_rest():
-    """Whether all that was asked for is there."""
+    """Whether all requests are done."""
     return not _waiting and not _works
 
 
 def _forget_other_angles(wanted):
-    """Those that a slider has left behind."""
+    """Drops requests for earlier positions of a slider."""
     for asked in [w for w in _waiting if w._replace(angles=wanted.angles) == wanted]:
         del _waiting[asked]
     for asked, work in _works.items():
@@ -66,7 +66,7 @@ def _forget_other_angles(wanted):
 
 
 def _before(wanted):
-    """The last picture of the kind and model: shown until the new one is made, or a slider would flicker."""
+    """Last image of this kind and model, shown until the new one is done to avoid flicker with sliders."""
     pictures = reversed(_pictures.items())
     return next((p for old, p in pictures if (old.model, old.kind) == (wanted.model, wanted.kind)), None)
 
@@ -101,7 +101,7 @@ def forget():
 
 
 def _turn():
-    """A timer: runs on the main thread between two redraws, and waits for nothing."""
+    """Timer on the main thread, between redraws; never blocks."""
     if not _works:
         wanted, names = _waiting.popitem()
         _works[wanted] = PlotWork(wanted, *names)
@@ -111,7 +111,7 @@ def _turn():
     except (ExportError, VelourError) as error:
         del _works[wanted]
         if work.cancelled:
-            redraw_panels()  # which may want it again by now
+            redraw_panels()  # they may request it again
         else:
             _keep(wanted, _Made(None, str(error)))
     else:

@@ -1,4 +1,4 @@
-"""Blender's own panels that also make sense for Velour."""
+"""Blender's own panels that also apply to Velour."""
 
 import bpy
 
@@ -6,24 +6,24 @@ from ..engine.engine import VelourRenderEngine
 
 _ENGINE = VelourRenderEngine.bl_idname
 
-# Panels that list BLENDER_RENDER but whose settings Velour does not read; with a parent go its children.
+# Panels that list BLENDER_RENDER but whose settings Velour does not read; their children go with them.
 _EXCLUDED = {
     "OBJECT_PT_shading",  # light linking, 4.0 and newer
     "RENDER_PT_gpencil",
-    "RENDER_PT_simplify",  # Velour's own stands below Sampling
+    "RENDER_PT_simplify",  # Velour's own is below Sampling
     "RENDER_PT_simplify_greasepencil",
     "RENDER_PT_simplify_render",
     "RENDER_PT_simplify_viewport",
     "VIEWLAYER_PT_filter",
     "VIEWLAYER_PT_layer_passes",
-    # Velour's own panel of lamps shows more.
+    # Velour's own light panel shows more.
     "DATA_PT_area",
     "DATA_PT_falloff_curve",
     "DATA_PT_light",
     "DATA_PT_spot",
 }
 _EXCLUDED_WORDS = ("freestyle", "stereoscopy")
-# Panels of other engines that suit Velour as they are.
+# Panels of other engines that Velour can use unchanged.
 _BORROWED = {
     "EEVEE_MATERIAL_PT_context_material",
     "EEVEE_WORLD_PT_surface",
@@ -33,7 +33,7 @@ _BORROWED = {
 }
 
 
-_opened = []  # Velour's own panels are none of them, and stay what they are
+_opened = []  # excludes Velour's own panels, which must not change
 
 
 def open_to_engine():
@@ -51,7 +51,7 @@ def close_to_engine():
 def _panels():
     for panel in bpy.types.Panel.__subclasses__():
         engines = getattr(panel, "COMPAT_ENGINES", ())
-        # Those of node editors share their engines with the one that they were made of.
+        # Panels of node editors share the set of engines with the panel that they copy.
         name = panel.__name__.removeprefix("NODE_")
         if name in _BORROWED or ("BLENDER_RENDER" in engines and not _is_excluded(name)):
             yield panel

@@ -1,4 +1,4 @@
-"""What panels show of models and measurements: read once a content, beside the thread that draws
+"""Info on models and measurements for panels, read once per content on other threads than the drawing one
 (engine/write_lock.py)."""
 
 import functools
@@ -16,30 +16,30 @@ from ..operators.job_target import key_of
 _KEPT = 64
 _TURN_SECONDS = 0.02
 _READERS = {"Model": StoredFile.model_info, "Measurement": StoredFile.chosen_raw_info}
-# By _Asked.
-_summaries = {}  # info, or the sentence why there is none; oldest first
-_waiting = {}  # name; what was asked for last comes first
-_jobs = {}  # ReadJob; one of a kind at most
-_changed = set()  # of the sentences those that say that the file is another one
+# Keys of these: _Asked.
+_summaries = {}  # info, or a sentence why there is none; oldest first
+_waiting = {}  # name; latest request first
+_jobs = {}  # ReadJob; at most one of each kind
+_changed = set()  # those whose sentence reports a changed file
 
 
 class _Asked(NamedTuple):
-    kind: str  # of _READERS
+    kind: str  # key in _READERS
     identity: tuple
 
 
 def model_summary(image):
-    """The model's info; the sentence why there is none; None while it is not read yet. For draw()."""
+    """The model's info, or a sentence why there is none; None until it is read. Safe in draw()."""
     return _summary("Model", image)
 
 
 def measurement_summary(image):
-    """The same of a measurement or BTF, all of which is read."""
+    """Like model_summary(), for a measurement or BTF, which is read completely."""
     return _summary("Measurement", image)
 
 
 def is_changed(image):
-    """Whether there is no summary because the file has changed since it was chosen. For draw()."""
+    """Whether there is no summary because the file has changed since it was chosen. Safe in draw()."""
     return any(_Asked(kind, identity(image)) in _changed for kind in _READERS)
 
 
@@ -53,7 +53,7 @@ def _summary(kind, image):
 
 
 def is_at_rest():
-    """Whether all that was asked for is known."""
+    """Whether all requests are done."""
     return not _waiting and not _jobs
 
 
@@ -69,7 +69,7 @@ def forget():
 
 
 def identity(image):
-    """Changes whenever the content may have changed; cheap."""
+    """Cheap key that changes whenever the content may have changed."""
     path = absolute_path(image)
     if image.packed_file is not None:
         return image.name, path, image.velour.sha256, image.packed_file.size
@@ -81,7 +81,7 @@ def identity(image):
 
 
 def _turn():
-    """A timer: runs on the main thread between two redraws, and waits for nothing."""
+    """Timer on the main thread, between redraws; never blocks."""
     _begin_some()
     for known, job in list(_jobs.items()):
         try:
@@ -95,7 +95,7 @@ def _turn():
 
 
 def _begin_some():
-    """One of each kind at a time: a measurement may be large, and keeps no model waiting."""
+    """Starts at most one job of each kind, so that a large measurement does not delay models."""
     for known in reversed(tuple(_waiting)):
         if all(known.kind != other.kind for other in _jobs):
             _begin(known, _waiting.pop(known))

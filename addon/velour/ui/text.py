@@ -6,12 +6,12 @@ import blf
 
 from .units import button_height
 
-_BESIDE = 2.3  # heights of a button that editor, panel and label leave free to the left and right of a text
-_ICON = 1.3  # of an icon before it
+_BESIDE = 2.3  # width of the margins of editor, panel and label, in button heights
+_ICON = 1.3  # width of an icon before the text, in button heights
 
 
 def draw_sentence(context, layout, text, icon="NONE"):
-    """A label a line, as wide as the region has room: Blender cuts long labels instead of wrapping them."""
+    """Wraps text to the region's width, one label per line, since Blender cuts long labels off."""
     preferences = context.preferences
     taken = _BESIDE + (_ICON if icon != "NONE" else 0)
     room = context.region.width - taken * button_height(preferences.system)
@@ -23,7 +23,7 @@ def draw_sentence(context, layout, text, icon="NONE"):
 
 @functools.lru_cache(maxsize=256)
 def _lines(text, room, points):
-    """At most `room` pixels wide; a word is broken where it has no room on a line of its own."""
+    """Lines of at most `room` pixels; a word that is wider than a line is broken."""
     lines, line = [], ""
     for word in text.split():
         longer = f"{line} {word}" if line else word
@@ -38,7 +38,7 @@ def _lines(text, room, points):
 
 
 def _fitting(word, room, points):
-    """How many of its characters; one at least."""
+    """Number of the word's characters that fit, at least one."""
     count = len(word)
     while count > 1 and _width(word[:count], points) > room:
         count -= 1
@@ -46,6 +46,6 @@ def _fitting(word, room, points):
 
 
 def _width(text, points):
-    """Pixels in Blender's own font."""
+    """Width in pixels in Blender's own font."""
     blf.size(0, points)
     return blf.dimensions(0, text)[0]

@@ -2,5 +2,5 @@
 
 
 def button_height(system):
-    """Pixels, as Blender rounds them."""
+    """Height of a button in pixels, rounded as in Blender."""
     return round(18 * system.ui_scale) + 2 * int(system.pixel_size)

@@ -1,4 +1,4 @@
-"""What lights a rendered viewport: Blender has panels for that with EEVEE and with Cycles alone."""
+"""Lighting of a rendered viewport; Blender has panels for it only with EEVEE and Cycles."""
 
 import bpy
 
@@ -26,7 +26,7 @@ class VELOUR_VIEW3D_PT_lighting(bpy.types.Panel):
 
 
 def _draw_studio_light(layout, shading):
-    """World Opacity and Blur are no settings of Velour's: it shows the whole picture, as sharp as it is."""
+    """Omits World Opacity and Blur: Velour shows the image fully opaque and sharp."""
     split = layout.split(factor=0.9)
     picture = split.column().row()
     picture.scale_y = 0.6

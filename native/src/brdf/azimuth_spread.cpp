@@ -12,9 +12,9 @@ namespace {
 
 constexpr float kCell = radians_from(3.0f);
 constexpr float kAlike = radians_from(15.0f), kTurned = radians_from(30.0f);
-constexpr float kUpright = radians_from(5.0f);  // of a half vector whose azimuth says something
+constexpr float kUpright = radians_from(5.0f);  // minimum polar angle of a half vector with a meaningful azimuth
 constexpr size_t kFewest = 100;
-constexpr size_t kMostInCell = 64;  // pairs grow with the square
+constexpr size_t kMostInCell = 64;  // the number of pairs grows with the square
 
 struct Entry {
   uint64_t cell;
@@ -27,7 +27,7 @@ uint64_t cell_of(const HalfDiff& angles) {
   return (part(angles.theta_h) * 64 + part(angles.theta_d)) * 64 + part(angles.phi_d);
 }
 
-/// Smallest angle between two lines through the normal.
+/// Smallest angle between two azimuths modulo half a turn.
 float between(float a, float b) {
   const float apart = std::fmod(std::abs(a - b), kPi);
   return std::min(apart, kPi - apart);

@@ -1,4 +1,4 @@
-// Whether scattered samples are of a surface that looks the same from every azimuth.
+// Tests whether irregular samples are of an isotropic surface.
 #pragma once
 
 #include <optional>
@@ -8,15 +8,15 @@
 
 namespace velour {
 
-/// Medians of |log f1 / f2| of the luminances of two samples whose half and difference angles [R98] agree within three
-/// degrees: of an isotropic surface both are alike, of a brushed one `turned` is larger.
+/// Medians of |log(f1 / f2)| over the luminances of pairs of samples whose half and difference angles [R98] agree
+/// within three degrees. For an isotropic surface both are similar; for a brushed one `turned` is larger.
 struct AzimuthSpread {
-  double alike;   // half vectors within 15 degrees of azimuth of each other, modulo half a turn
+  double alike;   // azimuths of the half vectors within 15 degrees of each other, modulo half a turn
   double turned;  // 30 degrees or more apart
   size_t turned_pairs;
 };
 
-/// Nothing where the samples have fewer than 100 such pairs of either sort: they do not tell.
+/// Nothing if there are fewer than 100 such pairs of either kind, too few to tell.
 std::optional<AzimuthSpread> azimuth_spread(std::span<const ScatteredSample> samples);
 
 }  // namespace velour

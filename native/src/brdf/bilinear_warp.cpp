@@ -6,7 +6,7 @@
 namespace velour {
 namespace {
 
-/// Integral over [0, t] of a function that runs linearly from a to b over [0, 1].
+/// Integral over [0, t] of a function that is linear from a to b over [0, 1].
 float ramp_integral(float a, float b, float t) { return t * (a + 0.5f * t * (b - a)); }
 
 /// t with ramp_integral(a, b, t) = `area`: the form of the quadratic's root that is stable for a = b.

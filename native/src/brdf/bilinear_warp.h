@@ -36,15 +36,15 @@ inline AxisCell axis_cell(float position, uint32_t count) {
 
 class BilinearWarp {
  public:
-  /// `values` holds slices x height x width node values, not negative; each slice is scaled to unit integral. Width and
+  /// `values` holds slices x height x width non-negative node values; each slice is scaled to unit integral. Width and
   /// height are at least 2.
   BilinearWarp(std::span<const float> values, uint32_t width, uint32_t height);
 
   /// u with warp(u) = `position` in the mixture of slices: u.y from the marginal of y, u.x from the density of x given
-  /// y. False where the density vanishes along the whole row, so that u.x is not defined.
+  /// y. False if the density vanishes along the whole row, so that u.x is undefined.
   bool invert(const SliceMix& mix, const Vec2& position, Vec2& u) const;
 
-  /// The warp itself.
+  /// Maps uniform u to a position with the density of the mixture.
   Vec2 warp(const SliceMix& mix, const Vec2& u) const;
 
  private:

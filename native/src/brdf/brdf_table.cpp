@@ -21,7 +21,7 @@ const std::string& attribute(const TensorFile& file, const std::string& key, con
   return found->second;
 }
 
-/// Independent of the locale, shortest form that reads back the same.
+/// The shortest text that reads back the same, independent of the locale.
 std::string number_text(double value) {
   char text[32];
   return {text, std::to_chars(text, text + sizeof text, value).ptr};

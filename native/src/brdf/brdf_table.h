@@ -1,5 +1,5 @@
-// Velour's own table of an anisotropic BRDF ("velour-table"): what a virtual goniometer writes where MERL's layout
-// would lose the azimuth. An OpenEXR file of named tensors; docs/formats.md.
+// Velour's own table of an anisotropic BRDF ("velour-table"), written by a virtual goniometer where MERL's layout would
+// lose the azimuth. An OpenEXR file of named tensors; docs/formats.md.
 #pragma once
 
 #include <cmath>
@@ -35,15 +35,15 @@ struct BrdfTableLayout {
   DirectionPair pair(int i, int j, int k, int l) const;
 };
 
-/// All that the writer needs: `f[layout.index(i, j, k, l)]` in 1/sr, linear Rec. 709, without cosine; NaN in any
-/// channel where nothing was measured. Nodes below the horizon are ignored.
+/// Input of the writer: `f[layout.index(i, j, k, l)]` in 1/sr, linear Rec. 709, without cosine; NaN in any channel
+/// where nothing was measured. Nodes below the horizon are ignored.
 struct BrdfTable {
   BrdfTableLayout layout;
   std::vector<Rgb> f;
   std::string description;  // free text for `info`: how it was made
 };
 
-/// Atomic. Throws Error(invalid_argument) where sizes disagree.
+/// Writes atomically. Throws Error(invalid_argument) if sizes disagree.
 void write_brdf_table(const std::string& path, const BrdfTable& table);
 
 /// `provenance` has path, name, sha256 and size already. Reads an OpenEXR file whose "velour.kind" is "brdf_table".

@@ -10,7 +10,7 @@
 namespace velour {
 namespace {
 
-constexpr uint32_t kMostPatches = 4096;  // of a basis; Klems's have 145
+constexpr uint32_t kMostPatches = 4096;  // per basis; Klems Full has 145
 constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
 
 std::string text_of(const pugi::xml_node& node) {
@@ -111,7 +111,7 @@ void BsdfXml::read_bases() {
       }
       rings.push_back({expected, most, count});
     }
-    if (rings.empty()) continue;  // one that everybody knows
+    if (rings.empty()) continue;  // a standard basis
     if (rings.back().most_theta < 89.999) {
       fail("AngleBasis '" + text_of(basis.child("AngleBasisName")) + "' ends at " +
            std::to_string(rings.back().most_theta) + " degrees; its rings have to go on to 90.");

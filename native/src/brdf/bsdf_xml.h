@@ -12,18 +12,18 @@
 
 namespace velour {
 
-/// Every fault throws Error(bad_data, unsupported) with the path and the field.
+/// Every fault throws Error(bad_data, unsupported) and names the path and the field.
 class BsdfXml {
  public:
   enum class Structure { columns, rows, tree3, tree4 };
 
   BsdfXml(std::span<const uint8_t> bytes, const std::string& path);
 
-  /// How the incident directions of ScatteringData are kept.
+  /// Storage of the incident directions of ScatteringData.
   Structure structure() const { return structure_; }
   std::string name() const;
 
-  /// The block of a wavelength ("Visible") and a side ("Reflection Front"); none: empty.
+  /// The block of a wavelength ("Visible") and a side ("Reflection Front"); empty if there is none.
   pugi::xml_node block(std::string_view wavelength, std::string_view side) const;
 
   /// The basis that `field` (ColumnAngleBasis, RowAngleBasis) of a matrix's block names.

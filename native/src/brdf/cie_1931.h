@@ -3,7 +3,7 @@
 
 namespace velour {
 
-/// x, y, z colour matching functions every 5 nm from 360 to 830 nm.
+/// x, y, z color matching functions every 5 nm from 360 to 830 nm.
 inline constexpr int kCieFirst = 360, kCieStep = 5, kCieCount = 95;
 inline constexpr double kCie1931[kCieCount][3] = {{0.0001299, 3.917e-06, 0.0006061},
                                                   {0.0002321, 6.965e-06, 0.001086},

@@ -20,7 +20,7 @@ constexpr BrdfTableLayout kCornellLayout{.theta_h = 90, .phi_h = 1, .theta_d = 6
 constexpr double kMaxWavelengths = 10000;
 constexpr std::string_view kUtf8Mark = "\xef\xbb\xbf";
 
-/// The numbers of a text, one after the other; comments are skipped.
+/// Reads the numbers of a text one by one; skips comments.
 class NumberReader {
  public:
   explicit NumberReader(std::span<const uint8_t> text)
@@ -40,7 +40,7 @@ class NumberReader {
     return Result::number;
   }
 
-  /// The word at the cursor, shortened for a sentence.
+  /// The word at the cursor, shortened for a message.
   std::string word() const {
     const char* stop = std::find_if(at_, std::min(end_, at_ + std::min<std::ptrdiff_t>(end_ - at_, 20)), is_space);
     return {at_, stop};
@@ -80,7 +80,7 @@ bool is_count(double value) { return value >= 1 && value <= kMaxWavelengths && v
 
 struct CornellText {
   std::span<const double> wavelengths;  // nm
-  std::span<const double> rows;         // theta_i, phi_i, theta_s, phi_s, then one value a wavelength
+  std::span<const double> rows;         // theta_i, phi_i, theta_s, phi_s, then one value per wavelength
   size_t row_size = 0;
 };
 
@@ -101,7 +101,7 @@ CornellText split(std::span<const double> numbers, const std::string& path) {
   return text;
 }
 
-/// False where the angles are no numbers. Throws where they cannot be radians.
+/// False if an angle is not finite. Throws if a polar angle is outside [0, pi].
 bool read_directions(std::span<const double> row, size_t index, const std::string& path, ScatteredSample& sample) {
   for (const size_t i : {0u, 2u}) {
     if (row[i] < 0.0 || row[i] > kPiD)
@@ -136,7 +136,7 @@ std::vector<ScatteredSample> read_samples(const CornellText& text, const std::st
   return samples;
 }
 
-/// The interpolation of `samples` as a table. Throws Error(bad_data) for too few of them.
+/// The interpolation of `samples` as a table. Throws Error(bad_data) if there are too few.
 HalfDiffTable tabulated(std::span<const ScatteredSample> samples, const std::string& path, const Progress& progress) {
   if (samples.size() < ScatteredInterpolant::kNeighbours)
     fail(path, "has " + std::to_string(samples.size()) + " valid samples; at least " +
@@ -144,7 +144,7 @@ HalfDiffTable tabulated(std::span<const ScatteredSample> samples, const std::str
   return {kCornellLayout, resample_scattered(ScatteredInterpolant(samples), kCornellLayout, progress)};
 }
 
-/// A table for eval, the samples themselves for the error of a fit.
+/// A table for eval; the samples themselves for the error of a fit.
 class ScatteredMeasurement : public TableMeasurement {
  public:
   ScatteredMeasurement(std::vector<ScatteredSample> samples, Provenance provenance, const EntryCounts& counts,
@@ -170,7 +170,7 @@ class ScatteredMeasurement : public TableMeasurement {
     return std::make_shared<ScatteredMeasurement>(std::move(kept), provenance(), counts(), details(), progress);
   }
 
-  /// Beyond the lowest direction of any sample the interpolation only continues, so a view there is not covered.
+  /// Below the lowest direction of any sample the interpolation only extrapolates, so a view there is not covered.
   bool covers_view(float theta_v) const override {
     constexpr float kTolerance = 1e-3f;  // of the cosine
     return std::cos(theta_v) >= lowest_ - kTolerance && TableMeasurement::covers_view(theta_v);
@@ -194,7 +194,7 @@ TableMeasurement::Details describe(const CornellText& text) {
                             " x " + std::to_string(kCornellLayout.phi_d) + " nodes"}};
 }
 
-/// The file's own words: the lines of comment before the first number.
+/// The comment lines before the first number, as the file's description.
 std::string opening_comment(std::span<const uint8_t> bytes) {
   constexpr size_t kLimit = 1000;
   std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());

@@ -8,7 +8,7 @@
 
 namespace velour {
 
-/// True for text whose first numbers are a count and as many wavelengths as fit into `head`. '#' begins a comment.
+/// True for text whose first numbers are a count and a plausible wavelength (nm). '#' begins a comment.
 bool looks_like_cornell(std::span<const uint8_t> head);
 
 /// `provenance` has path, name, sha256 and size already.

@@ -1,4 +1,4 @@
-// What becomes of an entry of a measurement.
+// Validity of the entries of a measurement.
 #pragma once
 
 #include <algorithm>
@@ -8,14 +8,14 @@
 
 namespace velour {
 
-/// When a finite entry counts as negative: MERL marks its invalid entries by a negative value in any channel; elsewhere
-/// a channel may be negative because the colour is outside Rec. 709, and only a negative luminance is no measurement.
+/// When a finite entry counts as negative: MERL marks invalid entries by a negative value in any channel. Elsewhere a
+/// channel may be negative because the color is outside Rec. 709, and only a negative luminance is invalid.
 enum class NegativeRule { any_channel, luminance };
 
 /// Values beyond this count as not finite: sums over them would overflow.
 inline constexpr float kLargestEntry = 1e30f;
 
-/// Counts an entry above the horizon and says whether it is valid.
+/// Counts an entry above the horizon and returns whether it is valid.
 inline bool count_entry(const Rgb& f, NegativeRule rule, EntryCounts& counts) {
   ++counts.total;
   const bool finite = std::abs(f.r) < kLargestEntry && std::abs(f.g) < kLargestEntry && std::abs(f.b) < kLargestEntry;

@@ -27,7 +27,7 @@ inline HalfDiff half_diff(const Vec3& wl, const Vec3& wv) {
           phi_d < 0.0f ? phi_d + kPi : phi_d};
 }
 
-/// The pair of given angles (radians); either direction may lie below the horizon.
+/// The pair of directions with given angles (radians); either direction may lie below the horizon.
 DirectionPair pair_of_half_diff(double theta_h, double phi_h, double theta_d, double phi_d);
 
 }  // namespace velour

@@ -1,4 +1,4 @@
-// A dense table over half and difference angles: MERL's, Velour's own, and what scattered samples are resampled into.
+// A dense table over half and difference angles: MERL's, Velour's own, and resampled irregular samples.
 #pragma once
 
 #include <vector>
@@ -10,25 +10,25 @@
 namespace velour {
 
 /// r, g, b and 1 for a valid node; four zeros for an invalid one, so that one weighted sum gives both the value and the
-/// weight it rests on.
+/// weight of the valid nodes.
 struct alignas(16) TableNode {
   float value[4] = {0, 0, 0, 0};
 };
 
 class HalfDiffTable {
  public:
-  /// `nodes` by layout.index(). A MERL table is the layout {90, 1, 90, 180}.
+  /// `nodes` are indexed by layout.index(). A MERL table is the layout {90, 1, 90, 180}.
   HalfDiffTable(const BrdfTableLayout& layout, std::vector<TableNode> nodes);
 
-  /// Multilinear in the tables' own coordinates over the valid corners, their weights scaled to sum to one; periodic in
-  /// the azimuths, clamped past the last node. False, and f = 0, where no corner is valid. Both directions must be
-  /// above the horizon.
+  /// Multilinear in the table's own coordinates over the valid corners, whose weights are scaled to sum to one;
+  /// periodic in the azimuths, clamped past the last node. False, and f = 0, if no corner is valid. Both directions
+  /// must be above the horizon.
   bool lookup(const Vec3& wl, const Vec3& wv, Rgb& f) const;
 
   const BrdfTableLayout& layout() const { return layout_; }
 
  private:
-  /// Two neighbouring nodes on an axis and the weight of the second.
+  /// Two neighboring nodes on an axis and the weight of the second.
   struct Step {
     size_t low, high;
     float weight;

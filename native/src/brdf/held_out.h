@@ -1,4 +1,4 @@
-// Which data a fit may not read, so that its error can be measured on data it has never seen. One rule, one place.
+// The data that fits may not read, so that errors are measured on unseen data. The only definition of that rule.
 #pragma once
 
 #include <array>
@@ -8,11 +8,11 @@
 
 namespace velour {
 
-/// Views at which errors are reported, degrees from the normal. A fit of a table reads no view within kHeldOutMargin.
+/// Views at which errors are reported, degrees from the normal. Fits of tables read no view within kHeldOutMargin.
 inline constexpr std::array<int, 5> kHeldOutViews{5, 30, 60, 75, 85};
 inline constexpr double kHeldOutMargin = 1.0;  // degrees
 
-/// Scattered samples count for the nearest of those views when it is no further than this.
+/// Irregular samples count for the nearest of these views if no further than this.
 inline constexpr double kHeldOutGroup = 7.5;  // degrees
 
 namespace detail {

@@ -9,7 +9,7 @@ namespace {
 
 using Ring = KlemsBasis::Ring;
 
-/// The two patches of a ring of `patches` about an azimuth, with weights that add up to `weight`.
+/// The two patches of a ring of `patches` around an azimuth, with weights that add up to `weight`.
 void along_ring(uint32_t first, uint32_t patches, float azimuth, float weight, KlemsBasis::Weighed* out) {
   const float place = azimuth / (2 * kPi) * static_cast<float>(patches);
   const float below = std::floor(place), share = place - below;
@@ -22,7 +22,7 @@ void along_ring(uint32_t first, uint32_t patches, float azimuth, float weight, K
 
 KlemsBasis::KlemsBasis(const std::vector<Ring>& rings) {
   for (const Ring& ring : rings) {
-    const bool is_cap = ring.least_theta == 0 && ring.patches == 1;  // its centre is the normal
+    const bool is_cap = ring.least_theta == 0 && ring.patches == 1;  // its center is the normal
     const double center = is_cap ? 0.0 : (ring.least_theta + ring.most_theta) / 2;
     rings_.push_back({static_cast<float>(radians_from(center)), patches_, ring.patches});
     patches_ += ring.patches;

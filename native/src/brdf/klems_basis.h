@@ -1,4 +1,4 @@
-// Patches of directions over a hemisphere in rings, as Klems's ([Kle94]) and others of BSDF XML files.
+// A hemisphere of directions divided into rings of patches: the bases of Klems ([Kle94]) and others in BSDF XML files.
 #pragma once
 
 #include <array>
@@ -12,7 +12,7 @@ namespace velour {
 
 class KlemsBasis {
  public:
-  /// Patches of a ring have the same sides; the first lies about azimuth 0.
+  /// Patches of a ring have the same size; the first is centered at azimuth 0.
   struct Ring {
     double least_theta, most_theta;  // degrees from the normal
     uint32_t patches;
@@ -25,13 +25,13 @@ class KlemsBasis {
   /// Rings from the normal to the horizon, without gaps; at least one patch each.
   explicit KlemsBasis(const std::vector<Ring>& rings);
 
-  /// Full, Half and Quarter, by their names in files ("LBNL/Klems Full"); nullptr: none of them.
+  /// Klems Full, Half or Quarter by its name in files ("LBNL/Klems Full"); nullptr for other names.
   static const KlemsBasis* standard(const std::string& name);
 
   uint32_t patches() const { return patches_; }
 
-  /// The centres of up to four patches about a unit direction of the upper hemisphere, with weights that add up to 1:
-  /// linear in the angle from the normal between rings, and in azimuth along each.
+  /// Up to four patches whose centers surround a unit direction of the upper hemisphere, with weights that add up to 1:
+  /// linear in the angle from the normal between rings, and in azimuth along each ring.
   std::array<Weighed, 4> around(const Vec3& w) const;
 
  private:

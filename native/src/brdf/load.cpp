@@ -23,14 +23,14 @@ struct Format {
   Reader read;
 };
 
-/// Asked in order; each recognizes its own first bytes.
+/// Tried in order; each recognizes its own first bytes.
 constexpr Format kFormats[] = {{looks_like_merl, read_merl},
                                {looks_like_rgl, read_rgl},
                                {looks_like_exr, read_brdf_table},
                                {looks_like_window_bsdf, read_window_bsdf}};
 constexpr size_t kHeadBytes = 4096;
 
-/// The first bytes of a text behind a UTF-8 mark and comments, which may be as long as a laboratory's protocol.
+/// The first bytes of a text after a UTF-8 mark and comments, which may be as long as a lab report.
 std::vector<uint8_t> head_after_comments(const std::string& path) {
   constexpr uint64_t kBlock = 1 << 16;
   const RandomAccessFile file(path);
@@ -60,10 +60,10 @@ Reader reader_of(const std::string& path) {
   return looks_like_cornell(head_after_comments(path)) ? read_cornell : nullptr;
 }
 
-/// What people who have measured materials may bring, and what they can do with it.
+/// Unsupported formats that users may try, with advice for each.
 struct OtherFormat {
-  std::string_view begin;   // of the file
-  std::string_view inside;  // its first bytes hold this, too
+  std::string_view begin;   // first bytes of the file
+  std::string_view inside;  // also contained in the file's first kHeadBytes
   const char* sentence;
 };
 

@@ -1,4 +1,4 @@
-// What was measured, as it was measured.
+// BRDF measurements and where they came from.
 #pragma once
 
 #include <cstdint>
@@ -22,18 +22,18 @@ struct Provenance {
   uint64_t file_bytes = 0;
 };
 
-/// Entries by what became of them; `total = valid + invalid() + below_horizon`.
+/// Numbers of entries by validity; `total = valid + invalid() + below_horizon`.
 struct EntryCounts {
   uint64_t total = 0;
   uint64_t valid = 0;
   uint64_t negative = 0;       // MERL: any channel negative; elsewhere: negative luminance
   uint64_t not_finite = 0;     // NaN or infinite
-  uint64_t below_horizon = 0;  // directions that no measurement can have
+  uint64_t below_horizon = 0;  // directions that cannot be measured
   uint64_t out_of_gamut = 0;   // of the valid ones: a negative channel with positive luminance; kept as it is
   uint64_t invalid() const { return negative + not_finite; }
 };
 
-/// One irregular sample: the form in which scattered measurements are fitted (no interpolation between).
+/// One irregular sample. Such samples are fitted directly, without interpolation.
 struct ScatteredSample {
   Vec3 wl, wv;
   Rgb f;
@@ -43,7 +43,7 @@ struct ScatteredSample {
 ///
 /// `eval` is the measurement's own documented interpolation (docs/formats.md). A direction pair with no valid entry in
 /// reach is not covered: its `valid` is 0 and its f is 0. Nothing is extrapolated. f is in 1/sr, linear Rec. 709,
-/// without cosine; a channel may be negative (a colour outside Rec. 709).
+/// without cosine; a channel may be negative (a color outside Rec. 709).
 class Measurement {
  public:
   virtual ~Measurement() = default;
@@ -55,15 +55,14 @@ class Measurement {
   /// True when f depends on the azimuth difference alone.
   virtual bool isotropic() const = 0;
 
-  /// Whether the view at `theta_v` (radians; any azimuth) is inside what was measured: false means that errors there
-  /// are reported as null.
+  /// Whether the view at `theta_v` (radians; any azimuth) was measured. If not, errors there are reported as null.
   virtual bool covers_view(float theta_v) const = 0;
 
-  /// The irregular samples themselves for scattered measurements; empty for tables.
+  /// The irregular samples; empty for tables.
   virtual std::span<const ScatteredSample> samples() const { return {}; }
 
-  /// Scattered measurements: the same measurement without the samples i for which held_out_sample(i) (brdf/held_out.h),
-  /// so that its interpolation has never seen them. Tables return nullptr: a fit leaves out their views and lights.
+  /// For irregular samples: the same measurement without the samples i with held_out_sample(i) (brdf/held_out.h), so
+  /// that its interpolation does not depend on them. Tables return nullptr: a fit leaves out their views and lights.
   virtual std::shared_ptr<const Measurement> without_held_out(const Progress& /*progress*/) const { return nullptr; }
 
   /// Sizes, units, scales and whatever else the format knows, as (key, value) pairs for `info`.
@@ -77,8 +76,8 @@ class Measurement {
   EntryCounts counts_;
 };
 
-/// Reads any supported file; the format is recognised from the content. Throws Error(io, bad_data, unsupported) with
-/// one sentence that names file, field and value. Never allocates more than the file's size justifies.
+/// Reads any supported file; the format is recognized from the content. Throws Error(io, bad_data, unsupported) with a
+/// message that names file, field and value. Never allocates more than the file's size justifies.
 std::shared_ptr<const Measurement> load_measurement(const std::string& path);
 
 /// True when the first bytes of `path` look like one of the measurement formats.

@@ -17,7 +17,7 @@ namespace {
 constexpr BrdfTableLayout kMerlLayout{
     .theta_h = MerlGrid::theta_h, .phi_h = 1, .theta_d = MerlGrid::theta_d, .phi_d = MerlGrid::phi_d};
 constexpr size_t kHeaderBytes = 3 * sizeof(int32_t);
-constexpr int32_t kMostNodes = 4096;  // along an axis; what is beyond is no header of a table
+constexpr int32_t kMostNodes = 4096;  // per axis; larger numbers cannot be a table's header
 /// Stored value x scale = f in 1/sr; the camera's exposures, fixed by the format.
 constexpr double kScale[3] = {1.0 / 1500.0, 1.15 / 1500.0, 1.66 / 1500.0};
 
@@ -43,12 +43,12 @@ bool are_plausible(const Dimensions& dimensions) {
   return std::ranges::all_of(dimensions, [](int32_t count) { return count >= 2 && count <= kMostNodes; });
 }
 
-/// How a file stores its table. Programs write tables of other sizes than the database's, float32, and the byte order
-/// of their machine; header and length together say which.
+/// Storage of a file's table. Some programs write tables of other sizes than the database's, as float32, or in the byte
+/// order of their machine; the header and the file's length tell which.
 struct MerlStorage {
   BrdfTableLayout layout;
   bool is_big_endian;
-  size_t number_bytes;  // of a float64 or float32
+  size_t number_bytes;  // size of a float64 or float32
 };
 
 MerlStorage storage_of(ByteReader& in) {
@@ -82,7 +82,7 @@ MerlStorage storage_of(ByteReader& in) {
                                     " (float32); download it or write it again.");
 }
 
-/// The planes of doubles are at an odd multiple of four bytes: read by copying.
+/// Reads the planes by copying: their doubles lie at odd multiples of four bytes.
 class StoredPlanes {
  public:
   StoredPlanes(const MerlStorage& storage, const uint8_t* data) : storage_(storage), data_(data) {}

@@ -29,11 +29,11 @@ struct MerlGrid {
 /// direction below the horizon, is stored as -1, the format's mark of an invalid entry. Atomic.
 void write_merl(const std::string& path, std::span<const double> planes);
 
-/// True for bytes that begin with three numbers of nodes, as a MERL file does.
+/// True for bytes that begin with three plausible node counts, as a MERL file does.
 bool looks_like_merl(std::span<const uint8_t> head);
 
-/// Any numbers of nodes (node (i, j, k) of n x m x l: theta_h = 90 (i/n)^2, theta_d = 90 j/m, phi_d = 180 k/l degrees),
-/// float64 or float32, either byte order; the file's length has to fit its header. Throws Error(bad_data).
+/// Accepts any node counts (node (i, j, k) of n x m x l: theta_h = 90 (i/n)^2, theta_d = 90 j/m, phi_d = 180 k/l
+/// degrees), float64 or float32, either byte order; the file's length must match its header. Throws Error(bad_data).
 /// `provenance` has path, name, sha256 and size already.
 std::shared_ptr<const Measurement> read_merl(std::span<const uint8_t> bytes, Provenance provenance);
 

@@ -1,4 +1,4 @@
-// Numbers in a text, apart by commas or white space.
+// Reads numbers separated by commas or white space from a text.
 #pragma once
 
 #include <charconv>
@@ -13,8 +13,8 @@ inline void skip_separators(std::string_view& rest) {
   rest.remove_prefix(next == std::string_view::npos ? rest.size() : next);
 }
 
-/// Takes the next number off `rest`. What is too small for a float becomes 0, what is too large infinite. Nothing: what
-/// follows is no number.
+/// Removes the next number from `rest`. A number too small for a float becomes 0, one too large infinity. Nothing if no
+/// number follows.
 inline std::optional<float> next_number(std::string_view& rest) {
   skip_separators(rest);
   double value = 0;

@@ -16,7 +16,7 @@ LobeParameters parameters_at(const ParametricBrdf& brdf, const ViewTaps& taps, i
   return p;
 }
 
-/// Turns `lobe` from the view's frame, in which it was stored, to the surface's by the view's azimuth.
+/// Rotates `lobe` from the view's frame, in which it is stored, to the surface's by the view's azimuth.
 void turn(WarpedLobe& lobe, double c, double s) {
   const Vec3d at = lobe.center;
   lobe.center = {c * at.x - s * at.y, s * at.x + c * at.y, at.z};

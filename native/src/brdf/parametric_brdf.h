@@ -1,4 +1,4 @@
-// The parametric model of a BRDF: few lobes, followed over all view directions.
+// The parametric BRDF model: a few lobes whose parameters vary with the view direction.
 #pragma once
 
 #include <array>
@@ -11,14 +11,14 @@
 namespace velour {
 
 /// f(wl, wv) = sum_j beta_j(wv) exp(lambda_j(wv) (psi_j . xi_j(wv) - 1)) above the horizon, without cosine: each lobe
-/// in its own space (srbf/warped_lobe.h), its parameters quadratic B-splines of the view (sphere/view_spline.h).
-/// Bandwidth and coefficients are splines of their logarithms, so that they are positive everywhere.
+/// in its own space (srbf/warped_lobe.h), its parameters quadratic B-splines of the view (sphere/view_spline.h). The
+/// splines of bandwidth and coefficients are of their logarithms, so that both are positive everywhere.
 /// Isotropic: the frame turns with the view (x along its azimuth), lobes lie in the plane of incidence, f is symmetric
 /// about it, and the stretch fades at the normal, so that f is continuous there. Otherwise the frame is that of the
 /// surface. Plain data; immutable once inside a Model.
 struct ParametricBrdf {
   static constexpr int kMaxLobes = 32;
-  /// Where a parameter of a lobe stands in its column.
+  /// Indices of the parameters of a lobe.
   enum Isotropic { kLogBandwidth, kLogRed, kLogGreen, kLogBlue, kTiltX, kStretchA, kIsotropicCount };
   enum Anisotropic { kTiltY = kIsotropicCount, kStretchB, kAnisotropicCount };
   static constexpr int parameters_of(bool is_isotropic) {
@@ -26,10 +26,10 @@ struct ParametricBrdf {
   }
 
   bool isotropic = true;
-  int cells = 0;  // of the spline
-  /// The views that it is fitted to; beyond them it has the parameters of the nearest of these.
+  int cells = 0;  // number of spline cells
+  /// The fitted views; views beyond them have the parameters of the nearest fitted view.
   ViewRange views;
-  /// f is the mean of this sum and of the one with light and view exchanged: reciprocal, whatever the lobes.
+  /// f is averaged over both orders of light and view, which makes it reciprocal for any lobes.
   bool symmetric = false;
   std::vector<LobeSpace> space;
   /// [node][parameter][lobe]: radians for tilts, logarithms elsewhere.
@@ -43,27 +43,27 @@ struct ParametricBrdf {
                space.size() +
            static_cast<size_t>(lobe);
   }
-  /// Bytes of the coefficients alone: half floats, and a byte a lobe for its space.
+  /// Bytes of the coefficients alone: half floats, and a byte per lobe for its space.
   static constexpr uint64_t parameter_bytes(uint64_t values, uint64_t lobes) { return 2 * values + lobes; }
   uint64_t parameter_bytes() const { return parameter_bytes(control.size(), space.size()); }
 };
 
-/// The parameters of one lobe, by ParametricBrdf::Isotropic and Anisotropic.
+/// The parameters of one lobe, indexed by ParametricBrdf::Isotropic and Anisotropic.
 using LobeParameters = std::array<double, ParametricBrdf::kAnisotropicCount>;
-/// The lobe in the splines' frame; its stretch is `fade` times what they say.
+/// The lobe in the splines' frame, with the exponents of its stretch scaled by `fade`.
 WarpedLobe lobe_of(const LobeParameters& parameters, LobeSpace space, double fade);
-/// The inverse without fade, of bandwidth, tilt and stretch; the coefficients in `parameters` stay.
+/// Inverse of lobe_of() without fade, for bandwidth, tilt and stretch; keeps the coefficients in `parameters`.
 void store_shape(const WarpedLobe& lobe, LobeParameters& parameters);
 
-/// f, 1/sr, of `brdf` at a pair, both unit and above the horizon.
+/// f of `brdf` in 1/sr at a pair of unit directions above the horizon.
 Vec3d value_of(const ParametricBrdf& brdf, const Vec3d& wl, const Vec3d& wv);
-/// The sum of `lobes`, which are those at `wv`.
+/// The sum of `lobes`, which must be those at `wv`.
 Vec3d value_of(const std::vector<WarpedLobe>& lobes, const Vec3d& wl, const Vec3d& wv);
 
-/// The lobes at `wv` (unit, above the horizon), in the surface's frame: the scalar reference. Isotropic models turn
-/// them by the view's azimuth.
+/// The lobes at `wv` (unit, above the horizon) in the surface's frame: the scalar reference. Lobes of isotropic models
+/// are rotated by the view's azimuth.
 std::vector<WarpedLobe> lobes_at(const ParametricBrdf& brdf, const Vec3d& wv);
-/// One of them.
+/// One lobe of lobes_at().
 WarpedLobe lobe_at(const ParametricBrdf& brdf, const Vec3d& wv, int lobe);
 
 }  // namespace velour

@@ -1,4 +1,4 @@
-// What a control value of the parametric model may be. A spline's value lies between its control values, so a model
+// Ranges of the control values of the parametric model. A spline's value lies between its control values, so a model
 // within these ranges stays within them at every view. Fits stay well inside; a file outside is refused.
 #pragma once
 

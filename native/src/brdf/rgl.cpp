@@ -38,7 +38,7 @@ std::vector<float> angles(const TensorContainer& file, const std::string& field,
   return values;
 }
 
-/// Densities and areas: finite and not negative.
+/// Reads densities or areas: finite and not negative.
 std::vector<float> densities(const TensorContainer& file, const std::string& field, size_t rank) {
   auto values = file.floats(field, rank);
   for (size_t i = 0; i < values.size(); ++i)
@@ -68,7 +68,7 @@ void read_warp(const TensorContainer& file, RglTables& tables) {
   tables.warp_width = extent(file, "vndf", 3);
 }
 
-/// Weights of the channels of the colour field: the unit matrix for "rgb", the observer for "spectra".
+/// Weights of the channels of the color field: the unit matrix for "rgb", the observer for "spectra".
 std::vector<Vec3d> channel_weights(const TensorContainer& file, const std::string& field) {
   if (field == "rgb") {
     check_extent(file, field, 2, 3, "a colour");

@@ -10,7 +10,7 @@
 namespace velour {
 namespace {
 
-/// The paper's units of angles: half vectors near the normal get the most nodes.
+/// Angles in the paper's units, which give half vectors near the normal the most nodes.
 float u_of_theta(float theta) { return std::sqrt(std::clamp(theta * (2.0f / kPi), 0.0f, 1.0f)); }
 float u_of_phi(float phi) {
   const float u = (phi + kPi) * (0.5f / kPi);
@@ -19,7 +19,7 @@ float u_of_phi(float phi) {
 float theta_of_u(float u) { return u * u * (kPi / 2); }
 float phi_of_u(float u) { return (2.0f * u - 1.0f) * kPi; }
 
-/// f = (f cos) / cos; a light nearer to the horizon than this is treated as at it, so that f stays finite.
+/// Minimum cosine of the light in f = (f cos) / cos, which keeps f finite at the horizon.
 constexpr float kMinCosine = 1e-6f;
 
 /// Node below `value` on an increasing axis and the weight of the next; clamped at the ends.
@@ -31,7 +31,7 @@ std::pair<uint32_t, float> locate(const std::vector<float>& axis, float value) {
   return {static_cast<uint32_t>(low), (value - axis[low]) / (axis[low + 1] - axis[low])};
 }
 
-/// Into how many sectors of equal look the surface's symmetry divides the views: only one of them is in the file.
+/// Number of equivalent sectors into which the surface's symmetry divides the views; the file holds one of them.
 int sectors_of(const std::vector<float>& phi_v, const std::string& path) {
   const float sectors = std::round(2.0f * kPi / (phi_v.back() - phi_v.front()));
   if (sectors != 1.0f && sectors != 2.0f && sectors != 4.0f)
@@ -57,7 +57,7 @@ RglMeasurement::RglMeasurement(RglTables tables, Provenance provenance)
   provenance_ = std::move(provenance);
   if (!isotropic()) sectors_ = sectors_of(tables_.phi_v, provenance_.path);
   build_nodes();
-  tables_.visible_normals = {};  // the warp has its own form of them
+  tables_.visible_normals = {};  // the warp keeps its own form of them
   tables_.colour = {};
   coverage_ = ViewCoverage(*this);
 }
@@ -109,7 +109,7 @@ RglMeasurement::View RglMeasurement::prepare(const Vec3& wv) const {
   View view;
   RglView& frame = view.frame;
   if (!isotropic() && sectors_ >= 2) {
-    // Measured sectors lie at phi <= 0: two by half a turn, four by mirrors in x and y.
+    // The measured sector lies at phi <= 0. Two sectors map to it by half a turn, four by mirroring in x and y.
     const float by_y = wv.y > 0.0f ? -1.0f : 1.0f, by_x = wv.x > 0.0f ? -1.0f : 1.0f;
     frame.flip = {sectors_ == 4 ? by_x : by_y, by_y};
   }
@@ -127,7 +127,7 @@ RglMeasurement::View RglMeasurement::prepare(const Vec3& wv) const {
   return view;
 }
 
-/// `u`: where the warp takes `position`.
+/// `u`: the point that the warp maps to `position`.
 bool RglMeasurement::lookup(const View& view, const Vec2& position, const Vec2& u, float cosine, Rgb& f) const {
   const AxisCell cx = axis_cell(u.x, tables_.width), cy = axis_cell(u.y, tables_.height);
   alignas(16) float total[4] = {0, 0, 0, 0};
@@ -147,8 +147,8 @@ bool RglMeasurement::lookup(const View& view, const Vec2& position, const Vec2& 
 }
 
 void RglMeasurement::eval(const Vec3& wv, std::span<const Vec3> wl, std::span<Rgb> f, std::span<uint8_t> valid) const {
-  // Each of the three steps reads tables far from the core. One step for several directions, then the next, keeps many
-  // reads on their way.
+  // Each of the three steps reads tables that are rarely in cache. One step for several directions before the next one
+  // keeps many reads in flight.
   constexpr size_t kTogether = kRglPositions;
   const View view = prepare(wv);
   for (size_t first = 0; first < wl.size(); first += kTogether) {

@@ -18,15 +18,15 @@ struct AngleGrid {
   float at(const Vec2& u) const;
 };
 
-/// All that the file holds, checked.
+/// Contents of the file, checked.
 struct RglTables {
   std::vector<float> phi_v, theta_v;  // radians, increasing: the views; one phi (or two): isotropic
   AngleGrid normals, projected_area;  // D(theta_m, phi_m) and sigma(theta_v, phi_v)
   uint32_t warp_width = 0, warp_height = 0;
   std::vector<float> visible_normals;  // views x height x width
-  uint32_t width = 0, height = 0;      // of the colour slices
+  uint32_t width = 0, height = 0;      // of the color slices
   std::vector<Rgb> colour;             // views x height x width
-  bool microfacet_scale = true;        // the file's "jacobian": colour is to be multiplied by D / (4 sigma)
+  bool microfacet_scale = true;        // the file's "jacobian": multiply colors by D / (4 sigma)
 };
 
 class RglMeasurement : public Measurement {
@@ -39,7 +39,7 @@ class RglMeasurement : public Measurement {
   std::vector<std::pair<std::string, std::string>> details() const override;
 
  private:
-  /// What depends on the view alone.
+  /// View-dependent state.
   struct View {
     RglView frame;
     SliceMix mix;

@@ -13,7 +13,7 @@
 namespace velour {
 
 struct RglLanes {
-  alignas(64) float x[kRglPositions], y[kRglPositions], z[kRglPositions];  // light, as it is
+  alignas(64) float x[kRglPositions], y[kRglPositions], z[kRglPositions];  // light, not mirrored
   alignas(64) Vec2 position[kRglPositions];
 };
 

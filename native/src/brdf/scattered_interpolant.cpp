@@ -14,15 +14,15 @@ namespace velour {
 namespace {
 
 constexpr int kCount = ScatteredInterpolant::kNeighbours;
-constexpr double kHalfPower = 0.7;  // of theta_h
+constexpr double kHalfPower = 0.7;  // exponent of theta_h
 constexpr double kAzimuthWeight = 0.3;
 constexpr double kLinearBelow = 0.01;  // 1/sr: asinh turns from linear to logarithmic here
-constexpr double kFalloff = 3.0;       // weight of the furthest neighbour: exp(-3)
+constexpr double kFalloff = 3.0;       // weight of the furthest neighbor: exp(-3)
 constexpr double kRidge = 1e-3;        // on the slopes, relative to the data's own weight
 
 using Point = std::array<double, 3>;
 
-/// The coordinates of the regression and those of the reach test.
+/// Coordinates of the regression and of the reach test.
 struct Place {
   Point regression, reach;
 };
@@ -51,7 +51,7 @@ float expand(double g) { return static_cast<float>(kLinearBelow * std::sinh(g));
 
 }  // namespace
 
-/// The samples in the form that nanoflann asks for, and its tree over them.
+/// The samples as a nanoflann data set, and a tree over them.
 struct ScatteredInterpolant::Index {
   explicit Index(std::span<const ScatteredSample> samples);
 
@@ -140,7 +140,7 @@ std::vector<TableNode> resample_scattered(const ScatteredInterpolant& interpolan
         const DirectionPair pair = layout.pair(i, 0, k, l);
         const auto f = interpolant.f(pair.wl, pair.wv);
         if (!f) continue;
-        // f is the same at phi_d and pi - phi_d: mirrored in the plane of incidence, then exchanged.
+        // f is the same at phi_d and pi - phi_d: mirror in the plane of incidence, then exchange the directions.
         const int mirror = (layout.phi_d - l) % layout.phi_d;
         nodes[layout.index(i, 0, k, l)] = nodes[layout.index(i, 0, k, mirror)] = {{f->r, f->g, f->b, 1.0f}};
       }

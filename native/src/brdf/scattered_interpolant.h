@@ -1,4 +1,4 @@
-// Isotropic BRDF samples at irregular directions made into a function.
+// Interpolates isotropic BRDF samples at irregular directions.
 #pragma once
 
 #include <memory>
@@ -11,27 +11,26 @@
 
 namespace velour {
 
-/// Local linear regression over the nearest samples. f is taken as isotropic, reciprocal and mirror-symmetric, so a
-/// pair is a point (theta_h^0.7, theta_d, 0.3 sin theta_h sin theta_d cos 2 phi_d): half angles first, because f varies
-/// fastest with them and their power spreads a highlight over several samples. Each channel is fitted as asinh(f / 0.01
-/// sr^-1), near to a logarithm for highlights and linear about 0, with Gaussian weights over the 16 nearest samples and
-/// a light ridge on the slopes. The result never falls below those samples; it may rise above them by their range,
-/// because a highlight's top mostly lies between samples. What that is worth beside the alternatives is in
-/// docs/formats.md.
+/// Local linear regression over the nearest samples. f is assumed isotropic, reciprocal and mirror-symmetric, so a pair
+/// is a point (theta_h^0.7, theta_d, 0.3 sin theta_h sin theta_d cos 2 phi_d). f varies fastest with theta_h, whose
+/// power spreads a highlight over several samples. Each channel is fitted as asinh(f / 0.01 sr^-1), nearly logarithmic
+/// for highlights and linear about 0, with Gaussian weights over the 16 nearest samples and a light ridge on the
+/// slopes. The result never falls below those samples; it may rise above them by their range, because a highlight's top
+/// mostly lies between samples. docs/formats.md compares the alternatives.
 class ScatteredInterpolant {
  public:
-  /// Keeps a copy of what it needs. Throws Error(invalid_argument) for fewer than kNeighbours samples.
+  /// Copies what it needs. Throws Error(invalid_argument) for fewer than kNeighbours samples.
   explicit ScatteredInterpolant(std::span<const ScatteredSample> samples);
   ~ScatteredInterpolant();
   ScatteredInterpolant(const ScatteredInterpolant&) = delete;
   ScatteredInterpolant& operator=(const ScatteredInterpolant&) = delete;
 
-  /// Nothing where the nearest sample is further than kReach. Both directions above the horizon. Thread-safe.
+  /// Nothing if no sample is within kReach. Both directions must be above the horizon. Thread-safe.
   std::optional<Rgb> f(const Vec3& wl, const Vec3& wv) const;
 
   static constexpr int kNeighbours = 16;
-  /// In (theta_h, theta_d, sin theta_h sin theta_d |cos phi_d|), radians: the gaps of Cornell's sets are below 8
-  /// degrees.
+  /// Distance in (theta_h, theta_d, sin theta_h sin theta_d |cos phi_d|), radians: the gaps of Cornell's sets are below
+  /// 8 degrees.
   static constexpr double kReach = 10.0 * kPiD / 180.0;
 
  private:

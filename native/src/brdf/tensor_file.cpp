@@ -9,7 +9,7 @@ namespace velour {
 namespace {
 
 constexpr char kMagic[12] = "tensor_file";  // with its zero byte
-constexpr uint64_t kMinFieldBytes = 13;     // of an empty name and no dimension
+constexpr uint64_t kMinFieldBytes = 13;     // with an empty name and no dimensions
 constexpr uint16_t kMaxRank = 16;
 
 uint64_t type_size(uint8_t code) {
@@ -67,7 +67,7 @@ void TensorContainer::read_entry(ByteReader& in) {
   entry.bytes = values.take(size, "field " + field);
 }
 
-/// A field that lies over another or over the header is a lie, even if it can be read.
+/// Rejects fields that overlap each other or the header, even if they could be read.
 void TensorContainer::check_layout(uint64_t header_end) const {
   std::vector<std::pair<const uint8_t*, const std::string*>> order;
   for (const auto& [field, entry] : fields_) order.emplace_back(entry.bytes.data(), &field);

@@ -11,7 +11,7 @@ namespace velour {
 
 class ByteReader;
 
-/// Codes of the file.
+/// Type codes of the file format.
 enum class TensorType : uint8_t {
   uint8 = 1,
   int8,
@@ -34,11 +34,11 @@ struct TensorField {
 
 class TensorContainer {
  public:
-  /// Every shape and offset is compared with the bytes; fields may not overlap. `name` begins all sentences.
+  /// Checks every shape and offset against the size of `bytes`; fields may not overlap. `name` begins every message.
   TensorContainer(std::span<const uint8_t> bytes, std::string name);
 
   bool has(const std::string& field) const { return fields_.contains(field); }
-  /// Throws Error(bad_data) where the field is missing, of another type or of another rank.
+  /// Throws Error(bad_data) if the field is missing, of another type or of another rank.
   const TensorField& get(const std::string& field, TensorType type, size_t rank) const;
   /// A float32 field, copied.
   std::vector<float> floats(const std::string& field, size_t rank) const;

@@ -109,7 +109,7 @@ Vec2 square_of_disk(const Vec2& disk) {
   constexpr float kQuarter = kPi / 4;
   const float r = std::min(std::sqrt(disk.x * disk.x + disk.y * disk.y), 1.0f);
   if (r == 0) return Vec2(0.5f);
-  Vec2 square;  // of [-1, 1]
+  Vec2 square;  // in [-1, 1]
   if (std::abs(disk.x) >= std::abs(disk.y)) {
     square.x = std::copysign(r, disk.x);
     square.y = square.x * std::atan(disk.y / disk.x) / kQuarter;

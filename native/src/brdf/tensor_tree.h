@@ -1,5 +1,5 @@
-// Functions over the unit cube of three or four dimensions as a tree of ever smaller cells: the variable-resolution
-// BSDFs of Radiance [WKB12].
+// Functions over the unit cube of three or four dimensions as a tree of cells: the variable-resolution BSDFs of
+// Radiance [WKB12].
 #pragma once
 
 #include <array>
@@ -13,15 +13,15 @@
 
 namespace velour {
 
-/// A node halves every side of its cube (2^n branches; bit i of a branch's number says which half of dimension i it
-/// has), or is a grid of 2^k cells a side (the last dimension goes fastest). Constant within a cell.
+/// A node halves every side of its cube (2^n branches; bit i of a branch's index selects the half of dimension i), or
+/// is a grid of 2^k cells per side (the last dimension varies fastest). Constant within a cell.
 class TensorTree {
  public:
-  /// Reads "{ {1 2 3 ...} {...} ... }": a node is its branches or its grid's numbers, in braces, apart by commas or
-  /// white space. A number beyond a float's range becomes NaN. Throws Error(bad_data) that begins with `where`.
+  /// Reads "{ {1 2 3 ...} {...} ... }": a node is its branches or its grid's numbers in braces, separated by commas or
+  /// white space. Numbers beyond a float's range become infinity or 0. Throws Error(bad_data) that begins with `where`.
   TensorTree(std::string_view text, int dimensions, const std::string& where);
 
-  /// At a place of [0, 1]^n; 1 belongs to the last cell.
+  /// Value at a point of [0, 1]^n; 1 belongs to the last cell.
   float at(std::span<const float> place) const;
 
   int dimensions() const { return dimensions_; }
@@ -34,9 +34,9 @@ class TensorTree {
   class Reader;
   struct Grid {
     uint32_t first;  // in `values_`
-    int32_t level;   // 2^level cells a side
+    int32_t level;   // 2^level cells per side
   };
-  // A node >= 0 is the first of its branches in `branches_`; one < 0 is the grid ~node.
+  // A node >= 0 is the index of its first branch in `branches_`; a node < 0 is the grid ~node.
   int32_t root_ = 0;
   int dimensions_;
   int finest_level_ = 0;
@@ -45,7 +45,7 @@ class TensorTree {
   std::vector<float> values_;
 };
 
-/// Shirley and Chiu's map [SC97] of the unit disk to the unit square: equal areas remain equal.
+/// Shirley and Chiu's equal-area map [SC97] of the unit disk to the unit square.
 Vec2 square_of_disk(const Vec2& disk);
 
 }  // namespace velour

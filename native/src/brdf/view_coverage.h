@@ -1,4 +1,4 @@
-// At which view angles a measurement has something to say.
+// View angles that a measurement covers.
 #pragma once
 
 #include <array>
@@ -10,8 +10,8 @@ namespace velour {
 class ViewCoverage {
  public:
   ViewCoverage() = default;
-  /// Asks `measurement` at every whole degree (0..89, azimuth 0) for a few hundred equal-area light directions: the
-  /// view is covered where at least half of them are.
+  /// Evaluates `measurement` at every integer degree (0..89, azimuth 0) for a few hundred equal-area light directions;
+  /// a view is covered if at least half of them are.
   explicit ViewCoverage(const Measurement& measurement);
 
   /// `theta_v` in radians; the nearest whole degree decides. False at and below the horizon.

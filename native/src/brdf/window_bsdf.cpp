@@ -15,7 +15,7 @@ namespace {
 constexpr float kBelowHalf = 0x1.fffffep-2f;
 constexpr const char* kSides[] = {"Reflection Front", "Reflection Back"};
 
-/// f of a light's patch and a viewer's, light by light within each viewer's.
+/// f as [patch of the view][patch of the light].
 class KlemsMeasurement final : public Measurement {
  public:
   KlemsMeasurement(KlemsBasis light, KlemsBasis view, std::vector<Rgb> f, std::vector<uint8_t> valid,
@@ -35,7 +35,7 @@ class KlemsMeasurement final : public Measurement {
       f[i] = Rgb(0);
       float weights = 0;
       if (wv.z > 0 && wl[i].z > 0) {
-        // Incident directions are numbered by where the light goes: what a mirror reflects has one number.
+        // Incident directions are indexed by where the light goes, so a mirror direction has the light's index.
         for (const auto& light : light_.around(Vec3(-wl[i].x, -wl[i].y, wl[i].z))) {
           for (const auto& viewer : viewers) {
             const size_t entry = size_t{viewer.patch} * light_.patches() + light.patch;
@@ -69,7 +69,7 @@ class KlemsMeasurement final : public Measurement {
   const std::string side_;
 };
 
-/// f of the four coordinates that trees have: the light's two (or its angle alone) and the viewer's two.
+/// f over a tree's coordinates: two of the light (or its angle alone) and two of the view.
 class TreeMeasurement final : public Measurement {
  public:
   struct Trees {
@@ -89,7 +89,7 @@ class TreeMeasurement final : public Measurement {
       f[i] = Rgb(0);
       valid[i] = 0;
       if (!(wv.z > 0 && wl[i].z > 0)) continue;
-      // Incident directions are numbered by where the light goes: what a mirror reflects has one number.
+      // Incident directions are indexed by where the light goes, so a mirror direction has the light's index.
       const Vec2 light(-wl[i].x, -wl[i].y);
       if (isotropic()) {
         const float sine = glm::length(light);
@@ -135,7 +135,7 @@ class TreeMeasurement final : public Measurement {
   const std::string side_;
 };
 
-/// By the viewer's patch, then the light's.
+/// Values as [patch of the view][patch of the light].
 std::vector<float> matrix(const BsdfXml& in, const pugi::xml_node& block, size_t lights, size_t views) {
   std::vector<float> values = in.numbers(block, lights * views);
   if (in.structure() == BsdfXml::Structure::columns) return values;

@@ -1,4 +1,4 @@
-// The four texels about a place of a tile that repeats.
+// Bilinear lookups on a periodic grid of texels.
 #pragma once
 
 #include <algorithm>
@@ -15,11 +15,11 @@ struct BilinearTexels {
   std::array<float, 4> weight;    // sum 1
 };
 
-/// A place between texels, and its neighbours on an axis of `size` texels that repeats.
+/// The two texels around a coordinate on a periodic axis of `size` texels, and the fraction between them.
 struct LinearTexels {
   LinearTexels(float texel, uint32_t size) {
     const auto extent = static_cast<float>(size);
-    // Rounding may leave either end of the period.
+    // Rounding may push the coordinate past either end of the period.
     const float inside = std::max(texel - std::floor(texel * (1 / extent)) * extent, 0.0f);
     const float whole = std::floor(inside);
     part = inside - whole;
@@ -31,19 +31,19 @@ struct LinearTexels {
   float part;
 };
 
-/// `width`: of a row.
+/// `width`: texels per row.
 inline BilinearTexels bilinear_between(const LinearTexels& x, const LinearTexels& y, uint32_t width) {
   const uint32_t low = y.low * width, high = y.high * width;
   return {{low + x.low, low + x.high, high + x.low, high + x.high},
           {(1 - x.part) * (1 - y.part), x.part * (1 - y.part), (1 - x.part) * y.part, x.part * y.part}};
 }
 
-/// `texel`: in texels from the centre of the first one, of any size below 2^24.
+/// `texel`: in texels from the center of the first one; its magnitude must be below 2^24.
 inline BilinearTexels bilinear_at(const Vec2& texel, uint32_t width, uint32_t height) {
   return bilinear_between({texel.x, width}, {texel.y, height}, width);
 }
 
-/// `place` in tiles.
+/// `place`: in tiles.
 inline BilinearTexels bilinear_texels(const Vec2& place, uint32_t width, uint32_t height) {
   return bilinear_at(place * Vec2(width, height) - 0.5f, width, height);
 }

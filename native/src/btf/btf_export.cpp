@@ -26,7 +26,7 @@ bool is_named(const PolarAngles& d) {
   return is_whole(d.theta) && is_whole(d.phi);
 }
 
-/// The shortest text that gives the same bits when it is read.
+/// Shortest text that parses back to the same bits.
 std::string number_text(double value) {
   std::array<char, 32> text;
   const auto end = std::to_chars(text.data(), text.data() + text.size(), value).ptr;
@@ -78,7 +78,7 @@ class Export {
   std::string file_name(uint64_t pair) const {
     const PairLayout& layout = btf_.layout();
     const uint32_t v = layout.view_of(pair), l = layout.light_of(pair);
-    // The sets of Bonn count views within lights.
+    // The Bonn sets number pairs by light, then by view.
     const uint64_t index = named_ ? l * layout.views().size() + v : pair;
     if (named_) return name_of_angles({layout.lights()[l], layout.views()[v], index}) + ".exr";
     std::string number = std::to_string(index);
@@ -86,7 +86,7 @@ class Export {
     return "pair_" + number + ".exr";
   }
 
-  /// Bytes of the files.
+  /// Returns the number of bytes written.
   uint64_t write_pairs(uint64_t first, uint64_t count) {
     const uint64_t image = btf_.grid().texels() * 3;
     values_.resize(count * image);

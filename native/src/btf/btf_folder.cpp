@@ -74,7 +74,7 @@ class BtfFolder : public BtfMeasurement {
     shell_ = index_.shell;
   }
 
-  /// Bytes of the view's file.
+  /// Checks the view's file and returns its size in bytes.
   uint64_t check_view(size_t view) const {
     const std::vector<ImageStack> stacks = view_stacks(index_, view);
     if (stacks.empty()) return 0;
@@ -83,7 +83,7 @@ class BtfFolder : public BtfMeasurement {
     return file.bytes();
   }
 
-  /// Pairs [first, first + count) of one part, view by view.
+  /// Reads pairs [first, first + count) of one part, view by view.
   void read_images(size_t part, uint64_t first, uint64_t count, std::span<HalfBits> values) const {
     check_range(first, count);
     for (uint64_t pair = first; pair < first + count;) {

@@ -1,4 +1,4 @@
-// Velour's own form of a BTF: a folder with an index, btf.json, and one file of images a view (docs/formats.md).
+// Velour's own BTF format: a folder with an index, btf.json, and one image file per view (docs/formats.md).
 #pragma once
 
 #include <memory>
@@ -9,29 +9,29 @@
 
 namespace velour {
 
-/// One view, ready to be written: borrowed arrays.
+/// One view to be written. The arrays are borrowed.
 struct BtfView {
   std::span<const HalfBits> values;          // [light of the view][row][column][3]
-  std::span<const HalfBits> errors = {};     // the same without channels; empty when the index has none
-  const ViewStructure* structure = nullptr;  // as the index says
+  std::span<const HalfBits> errors = {};     // [light of the view][row][column]; empty if the index has no errors
+  const ViewStructure* structure = nullptr;  // null if the index has no structure
 };
 
-/// Writes view by view, in any order; each view's file is written atomically, so that what a killed capture leaves are
-/// whole views. Different views may be written from different threads at a time.
+/// Writes views in any order. Each file is written atomically, so a killed capture leaves only complete views.
+/// Different views may be written concurrently from different threads.
 class BtfFolderWriter {
  public:
-  /// Makes `path`, or goes on with what is there. Throws Error(io) when the folder holds another BTF (its index
-  /// differs in any way from `index`) or files that are no BTF, and unless `resume` also when it holds this BTF.
+  /// Creates `path`, or continues an existing folder. Throws Error(io) if the folder holds another BTF (whose index
+  /// differs in any way from `index`) or files that are not a BTF; also if it holds this BTF and `resume` is false.
   BtfFolderWriter(const std::string& path, BtfIndex index, bool resume);
 
-  /// Whether this view's file is there and whole.
+  /// Whether this view's file exists and is complete.
   bool has(uint32_t view) const;
-  /// Throws Error(invalid_argument) when an array does not have the size that the index asks for.
+  /// Throws Error(invalid_argument) if an array does not have the size required by the index.
   void write(uint32_t view, const BtfView& content, const Progress& progress = Progress()) const;
-  /// Counts values and hashes files, and marks the BTF as complete: until then it cannot be loaded. Throws
-  /// Error(invalid_state) when a view is missing.
+  /// Counts values, hashes files and marks the BTF as complete; before that it cannot be loaded. Throws
+  /// Error(invalid_state) if a view is missing.
   void finish(const Progress& progress = Progress()) const;
-  /// Bytes of all files that are there.
+  /// Total size of all existing files in bytes.
   uint64_t bytes() const;
 
  private:
@@ -39,13 +39,12 @@ class BtfFolderWriter {
   BtfIndex index_;
 };
 
-/// Throws Error(io, bad_data, version_mismatch) with one sentence that names file and field. Checks sizes, headers and
-/// chunk tables of all views' files; their pixels are read when asked for. `tile_metres` stands in for what the index
-/// says.
+/// Checks sizes, headers and chunk tables of all view files; pixels are read on demand. `tile_metres` overrides the
+/// index. Throws Error(io, bad_data, version_mismatch) with one sentence that names the file and the field.
 std::shared_ptr<const BtfMeasurement> load_btf_folder(const std::string& path,
                                                       const std::optional<Vec2>& tile_metres = std::nullopt);
 
-/// Whether `path` is a folder that holds an index of ours.
+/// Whether `path` is a folder with an index of this format.
 bool is_btf_folder(const std::string& path);
 
 }  // namespace velour

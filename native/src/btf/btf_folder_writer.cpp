@@ -27,7 +27,7 @@ void write_index(const std::string& folder, const BtfIndex& index, const std::op
   write_file(index_path(folder), {reinterpret_cast<const uint8_t*>(text.data()), text.size()});
 }
 
-/// An empty folder, made where there is none.
+/// Creates the folder if it does not exist. Throws unless it is empty.
 void make_folder(const std::string& path) {
   std::error_code failure;
   fs::create_directories(path, failure);
@@ -53,7 +53,7 @@ void append(std::vector<std::span<const uint8_t>>& pixels, const ViewStructure& 
   }
 }
 
-/// Of the file of `view`, images one by one.
+/// Counts the values in the file of `view`, one image at a time.
 ValueCounts counts_of(const std::string& folder, const BtfIndex& index, size_t view, const Progress& progress) {
   const std::vector<ImageStack> stacks = view_stacks(index, view);
   ValueCounts counts;
@@ -76,7 +76,7 @@ BtfContent::ViewFile file_of(const std::string& path, const Progress& progress) 
 
 BtfFolderWriter::BtfFolderWriter(const std::string& path, BtfIndex index, bool resume)
     : path_(path), index_(std::move(index)) {
-  encode_btf_index(index_, std::nullopt);  // refuses a bad index before anything is made
+  encode_btf_index(index_, std::nullopt);  // rejects a bad index before anything is created
   if (is_btf_folder(path_)) {
     check_same(path_, index_, resume);
     return;
@@ -94,7 +94,7 @@ bool BtfFolderWriter::has(uint32_t view) const {
     ImageStackFile(path, stacks).check_chunk_tables();
     return true;
   } catch (const Error&) {
-    return false;  // whatever is there will be replaced
+    return false;  // the damaged file will be replaced
   }
 }
 

@@ -13,7 +13,7 @@ using Json = JsonFields::Json;
 
 constexpr const char* kFormat = "velour-btf";
 constexpr uint64_t kVersion = 1;
-constexpr uint64_t kMostCount = uint64_t{1} << 53;  // whole numbers that every reader of JSON holds exactly
+constexpr uint64_t kMostCount = uint64_t{1} << 53;  // larger integers are not exact in every JSON reader
 
 Json directions_json(const std::vector<PolarAngles>& directions) {
   Json list = Json::array();
@@ -92,7 +92,6 @@ const Json& list_at(const JsonFields& fields, const char* key, size_t most) {
   return list;
 }
 
-/// Two numbers.
 std::array<double, 2> two(const JsonFields& fields, const char* key, const Json& json) {
   if (!json.is_array() || json.size() != 2 || !json[0].is_number() || !json[1].is_number()) {
     fields.fail(key, "two numbers each");
@@ -206,14 +205,14 @@ DecodedBtfIndex decode_btf_index(std::span<const uint8_t> bytes, const std::stri
     decoded.content = read_content(fields.object("content"), decoded.index.layout.views().size(), source);
     return decoded;
   } catch (const Error& error) {
-    // What a layout or an index says of itself knows nothing of files.
+    // Errors of PairLayout and check() do not name the file.
     if (error.status() != Status::invalid_argument) throw;
     throw Error(Status::bad_data, name + ": " + error.what());
   }
 }
 
 std::optional<std::string> difference(const BtfIndex& a, const BtfIndex& b) {
-  using Unordered = nlohmann::json;  // whose members are the same in any order
+  using Unordered = nlohmann::json;  // compares objects regardless of the order of their members
   if (Unordered::parse(a.options) != Unordered::parse(b.options)) return "options";
   const Json left = index_json(a), right = index_json(b);
   for (const auto& [key, value] : left.items()) {

@@ -1,4 +1,4 @@
-// The index of Velour's own form of a BTF: btf.json (docs/formats.md).
+// The index of Velour's own BTF format, btf.json (docs/formats.md).
 #pragma once
 
 #include <optional>
@@ -11,46 +11,46 @@
 
 namespace velour {
 
-/// More than the largest index takes.
+/// Maximum size of an index file.
 inline constexpr uint64_t kMostBtfIndexBytes = uint64_t{1} << 30;
 
-/// What is known before any view is there.
+/// Data known before any view is written.
 struct BtfIndex {
   PairLayout layout;
   TexelGrid grid;
   std::optional<Shell> shell = std::nullopt;
-  std::string source = {};  // name of what was captured
+  std::string source = {};  // name of the captured surface
   std::string options =
-      "{}";                // JSON object: whatever decides the values, so that a resumed capture is the same capture
-  bool structure = false;  // views come with a ViewStructure
-  bool errors = false;     // ... and with standard errors
+      "{}";                // JSON object of all settings that affect the values; must match when a capture is resumed
+  bool structure = false;  // each view has a ViewStructure
+  bool errors = false;     // each view has standard errors
 };
 
-/// What is known once all views are there.
+/// Data known once all views are written.
 struct BtfContent {
   struct ViewFile {
     uint64_t bytes = 0;
     std::string sha256;
     bool operator==(const ViewFile&) const = default;
   };
-  std::vector<ViewFile> views;  // one each
+  std::vector<ViewFile> views;  // one per view
   ValueCounts counts;
   bool operator==(const BtfContent&) const = default;
 };
 
 struct DecodedBtfIndex {
   BtfIndex index;
-  std::optional<BtfContent> content;  // nothing: views are still missing
+  std::optional<BtfContent> content;  // empty while views are missing
 };
 
-/// All numbers survive a round trip bit for bit. Throws Error(invalid_argument) for an index that cannot be one.
+/// All numbers survive a round trip bit for bit. Throws Error(invalid_argument) for an invalid index.
 std::string encode_btf_index(const BtfIndex& index, const std::optional<BtfContent>& content);
 
-/// Throws Error(bad_data), or Error(version_mismatch) for a later version of the format; with `name`, the file's, and
-/// the field at fault.
+/// `name`: file name for error messages, which also name the field at fault. Throws Error(bad_data), or
+/// Error(version_mismatch) for another version of the format.
 DecodedBtfIndex decode_btf_index(std::span<const uint8_t> bytes, const std::string& name);
 
-/// The first field in which two indices differ; nothing when they are the same.
+/// Name of the first field in which two indices differ; empty if they are equal.
 std::optional<std::string> difference(const BtfIndex& a, const BtfIndex& b);
 
 }  // namespace velour

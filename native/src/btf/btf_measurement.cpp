@@ -22,7 +22,7 @@ CountedPairs count_values(const BtfMeasurement& btf) {
   const uint64_t pairs = btf.layout().pairs();
   if (const auto counts = btf.all_counts()) return {pairs, *counts};
   constexpr uint64_t kMost = 16;
-  constexpr uint64_t kRun = 4;  // pairs read together: where a set is compressed, one costs nearly as much as four
+  constexpr uint64_t kRun = 4;  // pairs read together: in a compressed set, one costs nearly as much as four
   const uint64_t runs = pairs <= kMost ? 1 : kMost / kRun, run = pairs <= kMost ? pairs : kRun;
   std::vector<HalfBits> values(run * btf.grid().texels() * 3);
   CountedPairs counted{runs * run, {}};

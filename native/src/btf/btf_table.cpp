@@ -36,7 +36,7 @@ void size_levels(const BtfMeasurement& btf, BtfTable& table) {
   }
 }
 
-/// `image` and its mip levels, to their places among those of all lights.
+/// Writes `image` and its mip levels to their slots in the table.
 void scatter_pyramid(std::vector<float> image, uint32_t view, size_t light, BtfTable& table) {
   std::vector<HalfBits> halves(image.size());
   for (size_t l = 0; l < table.levels.size(); ++l) {

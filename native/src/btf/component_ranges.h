@@ -1,4 +1,4 @@
-// Where a factored BTF's components stand.
+// Component ranges of a factored BTF.
 #pragma once
 
 #include <array>
@@ -7,7 +7,7 @@
 
 namespace velour {
 
-/// Numbers of components, by the view that they serve and by colour axis.
+/// Indices of components by the view they serve and by color axis.
 class ComponentRanges {
  public:
   struct Range {
@@ -17,14 +17,14 @@ class ComponentRanges {
 
   explicit ComponentRanges(const FactoredBtf& btf);
 
-  /// Of all axes.
+  /// Components of all axes.
   Range of(size_t view) const { return {bounds(view)[0], bounds(view)[3]}; }
   Range of(size_t view, size_t axis) const { return {bounds(view)[axis], bounds(view)[axis + 1]}; }
-  /// How many views differ in them: 1 where all share all.
+  /// Number of component groups: one per view, or 1 if all views share all components.
   size_t groups() const { return bounds_.size(); }
 
  private:
-  using Bounds = std::array<uint32_t, 4>;  // where each axis begins, and the end
+  using Bounds = std::array<uint32_t, 4>;  // first component of each axis, and the end
   const Bounds& bounds(size_t view) const { return bounds_[bounds_.size() == 1 ? 0 : view]; }
 
   std::vector<Bounds> bounds_;

@@ -25,7 +25,7 @@ std::string trimmed(const std::string& text) {
   return first == std::string::npos ? "" : text.substr(first, last - first + 1);
 }
 
-/// Fields between commas; within double quotes commas are text and two quotes are one.
+/// Splits at commas. Within double quotes, commas are text and two quotes stand for one.
 Fields split(const std::string& line) {
   Fields fields(1);
   bool quoted = false;
@@ -44,7 +44,7 @@ Fields split(const std::string& line) {
   return fields;
 }
 
-/// Line by line, numbered from 1, without comments, empty lines and marks of Windows.
+/// Iterates over lines, numbered from 1. Skips comments and empty lines; strips the BOM and carriage returns.
 class Lines {
  public:
   explicit Lines(std::string text) : text_(std::move(text)) {
@@ -144,7 +144,7 @@ class CsvIndex {
   bool numbered_ = false;
 };
 
-/// No angle of a whole turn in radians, more than one, and not all of them whole: nobody measures within six degrees.
+/// Whether all angles are below a full turn in radians and not all are integers: nobody measures within six degrees.
 bool look_like_radians(const std::vector<PairPicture>& pictures) {
   constexpr double kTurn = 6.3;
   bool any = false;

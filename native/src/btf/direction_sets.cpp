@@ -9,7 +9,7 @@
 namespace velour {
 namespace {
 
-constexpr double kMaxTheta = 89.89;  // what a PairLayout takes
+constexpr double kMaxTheta = 89.89;  // degrees; PairLayout rejects directions closer to the plane
 
 }  // namespace
 

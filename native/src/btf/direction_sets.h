@@ -1,4 +1,4 @@
-// Sets of directions by name.
+// Named sets of directions.
 #pragma once
 
 #include <string>
@@ -8,9 +8,8 @@
 
 namespace velour {
 
-/// "81": bonn_directions(); "105": capture_directions(); another whole number from 1 to kMaxDirections:
-/// even_directions(), of which those within 0.11 degrees of the plane are lifted to that. Throws
-/// Error(invalid_argument).
+/// "81": bonn_directions(); "105": capture_directions(); any other integer from 1 to kMaxDirections: even_directions(),
+/// with directions within 0.11 degrees of the plane raised to that elevation. Throws Error(invalid_argument).
 std::vector<PolarAngles> named_directions(const std::string& name);
 
 }  // namespace velour

@@ -30,7 +30,7 @@ struct FactoredImages::Impl {
   ComponentRanges ranges;
   std::vector<float> pair_value, texel_value;  // [row of functions][component], [texel][component]
 
-  /// The functions of the pair, by component, and the groups of components that are not all 0.
+  /// Values of the pair functions by component, and the groups of components that are not all 0.
   struct Functions {
     std::vector<float> value;
     std::vector<size_t> group;

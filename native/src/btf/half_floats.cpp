@@ -16,7 +16,7 @@ namespace HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
-// Full vectors, then one value at a time through padded copies: the arithmetic is the same.
+// Full vectors first, then the remainder through padded copies, with the same arithmetic.
 template <class From, class To, class Convert>
 HWY_INLINE void convert_all(const From* from, To* to, size_t count, size_t lanes, const Convert& convert) {
   size_t i = 0;
@@ -29,8 +29,7 @@ HWY_INLINE void convert_all(const From* from, To* to, size_t count, size_t lanes
   std::memcpy(to + i, converted, (count - i) * sizeof(To));
 }
 
-// Where the processor converts by itself. Highway's own stand-in for the others knows neither infinities nor halves
-// below 2^-14.
+// Targets with conversion instructions. Highway's fallback for others lacks infinities and halves below 2^-14.
 #define VELOUR_HAS_HALVES (HWY_TARGET <= HWY_AVX2)
 
 template <class DF>
@@ -41,7 +40,7 @@ HWY_INLINE hn::Vec<DF> floats_of(DF df, hn::Vec<hn::Rebind<HalfBits, DF>> halves
   const hn::RebindToUnsigned<DF> du;
   const auto bits = hn::PromoteTo(du, halves);
   const auto magnitude = hn::And(bits, hn::Set(du, 0x7fffu));
-  // The exponent's bias is put right by a product, which also makes small halves normal.
+  // Multiplication corrects the exponent bias and normalizes subnormal halves.
   const auto finite = hn::BitCast(du, hn::Mul(hn::BitCast(df, hn::ShiftLeft<13>(magnitude)), hn::Set(df, 0x1p112f)));
   const auto special = hn::Gt(magnitude, hn::Set(du, 0x7bffu));
   const auto value = hn::Or(finite, hn::IfThenElseZero(special, hn::Set(du, 0x7f800000u)));
@@ -59,9 +58,9 @@ HWY_INLINE hn::Vec<hn::Rebind<HalfBits, DF>> halves_of(DF df, hn::Vec<DF> floats
   const auto magnitude = hn::BitCast(du, hn::Abs(floats));
   const auto sign = hn::ShiftRight<16>(hn::AndNot(hn::Set(du, 0x7fffffffu), hn::BitCast(du, floats)));
   const auto odd = hn::And(hn::ShiftRight<13>(magnitude), hn::Set(du, 1u));
-  const auto rebias = hn::Set(du, 0xc8000fffu);  // (15 - 127) << 23, and just below half of the last place
+  const auto rebias = hn::Set(du, 0xc8000fffu);  // (15 - 127) << 23, plus just below half a unit in the last place
   const auto normal = hn::ShiftRight<13>(hn::Add(hn::Add(magnitude, rebias), odd));
-  // Added to a half, a small number is rounded at the place where halves below 2^-14 end.
+  // Adding 0.5 rounds a small number to the precision of halves below 2^-14.
   const auto half = hn::Set(df, 0.5f);
   const auto small = hn::Sub(hn::BitCast(du, hn::Add(hn::BitCast(df, magnitude), half)), hn::BitCast(du, half));
   auto value = hn::IfThenElse(hn::Lt(magnitude, hn::Set(du, 0x38800000u)), small, normal);           // 2^-14

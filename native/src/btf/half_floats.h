@@ -1,4 +1,4 @@
-// Half floats, as BTFs are kept: two bytes a value.
+// Half floats, the storage format of BTFs.
 #pragma once
 
 #include <bit>
@@ -12,10 +12,10 @@ using HalfBits = uint16_t;
 
 inline constexpr float kLargestHalf = 65504.0f;
 
-/// Same lengths. Exact.
+/// Both spans have the same length. Exact.
 void halves_to_floats(std::span<const HalfBits> halves, std::span<float> floats);
 
-/// One of them, which must be finite: for values that do not lie side by side.
+/// Converts a single finite value, for values that are not contiguous.
 inline float finite_half_to_float(HalfBits half) {
   const uint32_t magnitude = half & 0x7fffu;
   const float value = magnitude < 0x0400u ? static_cast<float>(magnitude) * 0x1p-24f
@@ -23,7 +23,7 @@ inline float finite_half_to_float(HalfBits half) {
   return (half & 0x8000u) != 0 ? -value : value;
 }
 
-/// Same lengths. To the nearest, ties to even; beyond kLargestHalf becomes infinite.
+/// Both spans have the same length. Rounds to nearest, ties to even; overflow gives infinity.
 void floats_to_halves(std::span<const float> floats, std::span<HalfBits> halves);
 
 }  // namespace velour

@@ -10,7 +10,7 @@
 namespace velour {
 namespace {
 
-constexpr uint64_t kSeed = 75;           // any: that it never changes makes numbers of two days comparable
+constexpr uint64_t kSeed = 75;           // arbitrary, but fixed so that results stay comparable
 constexpr double kMaxHeldOutTheta = 75;  // degrees
 
 PolarAngles drawn_direction(RandomStream& random, bool two_sided) {

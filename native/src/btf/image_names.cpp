@@ -15,7 +15,7 @@ namespace velour {
 namespace fs = std::filesystem;
 namespace {
 
-/// Of folders in the folder: someone may name a disk by mistake.
+/// Maximum depth of subfolders, in case a whole disk is given by mistake.
 constexpr int kMaxDepth = 3;
 constexpr size_t kMaxPictures = kMaxDirections * kMaxDirections;
 
@@ -29,11 +29,11 @@ bool is_letter(char c) { return std::isalpha(static_cast<unsigned char>(c)) != 0
 bool is_digit(char c) { return std::isdigit(static_cast<unsigned char>(c)) != 0; }
 
 struct KeyedAngle {
-  size_t at;  // of the key
+  size_t at;  // position of the key
   double degrees;
 };
 
-/// Degrees after `key`, which must be there once as a word of its own; `name` in lower case.
+/// Degrees after `key`, which must occur exactly once as a separate word. `name` must be lower case.
 std::optional<KeyedAngle> find_angle(std::string_view name, std::string_view key) {
   std::optional<KeyedAngle> found;
   for (size_t at = name.find(key); at != std::string_view::npos; at = name.find(key, at + 1)) {
@@ -48,7 +48,7 @@ std::optional<KeyedAngle> find_angle(std::string_view name, std::string_view key
   return found;
 }
 
-/// The digits that end `text`, not counting separators behind them.
+/// The number at the end of `text`, ignoring separators after it.
 std::optional<uint64_t> trailing_number(std::string_view text) {
   while (!text.empty() && !is_digit(text.back()) && !is_letter(text.back())) text.remove_suffix(1);
   size_t begin = text.size();
@@ -67,7 +67,7 @@ std::string padded(uint64_t number, size_t digits) {
 std::string angle_text(double degrees) {
   const auto whole = static_cast<uint64_t>(degrees);
   const double rest = degrees - static_cast<double>(whole);
-  return padded(whole, 3) + (rest > 0 ? std::to_string(rest).substr(1) : "");  // .500000 of 0.500000
+  return padded(whole, 3) + (rest > 0 ? std::to_string(rest).substr(1) : "");  // .500000 from 0.500000
 }
 
 bool is_picture_name(const fs::path& path) {
@@ -116,7 +116,6 @@ void refuse_twins(const std::vector<NamedPicture>& sorted) {
                                     "; take one of the two out of the folder.");
 }
 
-/// `sorted` by its angles.
 void refuse_gaps(const std::string& folder, const std::vector<NamedPicture>& sorted) {
   std::set<std::tuple<double, double>> views, lights;
   std::set<std::tuple<double, double, double, double>> pairs;

@@ -17,18 +17,18 @@ namespace velour {
 namespace fs = std::filesystem;
 namespace {
 
-/// Names of header texts by which Velour's own exports say what they are.
+/// Header attributes that describe Velour's own exports.
 constexpr const char* kValuesText = "velour.values";
 constexpr const char* kTileText = "velour.tile_metres";
 
-/// The directions of a set and the place of each.
+/// A set of directions and the index of each.
 class DirectionSet {
  public:
   void add(const PolarAngles& d, uint64_t number) {
     const auto [at, is_new] = number_.emplace(std::pair(d.theta, d.phi), number);
     if (!is_new) at->second = std::min(at->second, number);
   }
-  /// In the order of their smallest numbers.
+  /// Directions in the order of their smallest numbers.
   std::vector<PolarAngles> ordered() {
     std::vector<std::pair<uint64_t, PolarAngles>> order;
     for (const auto& [angles, number] : number_) order.push_back({number, {angles.first, angles.second}});
@@ -40,7 +40,7 @@ class DirectionSet {
     }
     return directions;
   }
-  /// Once ordered.
+  /// Requires ordered().
   uint32_t place(const PolarAngles& d) const { return static_cast<uint32_t>(number_.at({d.theta, d.phi})); }
 
  private:
@@ -49,10 +49,10 @@ class DirectionSet {
 
 struct OrderedPictures {
   std::optional<PairLayout> layout;
-  std::vector<std::string> paths;  // by pair
+  std::vector<std::string> paths;  // [pair]
 };
 
-/// Throws Error(bad_data) with the source's name where the directions are none.
+/// Throws Error(bad_data) with the source's name if the directions are invalid.
 OrderedPictures ordered(const ImageSetSource& source) {
   DirectionSet views, lights;
   for (const PairPicture& p : source.pictures) {
@@ -101,7 +101,7 @@ bool is_outside(const std::string& picture, const fs::path& folder) {
   return from_folder.empty() || *from_folder.begin() == "..";
 }
 
-/// An index from elsewhere may name any file of this machine, and its pixels would go into the model.
+/// Warns of images outside the index's folder: an index may name any file here, whose pixels would go into the model.
 std::string pictures_elsewhere(const ImageSetSource& source) {
   const fs::path given = fs::absolute(source.path).lexically_normal();
   const fs::path folder = fs::is_directory(given) ? given : given.parent_path();
@@ -197,7 +197,7 @@ class ImageSet : public BtfMeasurement {
                                       "; bring all pictures of the set to one size.");
   }
 
-  /// The hash is one of all names, sizes and angles: the pictures themselves are too many to be read for it.
+  /// The hash covers all names, sizes and angles; hashing the images themselves would take too long.
   void name_source(const ImageSetSource& source) {
     std::string text = scale_.text() + " " + curve_text(options_.curve) + " " + colors_text() + "\n";
     uint64_t bytes = 0;
@@ -219,7 +219,7 @@ class ImageSet : public BtfMeasurement {
 
   void read_picture_of(uint64_t pair, std::span<HalfBits> values) const {
     const Picture picture = read_picture(paths_[pair], picture_options());
-    check_size(picture, pair);  // it may have been replaced
+    check_size(picture, pair);  // the file may have been replaced
     const float scale = scale_.of(layout().lights()[layout().light_of(pair)]);
     std::vector<float> floats(values.size());
     const auto channels = static_cast<size_t>(picture.channels);
@@ -232,10 +232,10 @@ class ImageSet : public BtfMeasurement {
   }
 
   BtfLoadOptions options_;
-  std::string elsewhere_;  // a warning; mostly empty
+  std::string elsewhere_;  // a warning; usually empty
   ValueScale scale_;
   std::vector<std::string> paths_;
-  bool has_alpha_ = false;  // of the first picture
+  bool has_alpha_ = false;  // whether the first image has alpha
 };
 
 }  // namespace

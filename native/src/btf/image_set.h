@@ -1,4 +1,4 @@
-// A BTF measured as pictures: one file a pair of directions.
+// A BTF stored as one image file per pair of directions.
 #pragma once
 
 #include <memory>
@@ -10,8 +10,8 @@
 
 namespace velour {
 
-/// A picture and the pair of directions it was taken at. `view_number` and `light_number` say where in their sets the
-/// directions come; directions come in the order of their smallest number.
+/// An image and its pair of directions. `view_number` and `light_number` determine the order of the directions in their
+/// sets; a direction is placed by its smallest number.
 struct PairPicture {
   std::string path;
   PolarAngles view, light;
@@ -24,8 +24,8 @@ struct ImageSetSource {
   std::vector<PairPicture> pictures;
 };
 
-/// Checks that all pictures are there and of one size; their pixels are read when asked for. Throws Error(io, bad_data)
-/// that names the picture at fault.
+/// Checks that all images exist and have the same size; pixels are read on demand. Throws Error(io, bad_data) that
+/// names the image at fault.
 std::shared_ptr<const BtfMeasurement> load_image_set(ImageSetSource source, const BtfLoadOptions& options);
 
 }  // namespace velour

@@ -48,7 +48,7 @@ std::shared_ptr<const BtfMeasurement> load_folder(const std::string& path, const
   return load_image_set({path, "ubo2003", find_named_pictures(path)}, options);
 }
 
-/// By its extension too, so that one with a bad first line is told what is wrong with it.
+/// Checks the extension too, so that an index with a bad first line gets a specific error.
 bool is_csv(const std::string& path) { return fs::path(path).extension() == ".csv" || is_csv_index(path); }
 
 bool is_archive(const std::string& path) {

@@ -1,4 +1,4 @@
-// Reads BTFs of every kind.
+// Loads BTFs of all supported formats.
 #pragma once
 
 #include <memory>
@@ -10,35 +10,35 @@
 
 namespace velour {
 
-/// What a number in a picture, or in a .btf file, means. White is a surface that reflects all light evenly.
+/// Meaning of the numbers in an image or .btf file. White is a perfectly diffuse surface that reflects all light.
 enum class BtfValues {
-  automatic,    // as the pictures say of themselves (Velour's exports do); other pictures: radiance; .btf files: brdf
+  automatic,    // as tagged (Velour's exports are); untagged images: radiance; .btf files: brdf
   brdf,         // the apparent BRDF in 1/sr
-  reflectance,  // pi times that: white is 1
-  radiance,     // pi cos(theta_l) times it: white is the cosine of the light, as a camera sees it under a distant lamp
+  reflectance,  // pi times the BRDF: white is 1
+  radiance,     // pi cos(theta_l) times the BRDF: white is cos(theta_l), as a camera sees it under a distant light
 };
 
-/// The unit of angles in a CSV index. Automatic: degrees, and refused where they look like radians.
+/// Unit of the angles in a CSV index. Automatic: degrees; an error if they look like radians.
 enum class BtfAngles { automatic, degrees, radians };
 
-/// What the three channels of pictures are.
+/// Color space of the image channels.
 enum class BtfColors { rec709, xyz };
 
 struct BtfLoadOptions {
   BtfValues values = BtfValues::automatic;
   BtfColors colors = BtfColors::rec709;
-  TransferCurve curve;  // of pictures of whole numbers
+  TransferCurve curve;  // for integer images
   BtfAngles angles = BtfAngles::automatic;
-  std::string layer = {};                          // of OpenEXR pictures (PictureOptions)
-  std::optional<Vec2> tile_metres = std::nullopt;  // in place of what the source says, if it says anything
+  std::string layer = {};                          // layer of OpenEXR images (PictureOptions)
+  std::optional<Vec2> tile_metres = std::nullopt;  // overrides the size given by the source
 };
 
-/// By what `path` is: a folder of Velour's own or its btf.json; a folder of pictures that are named for their angles; a
-/// CSV index of pictures, or a folder that holds one as btf.csv; a .btf file of Bonn (docs/btf.md). Throws Error(io,
-/// bad_data, unsupported) with one sentence that names file and remedy.
+/// Loads one of: a Velour BTF folder or its btf.json; a folder of images named by their angles; a CSV index of images,
+/// or a folder that contains one as btf.csv; a .btf file of Bonn (docs/btf.md). Throws Error(io, bad_data, unsupported)
+/// with one sentence that names the file and the remedy.
 std::shared_ptr<const BtfMeasurement> load_btf(const std::string& path, const BtfLoadOptions& options = {});
 
-/// Whether `path` looks like one of these: a folder, a CSV index, a .btf file.
+/// Whether `path` looks like one of these: a folder, btf.json, a CSV index or a .btf file.
 bool is_btf(const std::string& path);
 
 }  // namespace velour

@@ -1,4 +1,4 @@
-// Pictures with holes.
+// Replacement of non-finite values in images.
 #pragma once
 
 #include <cstdint>
@@ -6,8 +6,8 @@
 
 namespace velour {
 
-/// How many of `image` ([texel][channel], three channels) are not finite; those become the mean of the rest, channel by
-/// channel, so that they pull at nothing.
+/// Replaces non-finite values of `image` ([texel][channel], three channels) by the mean of the finite ones, per
+/// channel, so that they do not bias a fit. Returns their number.
 uint64_t mend_image(std::span<float> image);
 
 }  // namespace velour

@@ -9,7 +9,7 @@
 namespace velour {
 namespace {
 
-constexpr double kLeastElevation = 0.1;  // degrees off the plane: cosines of less are not worth dividing by
+constexpr double kLeastElevation = 0.1;  // degrees from the plane; smaller cosines are not worth dividing by
 
 std::string text_of(const PolarAngles& angles) {
   return "theta " + std::to_string(angles.theta) + ", phi " + std::to_string(angles.phi);

@@ -1,4 +1,4 @@
-// Which pairs of directions a BTF was taken at, and in which order its images come.
+// The pairs of directions of a BTF and the order of its images.
 #pragma once
 
 #include <cstdint>
@@ -8,13 +8,13 @@
 
 namespace velour {
 
-/// Pairs in the order of their views, within a view in the order of their lights. A pair is numbered by its place.
+/// Pairs are numbered by view, then by light.
 class PairLayout {
  public:
-  /// Every view with every light. Throws Error(invalid_argument) when a set is empty, holds a direction twice, or one
-  /// that is not finite or within a tenth of a degree of the plane.
+  /// Pairs every view with every light. Throws Error(invalid_argument) if a set is empty, or contains a direction that
+  /// is repeated, not finite, or within 0.1 degrees of the plane.
   PairLayout(std::vector<PolarAngles> views, std::vector<PolarAngles> lights);
-  /// `lights_of_view[v]`: numbers of the lights that view v was taken with, rising; may be empty.
+  /// `lights_of_view[v]`: indices of the lights paired with view v, ascending; may be empty.
   PairLayout(std::vector<PolarAngles> views, std::vector<PolarAngles> lights,
              const std::vector<std::vector<uint32_t>>& lights_of_view);
 

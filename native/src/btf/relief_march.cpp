@@ -19,16 +19,16 @@ namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 constexpr float kMostLines = 1024;
 constexpr float kLong = 24;
-constexpr float kShortest = 1e-6f;  // way that is told from none
+constexpr float kShortest = 1e-6f;  // extents below this count as zero
 constexpr size_t kMostLanes = 16;
 using Lanes = hn::CappedTag<float, kMostLanes>;
 
-/// The lines of the grid that a ray crosses in one direction, from the last one before it starts. `across` counts
-/// them, `along` is the coordinate on them.
+/// The grid lines of one orientation that a ray crosses, starting with the last one before its origin. `across` is the
+/// axis that counts them, `along` the coordinate on them.
 struct Lines {
   Lines(float from, float way, float start_along, float way_along_, const Period& across_, const Period& along_)
       : from_along(start_along), way_along(way_along_), across(across_), along(along_) {
-    // Without branches: whether a ray goes up or down an axis nobody can foretell.
+    // Branch-free, because the sign of the direction is unpredictable.
     step = std::copysign(1.0f, way);
     line = step * std::floor(step * from);
     rate = std::max(std::abs(way), kShortest);
@@ -42,18 +42,18 @@ struct Lines {
     period *= n;
     rate /= n;
   }
-  /// Of the last line before a time when the ray is known to be above the surface.
+  /// Number of the last line before `when`, until which the ray is known to be above the surface.
   float number_before(float when) const { return std::max(std::floor((when - first) * rate - 1e-2f), 0.0f); }
 
   float line, step, from_along, way_along;
-  float first, period, rate;  // times, and lines a unit of time
-  float last;                 // number of a line behind the end
+  float first, period, rate;  // times; `rate` in lines per unit of time
+  float last;                 // number of a line beyond the end
   const Period &across, &along;
 };
 
-/// What a ray finds at as many lines as there are lanes, and at the last one before those.
+/// State of a ray at one line per lane, and at the last line before those.
 struct Crossings {
-  static constexpr size_t kFirst = kMostLanes;  // so that vectors are aligned
+  static constexpr size_t kFirst = kMostLanes;  // keeps vectors aligned
 
   bool none_met() const { return met == kFirst + hn::Lanes(Lanes()); }
   float end() const { return when[met]; }
@@ -62,46 +62,46 @@ struct Crossings {
     return kFirst - 1 + hn::CountTrue(d, hn::Lt(hn::Load(d, when + kFirst), hn::Set(d, end)));
   }
 
-  // The last: the first line that is not looked at.
+  // The last entry is the first line that has not been tested.
   HWY_ALIGN float when[2 * kMostLanes + 1];
-  HWY_ALIGN float gap[2 * kMostLanes + 1];  // how far the ray is above the surface
-  size_t met;  // place of the first crossing that is not above it; where all are, the one behind the last
+  HWY_ALIGN float gap[2 * kMostLanes + 1];  // height of the ray above the surface
+  size_t met;  // index of the first crossing that is not above the surface; one past the last if all are
 };
 
-/// A whole number in [0, 2^22] as an integer.
+/// Converts an integral float in [0, 2^22] to an integer.
 template <class D, class V = hn::Vec<D>>
 HWY_INLINE hn::Vec<hn::RebindToSigned<D>> whole(D d, V number) {
   const hn::RebindToSigned<D> di;
   return hn::Sub(hn::BitCast(di, hn::Add(number, hn::Set(d, 8388608.0f))), hn::Set(di, 0x4b000000));
 }
 
-/// The number of lanes where there is none.
+/// Index of the first true lane; the number of lanes if there is none.
 template <class D, class M>
 HWY_INLINE size_t first_true(D d, M mask) {
   const intptr_t first = hn::FindFirstTrue(d, mask);
   return first < 0 ? hn::Lanes(d) : static_cast<size_t>(first);
 }
 
-/// The same place of the period, in [0, extent].
+/// Wraps `at` into the period, [0, extent].
 template <class D, class V = hn::Vec<D>>
 HWY_INLINE V wrapped(D d, V at, const Period& period) {
   const V extent = hn::Set(d, period.extent), periods = hn::Floor(hn::Mul(at, hn::Set(d, period.inverse)));
   return hn::Min(hn::Max(hn::NegMulAdd(periods, extent, at), hn::Zero(d)), extent);
 }
 
-/// At the lines from `number` on. `kAlongX`: they run along x.
+/// Tests the lines from `number` on. `kAlongX`: the lines run along x.
 template <bool kAlongX>
 HWY_INLINE void cross(const Lines& lines, const HeightWords& heights, float number, Crossings& crossings) {
   const Lanes d;
   const hn::RebindToUnsigned<Lanes> du;
   const hn::RebindToSigned<Lanes> di;
-  // Lines behind the end are looked at only once: what they show is clear, but must be read.
+  // Lanes beyond the end repeat one line: their result is known, but they still have to read.
   const auto n = hn::Min(hn::Add(hn::Iota(d, 0.0f), hn::Set(d, number)), hn::Set(d, lines.last));
   const auto when = hn::MulAdd(n, hn::Set(d, lines.period), hn::Set(d, lines.first));
   const auto line = wrapped(d, hn::MulAdd(n, hn::Set(d, lines.step), hn::Set(d, lines.line)), lines.across);
   const auto along =
       wrapped(d, hn::MulAdd(when, hn::Set(d, lines.way_along), hn::Set(d, lines.from_along)), lines.along);
-  // At the end of the period the last corner, and a part of 1.
+  // At the end of the period: the last corner, with a fraction of 1.
   const auto corner = hn::Min(hn::Floor(along), hn::Set(d, lines.along.extent - 1));
   const auto stride = hn::Set(di, static_cast<int32_t>(heights.stride));
   const auto across = whole(d, line), place = whole(d, corner);
@@ -121,7 +121,7 @@ HWY_INLINE void cross(const Lines& lines, const HeightWords& heights, float numb
   crossings.met = Crossings::kFirst + first_true(d, hn::Le(gap, hn::Zero(d)));
 }
 
-/// The same at the next lines.
+/// Tests the next lines.
 template <bool kAlongX>
 HWY_INLINE void cross_next(const Lines& lines, const HeightWords& heights, float& number, Crossings& crossings) {
   const size_t count = hn::Lanes(Lanes()), last = Crossings::kFirst + count - 1;
@@ -131,7 +131,7 @@ HWY_INLINE void cross_next(const Lines& lines, const HeightWords& heights, float
   cross<kAlongX>(lines, heights, number, crossings);
 }
 
-/// A time until which the ray is above all that lies about it.
+/// A time until which the ray is above everything around it.
 HWY_INLINE float clear_until(const HeightWords& heights, const ReliefMarch& m) {
   const hn::CappedTag<float, 8> d;
   const hn::RebindToSigned<decltype(d)> di;
@@ -145,13 +145,13 @@ HWY_INLINE float clear_until(const HeightWords& heights, const ReliefMarch& m) {
   const auto x = block(m.from.x, m.way.x, heights.columns), y = block(m.from.y, m.way.y, heights.rows);
   const auto index = hn::Add(hn::Mul(y, hn::Set(di, static_cast<int32_t>(heights.blocks))), x);
   const auto lid = hn::GatherIndex(d, heights.lid.data(), index);
-  // At the end of each step.
+  // Height at the end of each step.
   const auto ray =
       hn::NegMulAdd(hn::Add(when, hn::Set(d, step)), hn::Set(d, float{kHeightRange}), hn::Set(d, float{kHeightRange}));
   return static_cast<float>(first_true(d, hn::Le(ray, lid))) * step;
 }
 
-/// Between the last crossing of either kind above the surface and the first one that is not.
+/// Interpolates the time between the last crossing of either kind above the surface and the first one that is not.
 HWY_INLINE float meeting_between(const Crossings (&at)[2], size_t next) {
   const float end = at[next].end(), below = at[next].gap[at[next].met];
   const size_t place[] = {at[0].before(end), at[1].before(end)};
@@ -164,7 +164,7 @@ HWY_FLATTEN Vec2 meeting(const HeightWords& heights, const ReliefMarch& m) {
   const Lines columns(m.from.x, m.way.x, m.from.y, m.way.y, heights.columns, heights.rows);
   const Lines rows(m.from.y, m.way.y, m.from.x, m.way.x, heights.rows, heights.columns);
   Crossings at[2];
-  // Before the first line, should rounding put that below the surface.
+  // Sentinel before the first line, in case rounding puts that line below the surface.
   for (Crossings& a : at) {
     a.when[Crossings::kFirst - 1] = -1;
     a.gap[Crossings::kFirst - 1] = 1;
@@ -174,7 +174,7 @@ HWY_FLATTEN Vec2 meeting(const HeightWords& heights, const ReliefMarch& m) {
   cross<false>(columns, heights, column, at[0]);
   cross<true>(rows, heights, row, at[1]);
   for (;;) {
-    // A number, not a branch: which it is nobody can foretell.
+    // An index instead of a branch, because the outcome is unpredictable.
     const size_t next = at[1].end() < at[0].end();
     if (!at[next].none_met() || !std::isfinite(at[next].end())) return m.from + meeting_between(at, next) * m.way;
     if (next == 0) {
@@ -205,7 +205,7 @@ HeightWords::HeightWords(uint32_t width, uint32_t height, const std::vector<floa
   for (uint32_t y = 0; y < height; y += kBlock) {
     for (uint32_t x = 0; x < width; x += kBlock) {
       uint32_t greatest = 0;
-      // A step away and a cell on.
+      // kBlock cells on each side, and the far corner of the last cell.
       for (uint32_t j = 0; j <= 3 * kBlock; ++j) {
         for (uint32_t i = 0; i <= 3 * kBlock; ++i) {
           greatest = std::max(greatest, at(x + i + kBlock * (width - 1), y + j + kBlock * (height - 1)));

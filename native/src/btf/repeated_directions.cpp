@@ -5,7 +5,7 @@
 namespace velour {
 namespace {
 
-/// Far below what is set up or measured, far above the rounding of angles.
+/// Well below any spacing in use, well above the rounding error of angles.
 constexpr float kSame = 1e-5f;  // radians
 
 size_t repeated(const std::vector<PolarAngles>& set) {

@@ -1,4 +1,4 @@
-// Directions of a BTF that have other angles and are the same.
+// Detects directions of a BTF that coincide although their angles differ.
 #pragma once
 
 #include <string>
@@ -7,8 +7,8 @@
 
 namespace velour {
 
-/// A sentence on views and lights whose direction an earlier one has (phi 0 and 360, any phi at theta 0), which is the
-/// only one that interpolation meets; empty where all differ.
+/// Warning about views and lights that coincide with an earlier one (phi 0 and 360, any phi at theta 0); interpolation
+/// uses the earlier one only. Empty if all differ.
 std::string repeated_directions(const PairLayout& layout);
 
 }  // namespace velour

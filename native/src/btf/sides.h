@@ -1,4 +1,4 @@
-// Which side of a model of a BTF serves a viewer and a light.
+// Selects the side of a BTF model for a viewer and a light.
 #pragma once
 
 #include <cstdint>
@@ -7,14 +7,13 @@
 
 namespace velour {
 
-/// A side that looks as another one does, within the measurement's noise, and takes no bytes of its own.
+/// A side that equals another one within measurement noise and stores no data of its own.
 struct SharedSide {
   bool view_below = false, light_below = false;
-  uint32_t side = 0;  // of `sides`
+  uint32_t side = 0;  // index in `sides`
 };
 
-/// The number of the side that is seen from there under light from there; nothing where the model has none. `Btf` has
-/// `sides` and `shared`.
+/// Index of the side for this view and light; empty if the model has none. `Btf` has `sides` and `shared`.
 template <typename Btf>
 std::optional<uint32_t> serving_side(const Btf& btf, bool view_below, bool light_below) {
   for (uint32_t i = 0; i < btf.sides.size(); ++i) {

@@ -13,7 +13,7 @@
 
 namespace velour {
 
-/// What a coefficient's bytes stand for: least + step * byte.
+/// Quantization of a coefficient: value = least + step * byte.
 struct ByteScale {
   float least = 0, step = 0;
 
@@ -21,41 +21,40 @@ struct ByteScale {
   float value(uint8_t byte) const { return least + step * static_cast<float>(byte); }
 };
 
-/// One level of the pyramid over the tile.
+/// One mip level of the tile.
 struct SrbfLevel {
   uint32_t width = 0, height = 0;
-  std::vector<HalfBits> relief;  // [row][column]: over the reference plane, widths of the tile
-  std::vector<uint8_t> value;    // [row][column][coefficient], row 0 at the bottom: SrbfSide::scale
+  std::vector<HalfBits> relief;  // [row][column]: height over the reference plane, in tile widths
+  std::vector<uint8_t> value;    // [row][column][coefficient], row 0 at the bottom; see SrbfSide::scale
 };
 
-/// What is seen from one side of the reference plane under light from one side: both are looked at in the frame of the
-/// viewer, or of the light, mirrored to z > 0.
+/// Appearance from one side of the reference plane under light from one side. View and light directions are mirrored to
+/// z > 0.
 ///
-/// Let p be where the view's ray meets the relief of the level (Relief::seen). With a = a colour axis, the sum at p is
+/// Let p be the point where the view ray hits the relief of the level (Relief::seen). The sum of color axis a at p is
 ///   s_a = sum over the coefficients k of a of value_k(p) g_{lobe_k}(wl, wv)
-/// and f = expanded(axes (s_0, s_1, s_2)). The first `tile_lobes` are functions of the directions in the tile's frame;
-/// the others, in the frame of the relief's normal at p: the tile's, turned the shortest way.
+/// and f = expanded(axes (s_0, s_1, s_2)). The first `tile_lobes` lobes take directions in the tile's frame; the others
+/// in the frame of the relief's normal at p, which is the tile's frame after the shortest rotation.
 struct SrbfSide {
   bool view_below = false, light_below = false;
   std::vector<MultivariateLobe> lobes;
   uint32_t tile_lobes = 0;
-  std::array<std::vector<uint16_t>, 3> lobe;  // of each axis' coefficients: of axis 0 every lobe in order
-  std::vector<ByteScale> scale;               // of each coefficient, on all levels
-  std::vector<SrbfLevel> levels;              // the finest first; each half of the one before, down to one texel
+  std::array<std::vector<uint16_t>, 3> lobe;  // lobe of each axis's coefficients; axis 0 has every lobe, in order
+  std::vector<ByteScale> scale;               // per coefficient, shared by all levels
+  std::vector<SrbfLevel> levels;              // finest first; each half the size of the previous one, down to one texel
 
-  /// Sets what bytes stand for: from the least to the largest value of each coefficient, `levels` finest first,
-  /// [texel][coefficient].
+  /// Sets the scales to the range of each coefficient. `levels`: finest first, [texel][coefficient].
   void set_scale(const std::vector<std::vector<float>>& levels);
-  /// Sets the values of all levels: the nearest bytes.
+  /// Quantizes the values of all levels to the nearest bytes.
   void set_values(const std::vector<std::vector<float>>& levels);
 
   size_t coefficients() const { return lobe[0].size() + lobe[1].size() + lobe[2].size(); }
-  /// Of all coefficients, heights and lobes as they are stored.
+  /// Size of all coefficients, heights and lobes as stored.
   uint64_t parameter_bytes() const;
 };
 
 struct SrbfBtf {
-  PairLayout layout;  // that was fitted
+  PairLayout layout;  // layout of the fitted BTF
   TexelGrid grid;
   Companding companding = Companding::root;
   Mat3 axes{1.0f};  // columns: orthonormal directions in RGB
@@ -67,11 +66,11 @@ struct SrbfBtf {
   static constexpr size_t kMaxLobes = 256;
 };
 
-/// The tile's extent along y over that along x; square texels where its size is not known.
+/// The tile's extent along y divided by that along x. Assumes square texels if the tile size is unknown.
 float tile_aspect(const TexelGrid& grid);
 
-/// The rotation that takes the normal of a Relief::slope() to +z the shortest way: Rodrigues' formula about
-/// (n.y, -n.x, 0), whose length is the sine. One division, because evaluation waits for it.
+/// The shortest rotation that takes the normal of a Relief::slope() to +z: Rodrigues' formula about (n.y, -n.x, 0),
+/// whose length is the sine. One division only, because evaluation waits for it.
 inline Mat3 to_normal(const Vec2& slope) {
   const float square = 1 + glm::dot(slope, slope), length = std::sqrt(square);
   const float one = 1 / (square + length), z = one * (length + 1), a = one * square;  // a = 1 / (1 + z)

@@ -9,17 +9,17 @@
 namespace velour {
 namespace {
 
-constexpr float kSlopeStep = Relief::kSteepest / 32767;  // of the slopes' lower bytes
+constexpr float kSlopeStep = Relief::kSteepest / 32767;  // step of the lower byte of a slope
 constexpr uint32_t kBlock = MultivariateLobes::kPadding;
 
-/// A coefficient of texels, by its number, and what it multiplies.
+/// A texel coefficient, by index, with its axis and lobe.
 struct Term {
   size_t coefficient;
   int axis;
   MultivariateLobe lobe;
 };
 
-/// Those of lobes in the tile's frame, or in that of the normal.
+/// Terms of the lobes in the tile's frame, or of those in the normal's frame.
 std::vector<Term> terms(const SrbfSide& side, bool tile) {
   std::vector<Term> terms;
   size_t coefficient = 0;
@@ -109,7 +109,7 @@ std::optional<uint32_t> SrbfEvaluator::side(bool view_below, bool light_below) c
 void SrbfEvaluator::begin(uint32_t side, const Vec3& wv, SrbfPoint& point) const {
   point.side = side;
   point.wv = wv;
-  // What bytes of 0 stand for: those of the places are added to it.
+  // The value of zero bytes, to which add() accumulates.
   std::copy_n(sides_[side].least.data(), sides_[side].stride, point.record);
 }
 

@@ -1,4 +1,4 @@
-// A BTF as sums of multivariate SRBFs, evaluated.
+// Evaluation of BTFs made of multivariate SRBFs.
 #pragma once
 
 #include <array>
@@ -20,28 +20,27 @@ class SrbfEvaluator {
   explicit SrbfEvaluator(std::shared_ptr<const SrbfBtf> btf);
 
   const SrbfBtf& btf() const { return *btf_; }
-  /// Its number; nothing where the BTF was not fitted there.
+  /// Index of the side; empty if the BTF was not fitted there.
   std::optional<uint32_t> side(bool view_below, bool light_below) const;
   /// Texels of the finest level.
   Vec2 texels() const { return {btf_->grid.width, btf_->grid.height}; }
 
-  /// Begins a point, seen from `wv`. Then add() its places, of weights that sum to 1, and finish().
+  /// Begins a point seen from `wv`. Call add() for each of its places, with weights that sum to 1, then finish().
   void begin(uint32_t side, const Vec3& wv, SrbfPoint& point) const;
-  /// `uv`: in tiles, on the reference plane; `level` of the pyramid, between 0 and the last.
+  /// `uv`: in tiles, on the reference plane. `level`: mip level, from 0 to the last.
   void add(const Vec2& uv, float level, float weight, SrbfPoint& point) const;
   void finish(SrbfPoint& point) const;
-  /// f of a finished point, never negative. `wl` as wv: in the frame of its side.
+  /// f at a finished point, never negative. `wl`, like `wv`, is in the frame of the side.
   Rgb value(const SrbfPoint& point, const Vec3& wl) const;
-  /// What can be prepared of a direction that many points are asked for: nothing.
+  /// Data prepared for a light direction that many points share: none here.
   using Light = Vec3;
   Light light(uint32_t /*side*/, const Vec3& wl) const { return wl; }
-  /// Of the relief that is seen, blended over its places.
+  /// Normal of the visible relief, blended over the places of the point.
   Vec3 normal(const SrbfPoint& point) const { return glm::transpose(point.to_normal) * Vec3(0, 0, 1); }
 
  private:
-  /// A texel is a record of bytes: its coefficients, those of lobes in the tile's frame first, each part padded, then
-  /// the slope of the relief, x and y in sixteen bits each. A lobe stands there once for each axis that it has a
-  /// coefficient of.
+  /// A texel is a record of bytes: its coefficients, those of lobes in the tile's frame first, each part padded; then
+  /// the slope of the relief, x and y in sixteen bits each. A lobe appears once for each axis that uses it.
   struct Level {
     Vec2 texels() const { return {relief.width(), relief.height()}; }
     Vec2 seen_texel(const Vec2& place, const Vec3& wv) const { return relief.seen_texel(place, wv); }
@@ -51,12 +50,12 @@ class SrbfEvaluator {
   struct Side {
     Side(const SrbfBtf& btf, const SrbfSide& side);
     void add_level(Relief relief, const SrbfLevel& from, const std::vector<uint32_t>& place);
-    uint32_t slope() const { return stride - 4; }  // its place in a record
+    uint32_t slope() const { return stride - 4; }  // offset in a record
 
     MultivariateLobes tile, texel;
-    uint32_t stride;                  // of records
-    AlignedArray<float> least, step;  // of a record's bytes
-    AlignedArray<float> color;        // of its lobes, in linear Rec. 709: lobe_sums
+    uint32_t stride;                  // bytes per record
+    AlignedArray<float> least, step;  // scale of each byte of a record
+    AlignedArray<float> color;        // color of each byte's lobe, linear Rec. 709; see lobe_sums
     std::vector<Level> levels;
   };
 
@@ -64,8 +63,8 @@ class SrbfEvaluator {
   std::vector<Side> sides_;
 };
 
-/// f of every texel of the finest level for one pair of directions, [row][column][channel]; zero where the model has no
-/// direction on a side of the plane.
+/// f of every texel of the finest level for one pair of directions, [row][column][channel]; zero if the model has no
+/// direction on that side of the plane.
 void srbf_image(const SrbfEvaluator& evaluator, const DirectionPair& pair, std::vector<float>& rgb);
 
 }  // namespace velour

@@ -1,4 +1,4 @@
-// A place of a BTF of multivariate SRBFs and a view of it.
+// A point of an SRBF BTF seen from one view.
 #pragma once
 
 #include <cstdint>
@@ -8,15 +8,15 @@
 
 namespace velour {
 
-/// Scratch memory of SrbfEvaluator, reused from hit to hit. Directions are those of the side, z > 0.
+/// Scratch memory of SrbfEvaluator, reused from hit to hit. Directions are in the frame of the side, z > 0.
 struct SrbfPoint {
   static constexpr uint32_t kMostRecord = 3 * SrbfBtf::kMaxLobes + 3 * kByteRowPadding;
 
-  alignas(64) float record[kMostRecord];  // blended over texels: see SrbfEvaluator
+  alignas(64) float record[kMostRecord];  // interpolated texel record, see SrbfEvaluator
   Vec3 wv;
   Mat3 to_normal;
   uint32_t side;
-  bool seen;  // whoever looks sets it: false where the BTF was not fitted
+  bool seen;  // set by the caller; false where the BTF was not fitted
 };
 
 }  // namespace velour

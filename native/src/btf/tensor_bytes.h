@@ -1,4 +1,4 @@
-// What the parts of clustered tensors cost.
+// Sizes of the parts of clustered tensors.
 #pragma once
 
 #include <cstdint>
@@ -7,10 +7,10 @@
 
 namespace velour {
 
-/// Of one side, as they are stored.
+/// Bytes of one side, as stored.
 struct TensorBytes {
-  uint64_t coefficients = 0, members = 0, relief = 0;  // of all levels
-  uint64_t factors = 0, cores = 0, scales = 0;         // of all clusters
+  uint64_t coefficients = 0, members = 0, relief = 0;  // over all levels
+  uint64_t factors = 0, cores = 0, scales = 0;         // over all clusters
 };
 TensorBytes bytes_of(const TensorSide& side);
 

@@ -12,7 +12,7 @@ uint32_t count_on_side(const std::vector<PolarAngles>& directions, bool below) {
   return static_cast<uint32_t>(directions_on_side(directions, below).size());
 }
 
-/// Whether points have room for rows of that width.
+/// Whether a TensorPoint has room for rows of this width.
 bool holds_rows(const TensorTables& t) { return t.light_node() <= TensorPoint::kMostRanks; }
 
 TensorTables sizes_of(const TensorSide& side, TensorOrder order, uint32_t lights) {
@@ -52,13 +52,13 @@ TensorTables chosen(const TensorSide& side, size_t views, uint32_t lights, uint6
   return sizes_of(side, TensorOrder::ranks, lights);
 }
 
-/// Where the rows of one cluster and node of TensorTables::table begin.
+/// Offset of the rows of one node and cluster in TensorTables::table.
 size_t table_place(const TensorTables& t, size_t node, size_t cluster) {
   return node * t.table_node() + cluster * t.table_cluster();
 }
 
-/// A cluster's core times a number for each rank of the views, [rank of the texels][of the colours], each a row over
-/// the ranks of the lights, `row` numbers from one to the next: added to `to`.
+/// Adds a cluster's core, contracted over the view ranks with `weight`, to `to`: [texel rank][color rank] rows over the
+/// light ranks, `row` numbers apart.
 void add_node(const TensorSide& side, const TensorFactors& factors, const float* weight, size_t row, float* to) {
   const float* core = factors.core.data();
   for (uint32_t r = 0; r < side.rank.texel; ++r, to += side.rank.color * row) {
@@ -139,7 +139,7 @@ void TensorContraction::fill_lights(const TensorSide& side, const TensorFactors&
 
 void TensorContraction::fill_pairs(const TensorSide& side, const TensorFactors& factors, size_t cluster) {
   const size_t rank = side.rank.light, colors = side.rank.color, lights = tables_.lights;
-  // Sums over ranks run along the lights.
+  // Transposed, so that the inner loop runs along the lights.
   const std::vector<float> light = transposed(factors.light, rank);
   std::vector<float> node, sum(lights);
   for (size_t v = 0; v < views_; ++v) {

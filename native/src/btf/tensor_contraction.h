@@ -1,4 +1,4 @@
-// A side of clustered tensors, contracted as far as no query is needed.
+// Query-independent contraction of a side of clustered tensors.
 #pragma once
 
 #include <cstdint>
@@ -10,13 +10,13 @@ namespace velour {
 
 struct TensorFactors;
 
-/// Owns what TensorTables point into. Immutable.
+/// Owns the arrays of its TensorTables. Immutable.
 class TensorContraction {
  public:
-  /// The earliest order whose tables take no more than `most_bytes`; in order of ranks they may.
+  /// Uses the first TensorOrder whose tables fit into `most_bytes`; those of TensorOrder::ranks may exceed it.
   TensorContraction(const TensorBtf& btf, const TensorSide& side, uint64_t most_bytes);
   const TensorTables& tables() const { return tables_; }
-  /// That a contraction of such a side takes, whatever is in it.
+  /// Size of the contraction of such a side, whatever its values.
   static uint64_t bytes(const TensorBtf& btf, const TensorSide& side, uint64_t most_bytes);
 
  private:

@@ -7,7 +7,7 @@
 #include "btf/tensor_factors.h"
 
 namespace velour {
-/// One level, ready to be looked up.
+/// One mip level, prepared for lookups.
 struct TensorEvaluator::Level {
   Level(const TensorBtf& btf, const TensorSide& side, const TensorLevel& from)
       : width(from.width), height(from.height) {
@@ -39,9 +39,9 @@ struct TensorEvaluator::Level {
   }
 
   uint32_t width, height;
-  std::vector<uint8_t> records;  // TensorTexels
+  std::vector<uint8_t> records;  // see TensorTexels
   std::optional<Relief> relief;
-  std::vector<Vec2> slope;  // [texel], where there is a relief
+  std::vector<Vec2> slope;  // [texel]; empty without a relief
 };
 
 struct TensorEvaluator::Side {

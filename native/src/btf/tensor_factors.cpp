@@ -9,7 +9,7 @@ std::vector<float> floats_of(const std::vector<HalfBits>& halves) {
   return floats;
 }
 
-/// [channel][rank] from [axis][rank].
+/// Converts [axis][rank] to [channel][rank].
 std::vector<float> in_rgb(const std::vector<float>& along_axes, const Mat3& axes) {
   std::vector<float> rgb(along_axes.size(), 0.0f);
   const size_t rank = rgb.size() / 3;

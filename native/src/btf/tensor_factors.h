@@ -7,16 +7,16 @@
 
 namespace velour {
 
-/// Of one cluster; what TensorBtfCluster holds as half floats, colours in linear Rec. 709 instead of along the axes.
+/// TensorBtfCluster as floats, with colors in linear Rec. 709 instead of along the axes.
 struct TensorFactors {
   TensorFactors(const TensorBtf& btf, const TensorBtfCluster& cluster);
   std::vector<float> view;   // [view][rank]
   std::vector<float> light;  // [light][rank]
   std::vector<float> color;  // [channel][rank]
-  std::vector<float> core;   // [texels'][views'][lights'][colours' rank]
+  std::vector<float> core;   // [texel rank][view rank][light rank][color rank]
 };
 
-/// Heights of a level, which has some.
+/// Heights of a level that has a relief.
 std::vector<float> heights_of(const TensorLevel& level);
 
 }  // namespace velour

@@ -11,7 +11,7 @@
 namespace velour {
 namespace {
 
-/// A factor's row between directions.
+/// The row of a factor, interpolated between directions.
 std::vector<float> between(const std::vector<float>& factor, size_t rank, const DirectionMesh::Weights& at) {
   std::vector<float> row(rank, 0.0f);
   for (size_t i = 0; i < 3; ++i) {
@@ -21,7 +21,7 @@ std::vector<float> between(const std::vector<float>& factor, size_t rank, const 
   return row;
 }
 
-/// What a cluster adds to a texel for a pair: of its bytes, a function of each channel.
+/// A cluster's contribution to a texel for a pair: a linear function of the texel's bytes, per channel.
 struct ByteFunction {
   Vec3 constant{0.0f};
   std::vector<float> slope;  // [channel][rank]

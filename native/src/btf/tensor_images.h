@@ -1,4 +1,4 @@
-// Pictures of a BTF as clustered tensors.
+// Images of BTFs made of clustered tensors.
 #pragma once
 
 #include <memory>
@@ -8,13 +8,13 @@
 
 namespace velour {
 
-/// f of every texel of the finest level for one pair of directions, [row][column][channel]; zero where the model has no
-/// side for the pair. All texels share the pair, so it is contracted first: each cluster becomes one vector over the
-/// texels' rank and colour, and a texel costs as many products as it has coefficients. Evaluation at points goes the
-/// other way (tensor_evaluator.h).
+/// Computes f of every texel of the finest level for one pair of directions, [row][column][channel]; zero if the model
+/// has no side for the pair. All texels share the pair, so it is contracted first: each cluster becomes one vector over
+/// texel rank and color, and a texel costs one product per coefficient and channel. Evaluation at points uses the
+/// reverse order (tensor_evaluator.h).
 class TensorImages {
  public:
-  /// Keeps a reference.
+  /// Keeps a reference to `btf`.
   explicit TensorImages(const TensorBtf& btf);
   ~TensorImages();
   /// Thread-safe.

@@ -19,7 +19,7 @@ namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 using Block = hn::CappedTag<float, kRankPadding>;
 
-/// The number of a cluster among those met.
+/// Index of a cluster among those met; appends a new one.
 HWY_INLINE uint32_t number_of(uint8_t cluster, uint32_t padded, TensorPoint& point) {
   if (point.met[cluster] != TensorPoint::kNotMet) return point.met[cluster];
   const uint32_t number = point.count++;
@@ -30,7 +30,7 @@ HWY_INLINE uint32_t number_of(uint8_t cluster, uint32_t padded, TensorPoint& poi
   return number;
 }
 
-/// Behind the rank bytes of what follows are added as well: nothing multiplies them.
+/// Beyond the rank, bytes of the data that follows are added too; their scale is 0.
 HWY_INLINE void add_bytes(const uint8_t* bytes, uint32_t padded, float weight, float* to) {
   const Block d;
   const hn::RebindToSigned<Block> di;
@@ -57,7 +57,7 @@ HWY_FLATTEN void add_texels(const TensorTexels& texels, const Vec2& texel, float
   }
 }
 
-/// Which entries of the table's first index are summed, and their weights.
+/// The entries of the table's first index to sum, with their weights.
 struct Nodes {
   uint32_t count = 0;
   uint32_t index[TensorBtf::kMaxRank];
@@ -69,14 +69,14 @@ struct Nodes {
   }
 };
 
-/// Views: the same for all clusters.
+/// The nodes are views, the same for all clusters.
 HWY_INLINE void take_views(const DirectionMesh::Weights& view, Nodes& nodes) {
   for (size_t i = 0; i < 3; ++i) {
     if (view.weight[i] > 0) nodes.add(view.index[i], view.weight[i]);
   }
 }
 
-/// Ranks of the views, whose weights are the cluster's factor between views.
+/// The nodes are view ranks, weighted by the cluster's interpolated view factor.
 HWY_INLINE void take_ranks(const TensorTables& t, const DirectionMesh::Weights& view, uint32_t cluster, Nodes& nodes) {
   nodes.count = 0;
   for (uint32_t i = 0; i < t.view_rank; ++i) {
@@ -88,7 +88,7 @@ HWY_INLINE void take_ranks(const TensorTables& t, const DirectionMesh::Weights& 
   }
 }
 
-/// Bytes to coefficients.
+/// Converts bytes to coefficients.
 HWY_INLINE void scale(const TensorTables& t, uint32_t cluster, float share, float* coefficient) {
   const Block d;
   const uint32_t padded = padded_rank(t.rank);
@@ -100,7 +100,7 @@ HWY_INLINE void scale(const TensorTables& t, uint32_t cluster, float share, floa
   }
 }
 
-/// A piece of the table's rows of `kVectors` vectors, `table` from there on: summed over nodes and the texels' rank.
+/// Sums a piece of `kVectors` vectors of the table's rows, starting at `table`, over nodes and texel ranks.
 template <size_t kVectors>
 HWY_INLINE void sum_piece(const TensorTables& t, const Nodes& nodes, const float* coefficient, const float* table,
                           float* to) {
@@ -121,8 +121,8 @@ HWY_INLINE void sum_piece(const TensorTables& t, const Nodes& nodes, const float
   for (size_t i = 0; i < kVectors; ++i) hn::Store(sum[i], d, to + i * lanes);
 }
 
-/// Whole rows, [rank of the colours][padded rank of the lights], in pieces as wide as there are registers for: memory
-/// is read in order, and a coefficient once a piece.
+/// Sums whole rows, [color rank][padded light rank], in pieces that fit the registers: memory is read in order, and
+/// each coefficient once per piece.
 HWY_INLINE void sum_rows(const TensorTables& t, const Nodes& nodes, const float* coefficient, const float* table,
                          float* to) {
   const size_t lanes = hn::Lanes(Block()), row = t.table_row();
@@ -132,7 +132,7 @@ HWY_INLINE void sum_rows(const TensorTables& t, const Nodes& nodes, const float*
   for (; j < row; j += lanes) sum_piece<1>(t, nodes, coefficient, table + j, to + j);
 }
 
-/// A cluster's rows of the three channels.
+/// Computes a cluster's rows for the three channels.
 HWY_INLINE void contract_cluster(const TensorTables& t, const Nodes& nodes, uint32_t cluster, const float* coefficient,
                                  float* row) {
   const Block d;
@@ -151,8 +151,8 @@ HWY_INLINE void contract_cluster(const TensorTables& t, const Nodes& nodes, uint
   }
 }
 
-/// A cluster's rows of the three channels in order of pairs: coefficients times colours. Behind the rank coefficients
-/// are 0, so what is written too far is 0 where the row ends and is written over by what follows elsewhere.
+/// Computes a cluster's rows for the three channels in TensorOrder::pairs: coefficients times colors. Coefficients
+/// beyond the rank are 0, so what is written past the rank is 0 at the end of a row and overwritten elsewhere.
 HWY_INLINE void spread_cluster(const TensorTables& t, uint32_t cluster, const float* coefficient, float* row) {
   const Block d;
   const uint32_t lanes = static_cast<uint32_t>(hn::Lanes(d)), padded = padded_rank(t.rank);
@@ -185,13 +185,13 @@ HWY_FLATTEN void with_view(const TensorTables& t, const DirectionMesh::Weights& 
   }
 }
 
-/// Lights three by three, each three with one weight.
+/// Lights in groups of three; a group shares one view weight.
 template <size_t kThrees>
 struct Threes {
   hn::Vec<Block> weight[3 * kThrees];
   const float* from[3 * kThrees];
 
-  /// The factor of a block of a cluster's row.
+  /// Interpolated factor of a block of a cluster's row.
   HWY_INLINE hn::Vec<Block> at(size_t place) const {
     const Block d;
     auto total = hn::Zero(d);
@@ -204,7 +204,7 @@ struct Threes {
   }
 };
 
-/// The three lights of a node of the views, or of all of them.
+/// Sets the three lights of one view, or those shared by all views.
 template <size_t kThrees>
 HWY_INLINE void take_lights(const TensorTables& t, uint32_t view, float share, const DirectionMesh::Weights& light,
                             size_t three, Threes<kThrees>& threes) {

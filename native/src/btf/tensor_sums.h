@@ -1,4 +1,4 @@
-// The inner loops of clustered tensors. Run-time dispatched SIMD.
+// Inner loops of clustered-tensor evaluation. Run-time dispatched SIMD.
 #pragma once
 
 #include <array>
@@ -10,8 +10,8 @@
 
 namespace velour {
 
-/// Texels of a tile that repeats, [row][column][record]: numbers of a texel's clusters, then of each of those the bytes
-/// of its coefficients. kRankPadding bytes more are read behind the last one.
+/// Texels of a periodic tile, [row][column][record]: the indices of a texel's clusters, then the coefficient bytes of
+/// each cluster. Up to kRankPadding bytes past the last record are read.
 struct TensorTexels {
   const uint8_t* records;
   uint32_t width, height;
@@ -19,27 +19,27 @@ struct TensorTexels {
   uint32_t stride() const { return members * (1 + rank); }
 };
 
-/// Adds `weight` times the four texels about `texel` (bilinear_at) to the point: bytes and shares.
+/// Adds `weight` times the four texels around `texel` (bilinear_at) to the bytes and shares of the point.
 void add_tensor_texels(const TensorTexels& texels, const Vec2& texel, float weight, TensorPoint& point);
 
-/// What of a query its factors are contracted with last: the earlier, the larger the tables and the less is left.
+/// How far a side is contracted in advance. Earlier orders need larger tables and leave less work per query.
 enum class TensorOrder {
-  pairs,  // all but texels, for every pair of directions
-  views,  // texels and lights, for every view
-  ranks,  // all of them
+  pairs,  // all factors but the texels', for every pair of directions
+  views,  // the views' factor, for every view; texels and lights remain
+  ranks,  // nothing; all factors remain
 };
 
-/// A side, contracted as far as no query is needed. A point has a row of `width` numbers for every cluster and channel:
-/// [rank of the lights], or in order of pairs [rank of the colours][rank of the texels]; both padded.
+/// Query-independent contraction of a side. A point has a row of `width` numbers per cluster and channel: [light rank],
+/// or for TensorOrder::pairs [color rank][texel rank]; both padded.
 struct TensorTables {
   TensorOrder order;
   uint32_t clusters, rank, color_rank, width;
-  const float *least, *step;  // [cluster][padded rank]: of bytes
+  const float *least, *step;  // [cluster][padded rank]: scales of bytes
   const float* color;         // [cluster][channel][rank]
-  const float* view;          // [view][cluster][rank], in order of ranks
+  const float* view;          // [view][cluster][rank], for TensorOrder::ranks
   uint32_t view_rank;
-  const float* table;  // [view, or rank of the views][cluster][rank][rank of the colours][width], not of pairs
-  const float* light;  // what rows are multiplied by: [light][cluster][width], of pairs [view][light][cluster][width]
+  const float* table;  // [view or view rank][cluster][rank][color rank][width], not for pairs
+  const float* light;  // multiplies the rows: [light][cluster][width], for pairs [view][light][cluster][width]
   uint32_t lights;
 
   size_t table_row() const { return size_t{color_rank} * width; }
@@ -48,7 +48,7 @@ struct TensorTables {
   size_t light_node() const { return size_t{clusters} * width; }
 };
 
-/// From the bytes and shares of a point to what multiplies the light.
+/// Converts the bytes and shares of a point to the rows that are multiplied by the light.
 void contract_view(const TensorTables& tables, const DirectionMesh::Weights& view, TensorPoint& point);
 
 /// The sum of each channel under a light.

@@ -1,4 +1,4 @@
-// What can be the size of a BTF's tile.
+// Validation of a BTF's tile size.
 #pragma once
 
 #include <cmath>
@@ -7,7 +7,7 @@
 
 namespace velour {
 
-/// Metres along x and y: positive and finite.
+/// Whether both extents, in meters along x and y, are positive and finite.
 inline bool is_tile_size(const Vec2& metres) {
   return metres.x > 0 && metres.y > 0 && std::isfinite(metres.x) && std::isfinite(metres.y);
 }

@@ -1,4 +1,4 @@
-// Matrices turned over.
+// Matrix transposition.
 #pragma once
 
 #include <algorithm>
@@ -7,7 +7,7 @@
 
 namespace velour {
 
-/// From [row][column] to [column][row]; some columns at a time, so that what is written stays in the cache.
+/// Converts [row][column] to [column][row], a few columns at a time so that the writes stay in the cache.
 inline std::vector<float> transposed(const std::vector<float>& matrix, uint64_t columns) {
   constexpr uint64_t kColumnsAtOnce = 16;
   const uint64_t rows = matrix.size() / columns;

@@ -18,10 +18,10 @@ namespace velour {
 namespace {
 
 constexpr uint64_t kTexelsAtOnce = 1024;
-/// Added before logarithms were taken, by the database's own programs.
+/// Added by the database's own programs before taking logarithms.
 constexpr float kEpsilon = 1e-5f;
 
-/// From luminance and colour differences of BT.601.
+/// Converts BT.601 luminance and color differences to RGB.
 Rgb rgb_of_yuv(const Rgb& c) {
   return {c.r + 1.13983f * c.b, c.r - 0.39465f * c.g - 0.5806f * c.b, c.r + 2.03211f * c.g};
 }
@@ -67,7 +67,7 @@ void copy_numbers(const std::vector<uint8_t>& bytes, std::vector<float>& floats)
   }
 }
 
-/// The texels of some rows of the images, for all components: [component][texel] for each channel.
+/// Factors of a range of texels: [component][texel] for each channel.
 struct TexelBlock {
   uint64_t first = 0, count = 0;
   std::array<std::vector<float>, 3> factors;
@@ -112,7 +112,7 @@ class UboFile : public BtfMeasurement {
   }
 
  private:
-  /// [row][component] of `count` rows.
+  /// Reads `count` rows, [row][component].
   std::vector<float> rows_of(const UboChannel& channel, const UboMatrix& matrix, uint64_t first, uint64_t count) const {
     const uint64_t row_bytes = channel.components * channel.scalar_bytes;
     std::vector<uint8_t> bytes(count * row_bytes);
@@ -153,8 +153,8 @@ class UboFile : public BtfMeasurement {
     return block;
   }
 
-  /// One channel of a pair: products are added in the order of the components whatever else is decoded with them, so
-  /// that a pair has the same bits in every range that holds it.
+  /// Decodes one channel of a pair. Products are always added in component order, so that a pair has the same bits in
+  /// every range that contains it.
   static void multiply(const float* pair, const std::vector<float>& texels, std::span<float> sums) {
     std::ranges::fill(sums, 0.0f);
     for (size_t k = 0; k * sums.size() < texels.size(); ++k) {
@@ -180,7 +180,7 @@ class UboFile : public BtfMeasurement {
     store(place, block, rgb, values);
   }
 
-  /// The file's rows run from the top.
+  /// Flips rows: those of the file run from top to bottom.
   void store(uint64_t place, const TexelBlock& block, std::span<const float> rgb, std::span<HalfBits> values) const {
     const uint64_t row_values = uint64_t{3} * grid_.width;
     for (uint64_t done = 0; done < rgb.size(); done += row_values) {

@@ -1,4 +1,4 @@
-// BTFs of Bonn's UBO2014 database: .btf files of factors, decoded pair by pair (docs/btf.md).
+// BTFs of Bonn's UBO2014 database: factorized .btf files, decoded pair by pair (docs/btf.md).
 #pragma once
 
 #include <memory>
@@ -8,10 +8,10 @@
 
 namespace velour {
 
-/// Decodes what is asked for from the file; holds no factors in memory. Throws Error(io, bad_data, unsupported).
+/// Decodes on demand from the file; keeps no factors in memory. Throws Error(io, bad_data, unsupported).
 std::shared_ptr<const BtfMeasurement> load_ubo_file(const std::string& path, const BtfLoadOptions& options);
 
-/// Whether a file begins as one of Bonn's does.
+/// Whether a file begins with a signature of Bonn's formats.
 bool is_ubo_file(const std::string& path);
 
 }  // namespace velour

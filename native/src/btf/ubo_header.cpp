@@ -15,7 +15,7 @@ constexpr std::string_view kSignature = "!DFMF08FCR";
 constexpr uint64_t kMostText = uint64_t{1} << 28;
 constexpr uint64_t kMostComponents = 4096;
 
-/// A place in the file that cannot leave it.
+/// A read position that cannot leave the file.
 class Cursor {
  public:
   explicit Cursor(const RandomAccessFile& file) : file_(file) {}
@@ -33,7 +33,7 @@ class Cursor {
   template <typename T>
   std::vector<T> numbers(uint64_t count, const std::string& field) {
     const uint64_t begin = position_;
-    skip(count > kMostText ? ~uint64_t{0} : count * sizeof(T), field);  // before anything is allocated
+    skip(count > kMostText ? ~uint64_t{0} : count * sizeof(T), field);  // checked before allocating
     std::vector<T> values(count);
     if (count > 0) file_.read(begin, {reinterpret_cast<uint8_t*>(values.data()), count * sizeof(T)});
     return values;
@@ -113,7 +113,7 @@ Sampling read_sampling(Cursor& in) {
   return sampling;
 }
 
-/// One list of lights for all views, and which row of the matrices each pair of the layout is.
+/// Merges the lights of all views into one list and finds the matrix row of each pair of the layout.
 void lay_out(Cursor& in, const Sampling& sampling, UboHeader& header) {
   std::map<std::pair<double, double>, uint32_t> number;
   std::vector<PolarAngles> lights;
@@ -154,7 +154,7 @@ void read_size(Cursor& in, UboHeader& header) {
 }
 
 UboColors read_colors(Cursor& in, const std::string& path) {
-  in.skip(4, "the number of components");  // the largest of the channels'
+  in.skip(4, "the number of components");  // the maximum over the channels
   const auto model = in.number<int32_t>("the colour model");
   in.skip(12 * sizeof(float), "the colour's mean and matrix");
   for (const UboColors known :

@@ -1,5 +1,4 @@
-// What stands before and around the factors of a .btf file of Bonn (UBO2014), as public readers of it know it
-// (docs/btf.md). Internal to btf/.
+// Header and structure of Bonn's .btf files (UBO2014), as in public readers (docs/btf.md). Internal to btf/.
 #pragma once
 
 #include <array>
@@ -12,7 +11,7 @@
 
 namespace velour {
 
-/// How three decorrelated channels become red, green and blue.
+/// Color model of the three decorrelated channels.
 enum class UboColors : int32_t {
   rgb = 0,
   yuv = 1,
@@ -38,16 +37,15 @@ struct UboHeader {
   uint32_t version = 0;
   std::string setup, sensor, light_source;
   float pixels_per_mm = 0;
-  bool cosine = false;  // of the light, in the numbers
+  bool cosine = false;  // whether the numbers include the cosine of the light
   std::optional<PairLayout> layout;
-  std::vector<uint64_t> row_of_pair;  // of the pairs' matrices
+  std::vector<uint64_t> row_of_pair;  // row of each pair in the pair matrices
   uint32_t width = 0, height = 0;
   UboColors colors = UboColors::rgb;
   std::array<UboChannel, 3> channels;
 };
 
-/// Every size is compared with the file's before anything is allocated. Throws Error(bad_data, unsupported) with file
-/// and field.
+/// Checks every size against the file's before allocating. Throws Error(bad_data, unsupported) with file and field.
 UboHeader read_ubo_header(const RandomAccessFile& file);
 
 }  // namespace velour

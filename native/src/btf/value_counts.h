@@ -1,4 +1,4 @@
-// How many values of a BTF are not as values should be: counted and told, never repaired.
+// Counts of invalid values in a BTF, for reports; the data is left as it is.
 #pragma once
 
 #include <cstdint>
@@ -9,9 +9,9 @@
 namespace velour {
 
 struct ValueCounts {
-  uint64_t values = 0;      // channels of texels that were looked at
-  uint64_t not_finite = 0;  // NaN or infinite: fits leave them out
-  uint64_t negative = 0;    // below 0: colours outside Rec. 709, or noise of a camera; kept as they are
+  uint64_t values = 0;      // channels of the texels examined
+  uint64_t not_finite = 0;  // NaN or infinite; excluded from fits
+  uint64_t negative = 0;    // below 0: colors outside Rec. 709 or camera noise; kept
 
   void add(std::span<const HalfBits> halves);
   ValueCounts& operator+=(const ValueCounts& other);

@@ -1,4 +1,4 @@
-// From the numbers of a source to the apparent BRDF. Internal to btf/.
+// Conversion of source values to the apparent BRDF. Internal to btf/.
 #pragma once
 
 #include <string>
@@ -7,7 +7,7 @@
 
 namespace velour {
 
-/// f = number * factor, and over |cos(theta_l)| where the number has that cosine in it.
+/// f = number * factor, divided by |cos(theta_l)| if the number includes that cosine.
 struct ValueScale {
   double factor = 1;
   bool cosine = false;
@@ -17,7 +17,7 @@ struct ValueScale {
   std::string text() const;
 };
 
-/// `automatic` is not one of them.
+/// `values` must not be `automatic`.
 ValueScale scale_of(BtfValues values);
 
 }  // namespace velour

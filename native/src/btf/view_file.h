@@ -1,4 +1,4 @@
-// The file of one view of Velour's own form: which stacks of images it holds. Internal to btf/.
+// The file of one view in Velour's own BTF format and its image stacks. Internal to btf/.
 #pragma once
 
 #include <string>
@@ -9,14 +9,13 @@
 
 namespace velour {
 
-/// Places of the parts in a view's file, of those that there are: values and errors first, coverage, mean and spread
-/// of heights last.
+/// Indices of the parts present in a view's file: values and errors first; coverage, mean and spread of heights last.
 inline constexpr size_t kValuesPart = 0, kErrorsPart = 1, kStructureParts = 3;
 
 /// `folder`/view_0007.exr.
 std::string view_path(const std::string& folder, size_t view);
 
-/// None for a view without lights and structure: it has no file.
+/// Empty for a view without lights and structure, which has no file.
 std::vector<ImageStack> view_stacks(const BtfIndex& index, size_t view);
 
 }  // namespace velour

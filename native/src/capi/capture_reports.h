@@ -1,4 +1,4 @@
-// JSON texts about virtual measurements: the keys of the command line's verbs (docs/command_line.md).
+// JSON reports on virtual measurements, with the keys of the command line's verbs (docs/command_line.md).
 #pragma once
 
 #include <string>

@@ -1,4 +1,4 @@
-// Fits of BTFs and their errors.
+// Fits of BTF models, and their errors.
 #include "capi/btf_reports.h"
 #include "capi/guard.h"
 #include "capi/handles.h"

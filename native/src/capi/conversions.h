@@ -1,4 +1,4 @@
-// Colours, maps and bits as callers give them.
+// Conversion of colors, matrices and option bits from the caller's form.
 #pragma once
 
 #include <algorithm>
@@ -15,7 +15,7 @@ namespace velour::capi {
 
 inline constexpr uint32_t kRays = VLR_HIDDEN_FROM_CAMERA | VLR_HIDDEN_FROM_BOUNCES | VLR_HIDDEN_FROM_SHADOWS;
 
-/// Throws Error(invalid_argument) for bits that are not among `known`.
+/// Throws Error(invalid_argument) for bits outside `known`.
 inline void require_hidden(uint32_t hidden_from, uint32_t known) {
   if ((hidden_from & ~known) == 0) return;
   throw Error(Status::invalid_argument,
@@ -37,7 +37,7 @@ inline Affine affine_from(const float* m) {
   return map;
 }
 
-/// NULL: the defaults.
+/// `given` NULL: the defaults.
 inline PictureOptions converted(const vlr_picture_options* given) {
   const auto options = read_options(given, vlr_picture_options_init, "vlr_picture_options");
   require_choice(options.as_stored, 1, "vlr_picture_options.as_stored");

@@ -1,4 +1,4 @@
-// JSON texts about fits and their errors: the keys of the command line's verbs (docs/command_line.md).
+// JSON reports on fits and their errors, with the keys of the command line's verbs (docs/command_line.md).
 #pragma once
 
 #include <string>

@@ -12,7 +12,7 @@ vlr_status remember(Status status, const char* sentence) noexcept {
   try {
     last_error = sentence;
   } catch (...) {
-    last_error.clear();  // no memory for the sentence: the status still tells
+    last_error.clear();  // no memory for the sentence: only the status is returned
   }
   return static_cast<vlr_status>(status);
 }

@@ -9,10 +9,10 @@
 
 namespace velour::capi {
 
-/// Remembers the sentence for this thread and returns the status of the exception that is being handled.
+/// Stores the sentence for this thread and returns the status of the exception being handled.
 vlr_status status_of_current_exception();
 
-/// Runs `body`; nothing is thrown out of it.
+/// Runs `body` and turns every exception into a status.
 template <typename Body>
 vlr_status guard(const Body& body) {
   try {
@@ -23,14 +23,14 @@ vlr_status guard(const Body& body) {
   }
 }
 
-/// Throws Error(invalid_argument) when `pointer` is null.
+/// Throws Error(invalid_argument) if `pointer` is null.
 void require(const void* pointer, const char* argument);
 
 /// Throws Error(invalid_argument) unless `value` is one of the choices 0 to `last`.
 void require_choice(int32_t value, int32_t last, const char* field);
 
 /// Reads an options struct of any earlier size: fields that the caller does not know keep their defaults. `initialize`
-/// is the public vlr_*_init of the struct. NULL gives the defaults. A larger struct comes from a newer header: refused.
+/// is the public vlr_*_init of the struct. NULL gives the defaults. Refuses larger structs, from newer headers.
 template <typename Options>
 Options read_options(const Options* given, void (*initialize)(Options*), const char* name) {
   Options options;
@@ -47,7 +47,7 @@ Options read_options(const Options* given, void (*initialize)(Options*), const c
   return options;
 }
 
-/// Fills a struct of any earlier size that the caller owns and has given its size; `name` as in read_options.
+/// Fills the caller's struct, of any earlier size, whose struct_size is set; `name` as in read_options().
 template <typename Struct>
 void write_struct(const Struct& values, Struct* out, const char* name) {
   require(out, name);

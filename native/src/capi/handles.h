@@ -1,4 +1,4 @@
-// What the opaque handles hold.
+// Contents of the opaque handles.
 #pragma once
 
 #include <atomic>
@@ -24,8 +24,8 @@
 
 namespace velour::capi {
 
-/// What a handle holds, kept for as long as the result lives. Calls that take long read through it: who frees the
-/// handle on another thread before they end, as one does who cancels, takes nothing from under them.
+/// Keeps the content of a handle alive as long as the result. Long calls read through it, so that another thread may
+/// free the handle before they end, for example after a cancel.
 template <typename T>
 std::shared_ptr<T> kept(std::shared_ptr<T> held) {
   return held;
@@ -52,25 +52,25 @@ struct vlr_model {
 struct vlr_scene {
   std::shared_ptr<velour::Scene> scene;
   std::string info;
-  uint8_t hidden_from = 0;  // of instances to come
-  float terminator = 0;     // the same
+  uint8_t hidden_from = 0;  // of the instances added next
+  float terminator = 0;     // likewise
 };
 
-/// One of them.
+/// Exactly one member is set.
 struct vlr_texture {
   std::shared_ptr<const velour::Texture<velour::Rgb>> color;
   std::shared_ptr<const velour::Texture<float>> number;
-  std::optional<uint32_t> corner_colors;  // of the mesh, this set of them
+  std::optional<uint32_t> corner_colors;  // index of the mesh's set of corner colors
 };
 
 struct vlr_shader {
   velour::ShaderLayers layers;
   bool relief = false;  // a layer has a normal map
   velour::MeshSets sets;
-  velour::LayerWeight* last = nullptr;  // of the layer that was added last; null: there is none
+  velour::LayerWeight* last = nullptr;  // of the layer added last; null: no layer
 };
 
-/// The observation itself never changes: merging puts another in its place, so that jobs keep what they were given.
+/// The observation itself is immutable: merging replaces it, so that jobs keep the one they were given.
 struct vlr_observation {
   std::shared_ptr<const velour::SceneObservation> observation;
   std::string info;
@@ -88,7 +88,7 @@ struct vlr_tile {
 
 namespace velour::capi {
 
-/// What a task leaves for its reader. Written by the task before it ends, read after; `film` is thread-safe by itself.
+/// Output of a task, written before the task ends and read afterwards; `film` is itself thread-safe.
 struct JobOutput {
   std::mutex mutex;
   std::string report;
@@ -97,13 +97,13 @@ struct JobOutput {
   std::shared_ptr<const Measurement> measurement;
   std::shared_ptr<const Plot> plot;
   std::shared_ptr<const TablePixels> table;
-  std::shared_ptr<Film> film;                      // set when the job is made
-  bool onto_film = false;                          // of a render: adds to what its film has
-  bool rendered = false;                           // a run has begun to put its own camera rays there
-  std::atomic<bool> stop{false};                   // of a render: to end at a whole pass
-  std::shared_ptr<ProgressiveRender> progressive;  // likewise; thread-safe but for run() and restart()
+  std::shared_ptr<Film> film;                      // set when the job is created
+  bool onto_film = false;                          // render: adds to the contents of its film
+  bool rendered = false;                           // a run has begun to add its own camera rays to the film
+  std::atomic<bool> stop{false};                   // render: request to end at a whole pass
+  std::shared_ptr<ProgressiveRender> progressive;  // set with the job; thread-safe except run() and restart()
 
-  /// For a run that is to begin, where there is none.
+  /// Prepares for a new run; none may be running.
   void prepare() {
     if (onto_film && rendered) {
       throw Error(
@@ -144,7 +144,7 @@ struct JobOutput {
 
 struct vlr_job {
   std::shared_ptr<velour::capi::JobOutput> output;
-  std::string report;  // what vlr_job_report_json returned last
+  std::string report;  // text last returned by vlr_job_report_json
   velour::Job job;
 
   vlr_job(std::shared_ptr<velour::capi::JobOutput> task_output, std::function<void(velour::Progress&)> task)

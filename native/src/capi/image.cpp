@@ -36,7 +36,7 @@ PictureFrame converted(const vlr_image_frame& given, const Picture& part) {
 
 struct PictureOutput {
   uint32_t *width, *height, *channels;
-  float* pixels;  // null: only the size is asked for
+  float* pixels;  // null: only the size is requested
   uint64_t count;
 };
 

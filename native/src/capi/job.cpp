@@ -15,7 +15,7 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-/// Waits in short turns and tells the callback between them; false when time ran out.
+/// Waits in short turns and calls the callback after each; returns false on a timeout.
 bool wait_with_callback(vlr_job& handle, double timeout, vlr_progress_fn progress, void* user) {
   constexpr double kTurn = 0.1;  // seconds: ten calls a second
   const auto start = Clock::now();

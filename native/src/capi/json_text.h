@@ -1,4 +1,4 @@
-// What all reports of the C interface share.
+// Helpers shared by all reports of the C interface.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -13,17 +13,17 @@ namespace velour::capi {
 
 using Json = nlohmann::ordered_json;
 
-/// nlohmann writes NaN as null by itself; bytes that are not UTF-8 (file names) are replaced instead of thrown on.
+/// Serializes `json`. nlohmann writes NaN as null; invalid UTF-8 (in file names) is replaced instead of throwing.
 inline std::string text(const Json& json) { return json.dump(-1, ' ', false, Json::error_handler_t::replace); }
 
 inline Json or_null(const std::optional<double>& number) { return number ? Json(*number) : Json(nullptr); }
 
-/// Metres along x and y; null where they are not known.
+/// Meters along x and y; null if unknown.
 inline Json tile_json(const TexelGrid& grid) {
   return grid.tile_metres ? Json{grid.tile_metres->x, grid.tile_metres->y} : Json(nullptr);
 }
 
-/// The first keys of everything that was measured.
+/// The first keys of all reports on measurements and BTFs.
 inline Json source_json(const char* kind, const Provenance& p) {
   return {{"kind", kind},         {"format", p.format},           {"name", p.name},
           {"path", p.path},       {"description", p.description}, {"sha256", p.sha256},
@@ -37,7 +37,7 @@ Json details_json(const Measured& measured) {
   return details;
 }
 
-/// Relative errors by view angle, degrees, in the order of the angles and not of their texts.
+/// Relative errors by view angle in degrees, in numerical rather than textual order.
 inline Json by_view_angle(const ErrorByViewAngle& errors) {
   Json json = Json::object();
   for (const char* angle : {"5", "30", "60", "75", "85"}) {

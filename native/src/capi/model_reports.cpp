@@ -15,7 +15,7 @@ Json count_json(const ScatteredBrdf& brdf) { return {{"lobes", brdf.lobe_count()
 Json count_json(const ParametricBrdf& brdf) { return {{"lobes", brdf.lobe_count()}}; }
 Json count_json(const FactoredBtf& btf) { return {{"components", btf.components()}}; }
 
-/// Of the side of most lobes.
+/// Largest counts of any side.
 Json count_json(const SrbfBtf& btf) {
   size_t lobes = 0, coefficients = 0;
   for (const SrbfSide& side : btf.sides) {
@@ -25,7 +25,7 @@ Json count_json(const SrbfBtf& btf) {
   return {{"lobes", lobes}, {"coefficients", coefficients}};
 }
 
-/// Of the side of most coefficients: a texel's.
+/// Largest number of coefficients per texel of any side.
 Json count_json(const TensorBtf& btf) {
   size_t coefficients = 0;
   for (const TensorSide& side : btf.sides) {
@@ -34,7 +34,7 @@ Json count_json(const TensorBtf& btf) {
   return {{"coefficients", coefficients}};
 }
 
-/// What only one kind of model has to say.
+/// Keys of one kind of model only.
 Json own_json(const ScatteredBrdf& brdf) {
   return {{"kernel", kernel_name(brdf.kernel)},
           {"isotropic", brdf.isotropic},
@@ -65,7 +65,7 @@ Json own_json(const FactoredBtf& btf) { return btf_own_json(btf); }
 
 const char* where(bool below) { return below ? "below" : "above"; }
 
-/// What only one kind of side has to say.
+/// Keys of one kind of side only.
 Json own_side_json(const SrbfBtf&, const SrbfSide& side) {
   return {{"lobes", {{"tile", side.tile_lobes}, {"texel", side.lobes.size() - side.tile_lobes}}}};
 }
@@ -86,7 +86,7 @@ Json own_side_json(const TensorBtf& btf, const TensorSide& side) {
             {"scales", bytes.scales}}}};
 }
 
-/// The sides of a BTF, then those that another one serves; these have the same fields.
+/// The sides of a BTF, then those served by another side, with the same fields.
 template <class Btf>
 Json sided_json(const Btf& btf) {
   Json json = btf_own_json(btf), sides = Json::array();
@@ -111,7 +111,7 @@ Json sided_json(const Btf& btf) {
 Json own_json(const SrbfBtf& btf) { return sided_json(btf); }
 Json own_json(const TensorBtf& btf) { return sided_json(btf); }
 
-/// What the fit found out, of a BRDF.
+/// Results of the fit of a BRDF.
 Json record_json(const FitRecord& fit) {
   return {{"relative_l2", fit.relative_l2},
           {"by_view_angle", by_view_angle(fit.by_view_angle)},
@@ -127,7 +127,7 @@ Json record_json(const FitRecord& fit) {
           {"order", order_json(fit.order)}};
 }
 
-/// The same of a BTF.
+/// Results of the fit of a BTF.
 Json record_json(const BtfRecord& btf) {
   const bool timed = btf.evaluations_per_second > 0;  // not in files of earlier versions
   const bool measured = btf.relative_l2 > 0;

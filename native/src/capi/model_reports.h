@@ -1,4 +1,4 @@
-// JSON texts about models: the keys of the command line's verbs (docs/command_line.md).
+// JSON reports on models, with the keys of the command line's verbs (docs/command_line.md).
 #pragma once
 
 #include <string>
@@ -9,11 +9,11 @@
 
 namespace velour::capi {
 
-/// How many lobes or components a model has, and its bytes.
+/// Number of lobes or components of a model, and its sizes in bytes.
 Json size_json(const Model& model, uint64_t file_bytes);
 
 std::string model_json(const Model& model, uint64_t file_bytes);
-/// Of an outline that took `seconds`.
+/// Report on a VOTF that took `seconds` to compute.
 std::string votf_json(const ModelShell& shell, double seconds, const std::vector<std::string>& warnings);
 
 }  // namespace velour::capi

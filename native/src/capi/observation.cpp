@@ -1,4 +1,4 @@
-// Observations, and the job that makes them.
+// Observations of scene usage, and the job that makes them.
 #include "domain/observation_file.h"
 
 #include <algorithm>
@@ -76,7 +76,7 @@ void vlr_observe_options_init(vlr_observe_options* options) {
 
 namespace {
 
-/// Values that no int holds become ones that observe() refuses.
+/// Values out of the range of int become -1, which check_observer() rejects.
 int whole(uint32_t value) { return value > 0x7fffffffu ? -1 : static_cast<int>(value); }
 
 ObserverOptions converted(const vlr_observe_options& given) {

@@ -1,4 +1,4 @@
-// Passes that a render is asked for.
+// Passes requested from a render.
 #pragma once
 
 #include "render/pass_options.h"
@@ -6,7 +6,7 @@
 
 namespace velour::capi {
 
-/// NULL: none. Throws Error(invalid_argument, version_mismatch).
+/// `given` NULL: no passes. Throws Error(invalid_argument, version_mismatch).
 PassOptions passes_of(const vlr_pass_options* given);
 
 }  // namespace velour::capi

@@ -64,7 +64,7 @@ Rgb checked_color(const float (&from)[3], const char* name) {
 
 PlotStyle converted(const vlr_plot_style* given) {
   const vlr_plot_style style = read_options(given, vlr_plot_style_init, "vlr_plot_style");
-  constexpr uint32_t kTooLarge = PlotStyle::kLargestSide + 1;  // refused with the rest, and within int
+  constexpr uint32_t kTooLarge = PlotStyle::kLargestSide + 1;  // refused like all larger ones, and within int
   return {.side = static_cast<int>(std::min(style.side, kTooLarge)),
           .text = style.text,
           .colors = {.background = checked_color(style.background, "background"),
@@ -83,7 +83,7 @@ void write_text(const std::string& path, const std::string& text) {
 void write_png(const std::string& path, const Drawing& drawing) {
   Picture picture{drawing.side, drawing.side, 4, rasterized(drawing)};
   for (size_t i = 0; i < picture.pixels.size(); ++i) {
-    if (i % 4 != 3) picture.pixels[i] = linear_from_srgb(picture.pixels[i]);  // as write_picture takes it
+    if (i % 4 != 3) picture.pixels[i] = linear_from_srgb(picture.pixels[i]);  // as write_picture() expects
   }
   write_picture(path, picture);
 }

@@ -44,7 +44,7 @@ Json terms_json(const BtfMaps& maps) {
   return terms;
 }
 
-/// Levels are the same on both sides.
+/// Both sides have the same levels.
 Json maps_json(const std::vector<BtfMaps>& maps, Companding companding) {
   Json levels = Json::array(), sides = Json::array();
   for (const BtfMaps::Level& level : maps[0].levels) levels.push_back({level.x, level.width, level.height});
@@ -57,7 +57,7 @@ Json maps_json(const std::vector<BtfMaps>& maps, Companding companding) {
           {"root", companding == Companding::root}};
 }
 
-/// One above the other.
+/// Stacks the maps of all sides vertically.
 TablePixels stacked(std::vector<BtfMaps> maps) {
   TablePixels all = std::move(maps[0].maps);
   for (size_t i = 1; i < maps.size(); ++i) {
@@ -67,7 +67,7 @@ TablePixels stacked(std::vector<BtfMaps> maps) {
   return all;
 }
 
-/// A job of the rows that `make`(progress) makes.
+/// Creates a job that reports the rows returned by `make(progress)`.
 template <typename Make>
 vlr_job* rows_job(Make make) {
   auto output = std::make_shared<JobOutput>();
@@ -88,7 +88,7 @@ vlr_status vlr_light_map_create_job(const vlr_scene* scene, const char* cache_fo
     auto output = std::make_shared<JobOutput>();
     *out = new vlr_job(output, [output, environment = scene->scene->environment(), count = static_cast<int>(threads),
                                 folder = std::string(cache_folder ? cache_folder : "")](Progress& progress) {
-      in_one_arena(count, [&] {  // the fit has the threads of whoever calls it
+      in_one_arena(count, [&] {  // the fit uses the threads of its caller
         const SkyMixture sky = sky_mixture(environment, {}, folder, progress);
         output->set(mixture_json(sky),
                     std::make_shared<const TablePixels>(light_map(sky, environment, count, progress)));

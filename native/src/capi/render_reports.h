@@ -1,4 +1,4 @@
-// JSON texts about scenes and their pictures: the keys of the command line's verbs (docs/command_line.md).
+// JSON reports on scenes and renders, with the keys of the command line's verbs (docs/command_line.md).
 #pragma once
 
 #include <string>

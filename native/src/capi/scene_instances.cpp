@@ -1,4 +1,4 @@
-// Objects of a scene: meshes where they stand, with their materials.
+// Instances of a scene: meshes with their transforms and materials.
 #include "capi/conversions.h"
 #include "capi/guard.h"
 #include "capi/handles.h"

@@ -1,4 +1,4 @@
-// Lamps and the world.
+// Lights and the environment.
 #include <algorithm>
 #include <span>
 

@@ -1,4 +1,4 @@
-// Materials of a scene, and what is set of them afterwards.
+// Materials of a scene and their settings.
 #include "capi/conversions.h"
 #include "capi/guard.h"
 #include "capi/handles.h"
@@ -14,8 +14,8 @@ using namespace velour::capi;
 
 namespace {
 
-/// Lobes that draw samples for a raw measurement: speed depends on how well they fit, the picture does not, so a coarse
-/// fit of all data serves.
+/// Lobes to sample from for a raw measurement. Their fit affects the speed but not the image, so a coarse fit of all
+/// data suffices.
 std::shared_ptr<const Model> coarse_proposal(const Measurement& measurement) {
   FitOptions options;
   options.max_lobes = 8;
@@ -39,7 +39,7 @@ SurfaceMaterial surface_of(std::shared_ptr<const Model> model, uint32_t neighbor
   return surface;
 }
 
-/// A BTF itself; of two sides, with light that comes through.
+/// Material of the BTF itself, including transmitted light if the BTF has it.
 std::shared_ptr<const Material> make_lit_from_both(const std::shared_ptr<const BtfTable>& table) {
   auto reflecting = make_measured_btf_material(table);
   if (!table->between.knows_through()) return reflecting;

@@ -48,7 +48,7 @@ void initialize(vlr_mesh_desc* desc) {
   desc->struct_size = sizeof(vlr_mesh_desc);
 }
 
-/// Built side by side.
+/// Builds the meshes in parallel.
 std::vector<Mesh> meshes_of(const vlr_mesh_desc* descs, uint64_t count) {
   std::vector<MeshArrays> arrays;
   arrays.reserve(count);

@@ -8,7 +8,7 @@
 namespace velour::capi {
 namespace {
 
-/// Shares of the weight, octave by octave.
+/// Shares of the weight, one per octave.
 Json octaves_json(const SurfaceDomain& surface) {
   constexpr size_t kBins = SurfaceDomain::kBinsOfOctave;
   Json json = Json::array();

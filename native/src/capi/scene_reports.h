@@ -1,4 +1,4 @@
-// JSON about what scenes show of materials, and about models reduced to it.
+// JSON reports on scene usage, and on scene models.
 #pragma once
 
 #include "capi/json_text.h"
@@ -8,14 +8,14 @@
 
 namespace velour::capi {
 
-/// Of a model that was reduced to what scenes need.
+/// Keys of a scene model.
 Json reduced_json(const SceneRecord& scene);
 
-/// Of a material that varies over its surface.
+/// Usage of a material that varies over its surface.
 Json surface_json(const SurfaceDomain& surface);
 
 std::string observation_json(const SceneObservation& observation);
-/// The same of the job that made it, which took `seconds`.
+/// Report of the job that made the observation, which took `seconds`.
 std::string observe_json(const SceneObservation& observation, double seconds);
 
 }  // namespace velour::capi

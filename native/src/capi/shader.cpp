@@ -27,7 +27,7 @@ std::shared_ptr<const Material> with_normals(std::shared_ptr<const Material> mat
                             part);
 }
 
-/// Steep normals do not do the same to base and lobes, so each is a layer of its own, as is the coat, which stays flat.
+/// Steep normals affect base and lobes differently, so each is a layer of its own, as is the coat, which stays flat.
 std::shared_ptr<const Material> principled(const vlr_layer_desc& layer, const vlr_principled_desc& desc,
                                            PrincipledTextures textures) {
   PrincipledParameters parameters = parameters_of(desc);

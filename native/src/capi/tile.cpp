@@ -14,7 +14,7 @@ namespace {
 std::optional<double> given(double value) { return value < 0 ? std::nullopt : std::optional(value); }
 
 std::optional<int> given(uint32_t value) {
-  constexpr uint32_t kLargest = 1u << 20;  // beyond any tile's bound, within int
+  constexpr uint32_t kLargest = 1u << 20;  // beyond the limit of any tile, and within int
   return value == 0 ? std::nullopt : std::optional(static_cast<int>(std::min(value, kLargest)));
 }
 

@@ -1,4 +1,4 @@
-// JSON texts about modelled mesostructure: the keys of the command line's verbs (docs/command_line.md).
+// JSON reports on procedural mesostructure, with the keys of the command line's verbs (docs/command_line.md).
 #pragma once
 
 #include <string>

@@ -34,7 +34,7 @@ DataOcclusionOptions of_data(const vlr_votf_options& given) {
           .threads = static_cast<int>(given.threads)};
 }
 
-/// A job that adds what `find`(progress) finds to a copy of `model`.
+/// Creates a job that adds the VOTF found by `find(progress)` to a copy of `model`.
 template <typename Find>
 vlr_job* shell_job(const vlr_model* model, const char* source, Find find) {
   auto output = std::make_shared<JobOutput>();

@@ -75,7 +75,7 @@ class BtfCapturer {
     layout_ = layout(wanted);
     report_.two_sided = any_below(layout_->views()) || any_below(layout_->lights());
     report_.warnings = scene_.info().warnings;
-    std::erase(report_.warnings, kNoLightWarning);  // lights are ours
+    std::erase(report_.warnings, kNoLightWarning);  // the capture supplies its own lights
     if (const auto warning = seam_warning(tile_)) report_.warnings.push_back(*warning);
     for (const SurfaceMaterial& m : scene_.materials()) {
       if (m.emission == Rgb(0)) continue;
@@ -91,7 +91,7 @@ class BtfCapturer {
     return {with_mirror_images(options_.views), with_mirror_images(options_.lights)};
   }
 
-  /// Held-out pairs have other random numbers: the noise of what is fitted must not come back in what judges it.
+  /// Held-out pairs use other random numbers, so that the noise of the fitted data does not recur in the test data.
   TexelSampling sampling() const {
     TexelSampling sampling = options_.sampling;
     if (options_.held_out > 0) sampling.seed = mix64(~sampling.seed);
@@ -111,7 +111,7 @@ class BtfCapturer {
     report_.reference_height = static_cast<double>(height_ - tile_.bottom()) * length_unit();
   }
 
-  /// Metres a unit of the scene, or tile widths where those are not known.
+  /// Meters per scene unit, or tile widths per scene unit if the size of a unit is unknown.
   double length_unit() const {
     return options_.metres_per_unit > 0 ? options_.metres_per_unit : 1 / static_cast<double>(tile_.period().x);
   }

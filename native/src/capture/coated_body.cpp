@@ -9,12 +9,12 @@
 namespace velour {
 namespace {
 
-constexpr int kMaxMeetings = 64;     // with the body, of light that the interface sends back again and again
+constexpr int kMaxMeetings = 64;     // with the body, for light that the interface keeps reflecting back
 constexpr int kMaxReflections = 64;  // within the body
-constexpr double kPatchWidth = 4.0;  // of pigment, in correlation lengths
+constexpr double kPatchWidth = 4.0;  // of pigment patches, in correlation lengths
 
-/// `w` on the other side of the interface, bent by `eta` = index on this side / index on the other; z 0: totally
-/// reflected.
+/// `w` refracted to the other side of the interface; `eta` = index on this side / index on the other. z is 0 for total
+/// reflection.
 Vec3 refracted(const Vec3& w, float eta) {
   const float sin_sq = eta * eta * (w.x * w.x + w.y * w.y);
   return {eta * w.x, eta * w.y, std::sqrt(std::max(0.0f, 1.0f - sin_sq))};
@@ -33,7 +33,7 @@ BodyBelow::BodyBelow(const CoatedBody& body, uint64_t seed, uint64_t stream)
                    make_patches(flakes.cells, kPatchWidth * flakes.correlation, body.pigment_share, seed, stream + 1));
 }
 
-/// Light from `inside`, a direction above the body, until it goes up again.
+/// Follows light from `inside`, a direction above the body, until it leaves upward; returns that direction.
 Vec3 BodyBelow::scatter(const Vec3& inside, Rgb& weight, RandomStream& random) const {
   if (!surface_) {
     weight *= body_.pigment_albedo;
@@ -67,7 +67,7 @@ Vec3 BodyBelow::through(Vec3 arriving, Rgb& weight, RandomStream& random) const 
     inside = scatter(inside, weight, random);
     const Vec3 out = refracted(inside, ior);
     if (out.z > 0.0f && random.next() >= interface_.at(out.z).r) return out;
-    inside = {-inside.x, -inside.y, inside.z};  // back along the ray that the interface sends down
+    inside = {-inside.x, -inside.y, inside.z};  // back along the ray that the interface reflects down
   }
   weight = Rgb(0);
   return {0, 0, 1};

@@ -1,4 +1,4 @@
-// What lies below a facet of a clear surface: pigment, metal flakes, or both.
+// The body below a facet of a clear surface: pigment, metal flakes, or both.
 #pragma once
 
 #include <optional>
@@ -9,10 +9,10 @@
 
 namespace velour {
 
-/// A clear dielectric on a body of pigment and flakes.
+/// A clear dielectric over a body of pigment and flakes.
 struct CoatedBody {
   double ior;                    // of the dielectric
-  Reflectance flakes;            // of the flakes' metal, below the dielectric
+  Reflectance flakes;            // of the flakes' metal below the dielectric
   double flake_roughness = 0.2;  // Beckmann alpha of the flakes' own slopes
   Rgb pigment_albedo{0, 0, 0};
   double pigment_share = 1.0;  // of the body's area
@@ -20,20 +20,20 @@ struct CoatedBody {
   bool has_flakes() const { return pigment_share < 1.0; }
 };
 
-/// What the interface reflects, from air.
+/// Reflectance of the interface, from air.
 Reflectance interface_of(const CoatedBody& body);
 
-/// One random surface of flakes with patches of pigment, below a clear one; both are thin against their distance and
-/// each other's tiles, so light comes to a place of this one by chance and leaves through the facet that it came in by.
-/// Pigment alone is flat. Immutable after construction.
+/// A random surface of flakes with patches of pigment, below a clear surface. The relief of both is small compared with
+/// their distance and with each other's tiles, so light reaches a random point of this surface and leaves through the
+/// facet that it entered by. Pigment alone is flat. Immutable after construction.
 class BodyBelow {
  public:
-  /// `stream` and `stream + 1` draw the surface; one that no other surface uses.
+  /// `stream` and `stream + 1`: random number streams of the surface, used by no other surface.
   BodyBelow(const CoatedBody& body, uint64_t seed, uint64_t stream);
 
-  /// Follows light that the interface let in until it is out again. `arriving`: unit, back along the ray, in air, in
-  /// the facet's frame. Multiplies `weight` by what is left; the light's direction in air, in the same frame. Weight 0:
-  /// nothing came out.
+  /// Follows light that has passed the interface until it leaves again; returns its direction in air, in the facet's
+  /// frame. `arriving`: unit, back along the ray, in air, in the same frame. Multiplies `weight` by the remaining
+  /// share; 0: nothing came out.
   Vec3 through(Vec3 arriving, Rgb& weight, RandomStream& random) const;
 
  private:

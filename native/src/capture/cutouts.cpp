@@ -12,7 +12,7 @@ Cutouts::Cutouts(const RepeatedTile& tile) : tile_(tile) {
   }
 }
 
-/// Whether the ray passes; `from` is then where it goes on.
+/// Whether the ray passes through the surface; `from` is where it continues.
 bool Cutouts::goes_on(const Ray& ray, const Hit& hit, uint64_t key, int crossing, const RayCone& cone,
                       Vec3& from) const {
   const Hit of_scene = tile_.of_scene(hit);

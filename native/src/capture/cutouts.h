@@ -1,4 +1,4 @@
-// Surfaces that are there only in part.
+// Partly transparent surfaces (alpha).
 #pragma once
 
 #include <span>
@@ -9,20 +9,20 @@
 
 namespace velour {
 
-/// Lets rays through surfaces by chance, each with 1 - Material::alpha, which is right on average however many they
-/// cross. One a thread.
+/// Lets each ray through a surface with probability 1 - Material::alpha, which is unbiased for any number of surfaces.
+/// One per thread.
 class Cutouts {
  public:
   explicit Cutouts(const RepeatedTile& tile);
 
-  /// Whether any material of the tile lets rays through: no ray needs the calls below otherwise.
+  /// Whether any material of the tile lets rays through; if not, pass() need not be called.
   bool any() const { return any_; }
-  /// What TileRays::intersect found for `rays`, but for what lets them through: those rays go on, and `hits` are their
-  /// next ones. The random numbers of rays[i] come from keys[i]; `cone` is what the rays stand for.
+  /// Continues those `rays` whose `hits`, found by TileRays::intersect, let them through, and replaces both by the ray
+  /// that ends the path and its hit. rays[i] takes its random numbers from keys[i]; `cone` is the rays' footprint.
   void pass(std::span<Ray> rays, std::span<Hit> hits, std::span<const uint64_t> keys, const RayCone& cone,
             TileRays& tracer, RayLog* log);
 
-  /// More surfaces than any ray crosses: what they let through then is lost.
+  /// Maximum number of surfaces that a ray passes through; rays that pass more count as misses.
   static constexpr int kMostCrossings = 4096;
 
  private:

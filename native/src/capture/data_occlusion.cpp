@@ -17,10 +17,10 @@
 namespace velour {
 namespace {
 
-constexpr float kOpen = 0.999f;   // coverage below this is that of a view that sees through
-constexpr float kFar = 0.5f;      // widths from the plane within which a structure of unknown extent is looked for
-constexpr uint32_t kCoarse = 48;  // texels of that
-constexpr uint32_t kLines = 3;    // along a side of a texel
+constexpr float kOpen = 0.999f;   // a view with lower coverage sees through the structure
+constexpr float kFar = 0.5f;      // search range for a structure of unknown extent, in widths from the plane
+constexpr uint32_t kCoarse = 48;  // texels of the grid of that search
+constexpr uint32_t kLines = 3;    // lines along a side of a texel, for the check
 
 class DataOcclusion {
  public:
@@ -53,7 +53,7 @@ class DataOcclusion {
   OcclusionVolume& volume() { return result_.volume; }
   size_t views() const { return btf_.layout().views().size(); }
   Vec3 direction_of(size_t view) const { return unit_direction(btf_.layout().views()[view]); }
-  /// Of a height over the lowest point, over the surface.
+  /// Converts a height over the lowest point to widths over the surface.
   float in_widths(double height) const { return static_cast<float>((height - options_.surface) / width_); }
 
   [[noreturn]] void refuse(Status status, const std::string& sentence) const {
@@ -79,7 +79,7 @@ class DataOcclusion {
     }
   }
 
-  /// Heights over the surface, widths. A point beyond the structure at both ends.
+  /// Heights in widths over the surface. The grid extends a point beyond the structure at both ends.
   void lay_out(float lowest, float highest, float reference) {
     OcclusionVolume& v = volume();
     const bool closed = v.closed;
@@ -89,7 +89,7 @@ class DataOcclusion {
     v.tile_width = btf_.grid().tile_metres ? width_ : 0.0f;
   }
 
-  /// Only mattes: first a coarse hull of all heights that may be, then the range that it fills.
+  /// Without heights: computes a coarse hull over the whole search range, then lays out the range that it fills.
   void lay_out_hull() {
     const OcclusionVolume coarse = empty_shell(std::min(kCoarse, texels_.width), texels_.aspect, -kFar, kFar);
     progress_.stage("extent", 0.1, 0.2);
@@ -106,7 +106,7 @@ class DataOcclusion {
     if (first <= 1 || last + 2 >= coarse.depth) {
       refuse(Status::unsupported, "its views do not tell how high its structure is; they need to look from lower.");
     }
-    // Over the plane of the pictures; then over the lowest point.
+    // Heights over the plane of the pictures.
     const float low = coarse.bottom + (static_cast<float>(first) - 1) * coarse.step();
     const float high = coarse.bottom + (static_cast<float>(last) + 1) * coarse.step();
     const float surface = static_cast<float>(options_.surface) / width_;
@@ -144,7 +144,7 @@ class DataOcclusion {
     }
   }
 
-  /// Share of the lines through a texel that meet the volume.
+  /// Share of the lines through a texel that hit the volume.
   float met(const ShellField& field, size_t texel, const Vec3& wv) const {
     const Vec2 texel_size(1 / static_cast<float>(texels_.width), texels_.aspect / static_cast<float>(texels_.height));
     const Vec2 corner = texels_.centre(texel) - 0.5f * texel_size;
@@ -158,7 +158,7 @@ class DataOcclusion {
   }
 
   OcclusionErrors errors() {
-    // Shares the volume, which stays where it is.
+    // Non-owning pointer: the volume outlives `field`.
     const ShellField field(std::shared_ptr<const OcclusionVolume>(std::shared_ptr<void>(), &volume()));
     const size_t count = std::min<size_t>(options_.check_views, views());
     std::vector<OcclusionErrors> seen(count);
@@ -184,7 +184,7 @@ class DataOcclusion {
   const DataOcclusionOptions& options_;
   Progress& progress_;
   const TileTexels texels_;
-  const float width_;  // metres a width, or 1
+  const float width_;  // meters per width, or 1 if unknown
   const bool heights_;
   OcclusionCapture result_;
 };

@@ -16,14 +16,14 @@ namespace velour {
 namespace {
 
 constexpr int kMaxBounces = 256;
-constexpr float kRouletteBelow = 0.1f;  // weight under which paths end by chance
+constexpr float kRouletteBelow = 0.1f;  // weight below which paths face Russian roulette
 constexpr uint64_t kSamplesPerCheck = 2048;
 
 /// Streams of random numbers, so that surfaces, patches and rays never share one.
 enum class Stream : uint64_t { heights = 0, patches = 1, rays = 2 };
 uint64_t stream_of(uint64_t tile, Stream stream) { return 3 * tile + static_cast<uint64_t>(stream); }
 
-/// More than there are; what lies below a tile is that of a tile so much further on.
+/// Exceeds the number of tiles: the body below tile i uses the streams of tile i + kTilesAbove.
 constexpr uint64_t kTilesAbove = uint64_t{1} << 40;
 
 double guide_over_cosine(const HeightFieldOptions& surface, const Vec3& w) {
@@ -34,7 +34,7 @@ double guide_over_cosine(const HeightFieldOptions& surface, const Vec3& w) {
 
 /// A path on its way from the viewer to the light.
 struct Path {
-  Vec3 wv;        // where it began
+  Vec3 wv;        // view direction at its start
   Vec3 arriving;  // unit, from the current point back along the path
   FacetPoint at;
   bool met_base;  // or a body
@@ -88,7 +88,7 @@ class TileRun {
  private:
   static std::vector<uint8_t> patches(const GoniometerOptions& options, uint64_t tile) {
     if (options.base_share <= 0.0) return {};
-    // Patches four correlations wide: most facets have neighbours of their own kind.
+    // Patches four correlations wide: most facets have neighbors of their own kind.
     return make_patches(options.surface.cells, 4.0 * options.surface.correlation, options.base_share, options.seed,
                         stream_of(tile, Stream::patches));
   }
@@ -135,7 +135,7 @@ class TileRun {
 
   Rgb reflectance(const Path& path) const { return options_.facets.at(glm::dot(path.arriving, path.at.normal)); }
 
-  /// Direction in which the path goes on, at an interface by chance; multiplies its weight.
+  /// Direction in which the path continues, chosen at random at an interface; multiplies its weight.
   Vec3 scatter(Path& path, RandomStream& random) const {
     const Vec3& normal = path.at.normal;
     if (path.at.base) {
@@ -184,7 +184,7 @@ class TileRun {
     follow(path, leaving, random);
   }
 
-  /// To the next facet, if there is one.
+  /// Advances the path to the next facet, if there is one.
   Fate advance(Path& path, const Vec3& leaving) {
     ++sums_.rays;
     const Fate fate = tile_.trace(path.at.position, leaving, path.at);
@@ -193,7 +193,7 @@ class TileRun {
     return fate;
   }
 
-  /// What leaves towards `leaving`, until it escapes and is collected.
+  /// Follows the path from direction `leaving` until it escapes and is collected.
   void follow(Path path, Vec3 leaving, RandomStream& random) {
     for (int bounce = 0; bounce < kMaxBounces; ++bounce) {
       if (!survives(path, random)) return;

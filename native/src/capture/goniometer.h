@@ -8,19 +8,19 @@
 
 namespace velour {
 
-/// Product over both directions of g(w) = cos / (cos + kappa sin), kappa = alpha(phi) / (2 sqrt(pi)): it falls to the
-/// horizon as fast as a Gaussian surface hides itself there. Visibility is collected as a ratio to it, so that bins may
-/// be wide where visibility falls steeply; the estimate converges to what is traced whatever the guide. This is g(wl)
-/// g(wv) / (wl.z wv.z), which is finite at the horizon.
+/// The guide g(wl) g(wv) divided by wl.z wv.z, which is finite at the horizon. g(w) = cos / (cos + kappa sin), kappa =
+/// alpha(phi) / (2 sqrt(pi)), falls towards the horizon as fast as the visibility of a Gaussian surface. Visibility is
+/// collected as a ratio to the guide, so that bins may be wide where visibility falls steeply; the estimate converges
+/// to the traced visibility for any guide.
 double mirror_guide_over_cosines(const HeightFieldOptions& surface, const DirectionPair& pair);
 
-/// One element a batch, in order; the same for any number of threads.
+/// Returns one element per batch, in order; the result does not depend on the number of threads.
 ///
 /// A sample is a point of the surface, uniform over the mean plane, and a view of uniform theta_v and azimuth. If the
 /// viewer sees the point, light is followed backwards from there: mirrored by metal, scattered with a cosine by the
-/// base, until it escapes. The first mirror pair of a metal facet is counted in `tried` and `clear`; whatever escapes
-/// after any other history adds to `flux`. At the first facet of a clear surface what is mirrored and what goes through
-/// the body are both followed, later one of them by chance.
+/// base, until it escapes. The first mirror pair of a metal facet is counted in `tried` and `clear`; light that
+/// escapes after any other history adds to `flux`. At the first facet of a clear surface, both the reflection and the
+/// path through the body are followed; at later facets, one of them is chosen at random.
 std::vector<GoniometerSums> run_goniometer(const GoniometerOptions& options, Progress& progress);
 
 }  // namespace velour

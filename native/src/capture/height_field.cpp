@@ -34,7 +34,7 @@ std::vector<double> mode_amplitudes(int cells, double correlation) {
   return amplitude;
 }
 
-/// Unscaled inverse transform of every row, then transposes.
+/// Inverse-transforms every row without scaling, then transposes.
 void transform_rows(int cells, std::vector<Complex>& grid, Eigen::FFT<double>& fft) {
   const auto n = static_cast<size_t>(cells);
   std::vector<Complex> row(n), out(n), transposed(grid.size());
@@ -62,7 +62,7 @@ std::vector<double> gaussian_field(int cells, double correlation, uint64_t seed,
   fft.SetFlag(Eigen::FFT<double>::Unscaled);
   transform_rows(cells, grid, fft);
   transform_rows(cells, grid, fft);
-  // Modes without Hermitian symmetry: the real part alone is a field of the wanted autocorrelation.
+  // The modes lack Hermitian symmetry; the real part alone has the desired autocorrelation.
   std::vector<double> field(n * n);
   std::transform(grid.begin(), grid.end(), field.begin(), [](const Complex& c) { return c.real(); });
   return field;
@@ -78,7 +78,7 @@ HeightField make_height_field(const HeightFieldOptions& options, uint64_t seed, 
       sum_sq += static_cast<double>(along_x * along_x + along_y * along_y);
     }
   }
-  // Each of the two mean squares is to be alpha^2 / 2 on the average of both.
+  // Makes the average of the two mean squares alpha^2 / 2.
   const auto scale = static_cast<float>(options.roughness * std::sqrt(static_cast<double>(field.size()) / sum_sq));
   for (float& h : surface.height) h *= scale;
   return surface;

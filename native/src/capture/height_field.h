@@ -20,9 +20,9 @@ struct HeightFieldOptions {
   double anisotropy = 1.0;   // alpha_x / alpha_y: cells are this much longer along y
 };
 
-/// One period of a surface of flat triangles, two a cell, split along the diagonal from (0, 0) to (1, 1). Length unit:
-/// the side of a cell along x. The mean square slope of the tile's own facets, averaged over both directions in units
-/// of alpha, is exactly 1 / 2: a measured surface has the roughness that it is said to have, not that of its ensemble.
+/// One period of a surface of flat triangles, two per cell, split along the diagonal from (0, 0) to (1, 1). Length
+/// unit: the side of a cell along x. The mean square slope of the tile's own facets, averaged over both directions in
+/// units of alpha, is exactly 1 / 2, so that every surface has the stated roughness, not just the ensemble average.
 struct HeightField {
   int cells = 0;
   double cell_y = 1.0;

@@ -1,5 +1,5 @@
-// Highway compiles this file once for each instruction set. Sums of products stay unfused, so that all of them give the
-// same bits.
+// Highway compiles this file once for each instruction set. Multiplications and additions are not fused, so that all of
+// them give the same bits.
 #include "capture/light_kernels.h"
 
 #undef HWY_TARGET_INCLUDE
@@ -25,7 +25,7 @@ HWY_INLINE V dot(const Vec3& a, V x, V y, V z) {
   return hn::Add(xy, hn::Mul(hn::Set(d, a.z), z));
 }
 
-/// Writes whole vectors: `numbers` has room for one more than there are places.
+/// Writes whole vectors: `numbers` must have room for one vector more than there are places.
 size_t facing_places_simd(const PlaceNormals& normals, const Vec3& wl, uint32_t* numbers) {
   const Tag d;
   const hn::RebindToUnsigned<Tag> du;
@@ -40,7 +40,7 @@ size_t facing_places_simd(const PlaceNormals& normals, const Vec3& wl, uint32_t*
   return count;
 }
 
-/// A list that is written vector by vector.
+/// An array that is written in whole vectors, past its last element.
 template <class T>
 struct Staged {
   alignas(64) T v[DirectionBatch::kCapacity + 16];
@@ -134,7 +134,7 @@ void PlaceNormals::push(const Vec3& geometric, const Vec3& shading) {
 void facing_places(const PlaceNormals& normals, const Vec3& wl, std::vector<uint32_t>& numbers) {
   numbers.resize(normals.count() + 2 * kLongestVector);
   size_t count = VELOUR_SIMD_DISPATCH(facing_places_simd)(normals, wl, numbers.data());
-  while (count > 0 && numbers[count - 1] >= normals.count()) --count;  // what fills the last vector
+  while (count > 0 && numbers[count - 1] >= normals.count()) --count;  // padding of the last vector
   numbers.resize(count);
 }
 

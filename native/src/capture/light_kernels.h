@@ -1,4 +1,4 @@
-// What a capture does for every pair of a place and a light, side by side.
+// SIMD kernels for pairs of a place and a light.
 #pragma once
 
 #include <array>
@@ -12,7 +12,7 @@
 
 namespace velour {
 
-/// Normals of many places, one array a component.
+/// Normals of many places, one array per component.
 class PlaceNormals {
  public:
   void clear() { count_ = 0; }
@@ -25,27 +25,27 @@ class PlaceNormals {
   std::array<std::vector<float>, 6> components_;  // padded to whole vectors
 };
 
-/// Numbers, rising, of the places whose geometric and shading normals both face `wl`.
+/// Finds the numbers, ascending, of the places whose geometric and shading normals both face `wl`.
 void facing_places(const PlaceNormals& normals, const Vec3& wl, std::vector<uint32_t>& numbers);
 
-/// Lights that reach a place, next to each other.
+/// Lights that reach a place, stored contiguously.
 struct LitLights {
   DirectionBatch wl;                                          // local, padded
   uint32_t number[DirectionBatch::kCapacity];                 // in the group
-  alignas(64) float weight[DirectionBatch::kCapacity] = {0};  // what f is multiplied with: wl.z per_irradiance
+  alignas(64) float weight[DirectionBatch::kCapacity] = {0};  // factor of f: wl.z per_irradiance
 };
 
-/// Those of lights [first, first + 64) of `group` whose bit of `mask` is set.
+/// Collects the lights in [first, first + 64) of `group` whose bit in `mask` is set.
 void collect_lit(const LightGroup& group, uint32_t first, uint64_t mask, const Frame& frame, LitLights& lit);
 
-/// Sums over paths, of each light of a group.
+/// Sums over paths for each light of a group.
 struct PathSums {
   alignas(64) double sum[3][kLightsTogether];
   alignas(64) double luminance[kLightsTogether], luminance_sq[kLightsTogether];
 };
 
-/// Adds what each of the first `lights` lights brings along one path; a value that is not finite is left out. How many
-/// were. `luminance_weights`: of the colours' space.
+/// Adds the contribution of each of the first `lights` lights along one path; omits values that are not finite and
+/// returns their number. `luminance_weights`: for the color space of `path`.
 uint32_t add_path(const float (&path)[3][kLightsTogether], const Vec3& luminance_weights, uint32_t lights,
                   PathSums& sums);
 

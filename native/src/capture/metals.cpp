@@ -7,12 +7,12 @@ namespace {
 
 struct Metal {
   const char* name;
-  std::span<const double> wavelengths;  // nanometres, over the visible range
+  std::span<const double> wavelengths;  // nanometers, over the visible range
   std::span<const RefractiveIndex> indices;
 };
 
 // Gold, copper, silver: [JC72]; nickel, iron, chromium, titanium: [JC74], at the same photon energies. Evaporated films
-// at room temperature, as the refractiveindex.info database [Pol24] has them, which is in the public domain.
+// at room temperature, taken from the refractiveindex.info database [Pol24], which is in the public domain.
 constexpr double kJohnsonChristy[] = {354.2, 367.9, 381.5, 397.4, 413.3, 430.5, 450.9, 471.4, 495.9,
                                       520.9, 548.6, 582.1, 616.8, 659.5, 704.5, 756.0, 821.1, 892.0};
 constexpr RefractiveIndex kGold[] = {{1.5, 1.866},  {1.48, 1.895}, {1.46, 1.933}, {1.47, 1.952}, {1.46, 1.958},
@@ -44,7 +44,7 @@ constexpr RefractiveIndex kTitanium[] = {{1.82, 2.87}, {1.9, 2.9},   {1.99, 2.93
                                          {2.54, 3.43}, {2.6, 3.58},  {2.67, 3.72}, {2.76, 3.84}, {2.86, 3.96},
                                          {3.0, 4.01},  {3.21, 4.01}, {3.29, 3.96}};
 
-// [Rak95], whose rows are elsewhere.
+// [Rak95], at wavelengths of its own.
 constexpr double kRakic[] = {326.28, 364.66, 413.28, 442.8,  476.87, 516.6,  563.57, 619.93,
                              652.25, 688.81, 729.32, 774.91, 794.78, 815.69, 837.74};
 constexpr RefractiveIndex kAluminium[] = {{0.31474, 3.9165}, {0.39877, 4.3957}, {0.52135, 5.0008}, {0.6079, 5.3676},

@@ -10,8 +10,8 @@ namespace velour {
 
 std::vector<std::string> metal_names();
 
-/// Of clean metal below a medium of refractive index `outside` (1: air or vacuum). Throws Error(invalid_argument) that
-/// lists the names known. Sources stand beside the numbers in metals.cpp.
+/// Reflectance of clean metal below a medium of refractive index `outside` (1: air or vacuum). Throws
+/// Error(invalid_argument) that lists the known names. metals.cpp gives the sources of the data.
 Reflectance metal_reflectance(const std::string& name, double outside = 1.0);
 
 }  // namespace velour

@@ -21,8 +21,8 @@ namespace {
 constexpr uint64_t kDefaultRays = 12'000'000;
 constexpr uint64_t kMaxRays = 100'000'000'000;
 constexpr uint64_t kSamplesPerTile = 187'500;
-constexpr uint64_t kMinBatches = 8, kMaxBatches = 32;  // few batches estimate errors badly
-constexpr uint64_t kSamplesPerBatch = 100'000;         // below kMaxBatches of them
+constexpr uint64_t kMinBatches = 8, kMaxBatches = 32;  // few batches estimate errors poorly
+constexpr uint64_t kSamplesPerBatch = 100'000;         // for fewer than kMaxBatches batches
 
 std::string number(double x) {
   std::string text = std::to_string(x);
@@ -74,7 +74,7 @@ GoniometerOptions goniometer_options(const MicrosurfaceOptions& options) {
   return goniometer;
 }
 
-/// Calls `row` for 0 <= i < rows from the threads asked for, checking for a cancel before each.
+/// Calls `row` for 0 <= i < rows on `threads` threads, checking for cancellation before each call.
 void for_each_row(int rows, int threads, const Progress& progress, const std::function<void(int)>& row) {
   tbb::task_arena arena(arena_concurrency(threads));
   arena.execute([&] {
@@ -117,7 +117,7 @@ void write_anisotropic(const MicrosurfaceBrdf& brdf, const MicrosurfaceOptions& 
                        const Progress& progress) {
   BrdfTable table;
   table.layout.folds = 2;  // the bins were pooled over both mirror planes
-  // Across the long axis of a stretched highlight its width is 1 / anisotropy of the radius.
+  // Across its long axis, a stretched highlight is as wide as 1 / anisotropy of its radius.
   table.layout.phi_h = std::clamp(static_cast<int>(9.0 * options.anisotropy), 18, 72);
   table.layout.theta_d = 45;
   table.f.assign(table.layout.size(), Rgb(std::numeric_limits<float>::quiet_NaN()));
@@ -135,14 +135,14 @@ void write_anisotropic(const MicrosurfaceBrdf& brdf, const MicrosurfaceOptions& 
   write_brdf_table(path, table);
 }
 
-/// A bin of the finished table as the report weighs it.
+/// A bin of the finished table, weighted for the report.
 struct Bin {
   DirectionPair pair;
   double energy;  // f cos(theta_l) cos(theta_v) d omega_l d omega_v
   double f;       // luminance
 };
 
-/// A regular thinning of the MERL nodes, turned to `azimuths` azimuths of the half vector.
+/// A regular subset of the MERL nodes, rotated to `azimuths` azimuths of the half vector.
 std::vector<Bin> bins_for_report(const MicrosurfaceBrdf& brdf, int azimuths) {
   std::vector<Bin> bins;
   for (int i = 1; i < MerlGrid::theta_h; ++i) {
@@ -164,7 +164,7 @@ std::vector<Bin> bins_for_report(const MicrosurfaceBrdf& brdf, int azimuths) {
   return bins;
 }
 
-/// The brightest bins that hold 90 % of the energy of all.
+/// The brightest bins, which together hold 90 % of the energy.
 std::vector<Bin> bright_bins(std::vector<Bin> bins) {
   std::stable_sort(bins.begin(), bins.end(), [](const Bin& a, const Bin& b) { return a.energy > b.energy; });
   const double all =

@@ -1,4 +1,4 @@
-// A virtual goniometer for random micro-surfaces: measurements with known ground truth, from nothing but a seed.
+// A virtual goniometer for random micro-surfaces: measurements with known ground truth, generated from a seed.
 #pragma once
 
 #include <cstdint>
@@ -15,7 +15,7 @@ struct MicrosurfaceOptions {
   std::string metal = "copper";  // one of metal_names()
   Rgb base_albedo{0, 0, 0};      // diffuse base
   double base_share = 0.0;       // share of the surface that is diffuse base
-  /// Refractive index of a clear surface over base and metal, which are then below it: pigment and flakes. 0: none.
+  /// Refractive index of a clear surface, below which base and metal are pigment and flakes. 0: no clear surface.
   double ior = 0.0;
   double flake_roughness = 0.2;  // Beckmann alpha of the flakes below a clear surface
   uint64_t rays = 0;             // 0: the default
@@ -28,12 +28,12 @@ struct MicrosurfaceReport {
   uint64_t rays = 0;  // traced, all orders of scattering
   double rays_per_second = 0;
   uint64_t bytes = 0;                  // of the file
-  double resolution_degrees = 0;       // of the bins that the rays were collected in, near the highlight
+  double resolution_degrees = 0;       // of the bins that collect the rays, near the highlight
   double relative_standard_error = 0;  // median over the bins that hold 90 % of the energy
   double albedo[3] = {0, 0, 0};        // at normal incidence
 };
 
-/// Traces, tabulates and writes `path`: MERL layout when isotropic, Velour's EXR table otherwise.
+/// Traces, tabulates and writes `path`, in MERL layout if isotropic, otherwise as Velour's EXR table.
 MicrosurfaceReport capture_microsurface(const MicrosurfaceOptions& options, const std::string& path,
                                         Progress& progress);
 

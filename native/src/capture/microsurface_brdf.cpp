@@ -11,7 +11,7 @@ namespace velour {
 
 namespace {
 
-/// Pairs that a bin needs before it is used rather than the coarser one.
+/// Minimum number of pairs in a bin; below it, the next coarser bin is used.
 constexpr double kEnoughPairs = 16;
 
 }  // namespace
@@ -66,7 +66,7 @@ Rgb MicrosurfaceBrdf::single(const DirectionPair& pair) const {
   const Vec3 h = glm::normalize(pair.wl + pair.wv);
   const double density = bins_.slopes.look_up({-h.x / h.z, -h.y / h.z}, slope_density_);
   if (density == 0.0) return Rgb(0);
-  // Slopes to normals: d(slope) = d omega_h / cos^3; facets a mean area to their own area: another 1 / cos.
+  // Slopes to normals: d(slope) = d omega_h / cos^3; area of the mean plane to that of facets: another 1 / cos.
   const double h_z_sq = static_cast<double>(h.z) * static_cast<double>(h.z);
   const double facets = density / (h_z_sq * h_z_sq);
   const double visible = clear_share(bins_.mirror.stencil(pair)) * mirror_guide_over_cosines(options_.surface, pair);

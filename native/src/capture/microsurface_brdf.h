@@ -1,4 +1,4 @@
-// The reflectance that a goniometer run amounts to.
+// The BRDF estimated by a goniometer run.
 #pragma once
 
 #include <vector>
@@ -7,15 +7,15 @@
 
 namespace velour {
 
-/// f of any pair of directions above the horizon, from what was collected: single reflection off metal as F(theta_d) x
-/// facets a solid angle x share of clear pairs / (4 cos theta_l cos theta_v), plus the flux bins. Reciprocal to
+/// f of any pair of directions above the horizon, from the collected sums: single reflection off metal as F(theta_d) x
+/// facets per solid angle x share of clear pairs / (4 cos theta_l cos theta_v), plus the flux bins. Reciprocal up to
 /// rounding. Thread-safe.
 class MicrosurfaceBrdf {
  public:
-  /// `options` and `bins` are those of the run.
+  /// `options` and `bins` must be those of the run.
   MicrosurfaceBrdf(const GoniometerOptions& options, const GoniometerBins& bins, const GoniometerSums& sums);
 
-  /// 1/sr, linear Rec. 709, without cosine. Bins with too few rays give way to the next coarser ones.
+  /// 1/sr, linear Rec. 709, without cosine. Bins with too few rays are replaced by coarser ones.
   Rgb f(const DirectionPair& pair) const { return single(pair) + multiple(pair) + diffuse(pair); }
   /// Light that met the metal once and nothing else.
   Rgb single(const DirectionPair& pair) const;
@@ -35,15 +35,15 @@ class MicrosurfaceBrdf {
 
   GoniometerOptions options_;
   GoniometerBins bins_;
-  std::vector<double> slope_density_;                // a slope bin
-  std::vector<double> tried_, clear_;                // a mirror bin, pooled by symmetry
-  std::vector<double> tried_coarse_, clear_coarse_;  // the same, pooled over azimuths
-  double clear_share_overall_;                       // all pairs: the coarsest bin
+  std::vector<double> slope_density_;                // per slope bin
+  std::vector<double> tried_, clear_;                // per mirror bin, pooled by symmetry
+  std::vector<double> tried_coarse_, clear_coarse_;  // likewise, pooled over azimuths
+  double clear_share_overall_;                       // over all pairs: the coarsest bin
   BinnedBrdf metal_, diffuse_;
 };
 
-/// Directional albedo: integral of f cos(theta_l) over the lights at wv, by the mean over `lights` directions of equal
-/// solid angle. `part` picks f or one of its parts.
+/// Directional albedo at wv: integral of f cos(theta_l) over the light directions, estimated from `lights` directions
+/// of equal solid angle. `part` selects f or one of its parts.
 Rgb albedo(const MicrosurfaceBrdf& brdf, Rgb (MicrosurfaceBrdf::*part)(const DirectionPair&) const, const Vec3& wv,
            int lights);
 

@@ -19,7 +19,7 @@
 namespace velour {
 namespace {
 
-constexpr float kSheet = 0.6f;  // half the thickness of a sheet, pitches: a look-up between points finds it
+constexpr float kSheet = 0.6f;  // half thickness of sheets in pitches, enough for look-ups between points to find them
 
 /// Triangles of the tile in its own coordinates, in widths.
 std::vector<Triangle> triangles_of(const RepeatedTile& tile, double surface) {
@@ -114,10 +114,10 @@ class OcclusionCapturer {
   }
 
   OcclusionErrors errors() {
-    // Shares the volume, which stays where it is.
+    // Non-owning pointer: the volume outlives `field`.
     const ShellField field(std::shared_ptr<const OcclusionVolume>(std::shared_ptr<void>(), &volume()));
     const float reference = volume().reference * tile_.period().x + static_cast<float>(options_.surface);
-    std::vector<std::pair<int64_t, int64_t>> seen(options_.check_views);  // texels that are covered, and wrong
+    std::vector<std::pair<int64_t, int64_t>> seen(options_.check_views);  // numbers of covered and of wrong texels
     tbb::parallel_for(0u, options_.check_views, [&](uint32_t i) {
       progress_.check();
       const Vec3 wv = check_view(options_.seed, i);

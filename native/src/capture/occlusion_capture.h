@@ -1,4 +1,4 @@
-// From a tile of geometry to what its shell holds.
+// Occlusion volume (VOTF) of a tile of geometry.
 #pragma once
 
 #include <optional>
@@ -12,13 +12,13 @@
 namespace velour {
 
 struct OcclusionCaptureOptions {
-  TilePlace place;                           // period 0: that of the geometry's bounding box, both of its numbers
-  double metres_per_unit = 1.0;              // of the scene; 0: not known
-  uint32_t texels = 128;                     // along x; y and z are as fine
-  double surface = 0;                        // the scene's z that lies on the surface which will carry the shell
-  std::optional<double> reference_height{};  // in the scene's z; none: least_variance_height
-  uint32_t check_views = 64;                 // random views that the volume is compared with rays under; 0: not at all
-  uint64_t seed = 0;                         // of those
+  TilePlace place;                           // period (0, 0): the geometry's bounding box
+  double metres_per_unit = 1.0;              // of the scene; 0: unknown
+  uint32_t texels = 128;                     // along x, at the same resolution along y and z
+  double surface = 0;                        // the scene's z that will lie on the carrying surface
+  std::optional<double> reference_height{};  // in the scene's z; none: least_variance_height()
+  uint32_t check_views = 64;                 // random views in which the volume is compared with rays; 0: none
+  uint64_t seed = 0;                         // of the check views
   int threads = 0;                           // 0: all
   bool measure_ray_share = false;
 };
@@ -27,13 +27,13 @@ struct OcclusionCapture {
   OcclusionVolume volume;
   std::optional<OcclusionErrors> errors;
   double seconds = 0;
-  std::optional<double> ray_share;  // of the bare Embree rate for the same rays, those of the checks included
+  std::optional<double> ray_share;  // relative to the bare Embree rate for the same rays, including the checks
   std::vector<std::string> warnings;
 };
 
-/// `scene` is committed. Inside and outside are told apart along vertical rays by the facing of what they meet; a sheet
-/// that is open below is solid down to the bottom where the tile is closed, and about a texel thick otherwise.
-/// Throws Error(invalid_argument) for sizes that make no grid.
+/// `scene` must be committed. Inside and outside are distinguished along vertical rays by the facing of the surfaces
+/// they hit; a sheet that is open below is solid down to the bottom if the tile is closed, and about a texel thick
+/// otherwise. Throws Error(invalid_argument) for invalid grid sizes.
 OcclusionCapture capture_occlusion(const Scene& scene, const OcclusionCaptureOptions& options, Progress& progress);
 
 }  // namespace velour

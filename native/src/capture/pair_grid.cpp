@@ -5,12 +5,12 @@
 
 namespace velour {
 
-/// The two nodes about a coordinate and the share of the upper one.
+/// The two nodes around a coordinate and the share of the upper one.
 struct PairGrid::Axis {
   int lower, upper;
   float share;
 
-  /// Among nodes at `range` w(i / steps).
+  /// Axis of nodes at `range` w(i / steps).
   static Axis warped(float x, float range, const std::vector<double>& nodes) {
     const int steps = static_cast<int>(nodes.size()) - 1;
     const float above = std::max(0.0f, 1.0f - x / range);  // its power 2/3 inverts w; the hats are linear in x itself
@@ -20,7 +20,7 @@ struct PairGrid::Axis {
     const auto end = static_cast<float>(nodes[static_cast<size_t>(lower) + 1]);
     return {lower, lower + 1, std::clamp((x - begin) / (end - begin), 0.0f, 1.0f)};
   }
-  /// Among `steps` nodes at whole x, of which the last is followed by the first.
+  /// Periodic axis of `steps` nodes at integer x.
   static Axis periodic(float x, int steps) {
     const float floor = std::floor(x);
     const int lower = ((static_cast<int>(floor) % steps) + steps) % steps;
@@ -124,7 +124,7 @@ std::vector<double> PairGrid::azimuth_measure() const {
     for (double& m : measure) m *= 2.0;  // both signs of phi
     return measure;
   }
-  measure.front() *= 2.0;  // 0 and pi have a half on each side
+  measure.front() *= 2.0;  // the hats of 0 and pi have a half on each side
   measure.back() *= 2.0;
   for (int i = phi_steps_ - 1; i > 0; --i) measure.push_back(measure[static_cast<size_t>(i)]);
   for (double& m : measure) m /= phi_v_steps_;  // uniform phi_v
@@ -176,7 +176,7 @@ void PairGrid::pool_by_symmetry(std::span<double> sums, int channels) const {
     pool_poles(sums, channels);
     return;
   }
-  // Mirrored in y = 0, both azimuths change sign; in x = 0, phi_v becomes pi - phi_v.
+  // Mirroring in y = 0 negates phi and phi_v; mirroring in x = 0 negates phi and turns phi_v into pi - phi_v.
   const int turn = 2 * phi_steps_, turn_v = phi_v_steps_;
   add_image(sums, channels, [turn, turn_v](const Node& n) {
     return Node{n.theta_l, (turn - n.phi) % turn, n.theta_v, (turn_v - n.phi_v) % turn_v};

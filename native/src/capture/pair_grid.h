@@ -1,4 +1,4 @@
-// Overlapping bins over pairs of directions: where scattered rays are collected.
+// Overlapping bins over pairs of directions, in which scattered rays are collected.
 #pragma once
 
 #include <array>
@@ -12,13 +12,13 @@ namespace velour {
 
 /// Nodes over (theta_l, phi, theta_v) and, unless isotropic, phi_v: phi = phi_l - phi_v is the azimuth between the two
 /// directions, folded to [0, pi] when isotropic. With w(u) = 1 - (1 - u)^1.5, both theta and |phi| have their nodes at
-/// equal steps of u: narrow towards the horizon, where surfaces begin to hide themselves, and about the forward
-/// direction, where what is scattered at grazing angles goes. phi_v has equal steps. A bin is the hat function of its
-/// node: 1 there and falling linearly to 0 at the next nodes, so that the bins of any pair add up to 1. The same hats
-/// interpolate.
+/// equal steps of u: dense towards the horizon, where surfaces begin to shadow themselves, and around the forward
+/// direction, into which light scatters at grazing angles. phi_v has equal steps. A bin is the hat function of its
+/// node: 1 there and falling linearly to 0 at the next nodes, so that the bins of any pair add up to 1. Look-ups
+/// interpolate with these hats.
 class PairGrid {
  public:
-  /// `phi_v_steps` over the full turn, even; 0: isotropic.
+  /// `phi_v_steps` cover the full turn and must be even; 0: isotropic.
   PairGrid(int theta_steps, int phi_steps, int phi_v_steps);
 
   size_t size() const { return size_; }
@@ -31,17 +31,17 @@ class PairGrid {
   };
   Stencil stencil(const DirectionPair& pair) const;
 
-  /// Expected sum of shares a bin, one draw a unit, for views of uniform theta_v in [0, pi/2] and uniform azimuth and
-  /// the measure cos(theta_l) d omega_l over the lights: what turns collected flux into a BRDF. With `exchanged`, for
-  /// pairs whose two directions were exchanged after the draw.
+  /// Expected sum of shares per bin and sample, for views of uniform theta_v in [0, pi/2] and uniform azimuth and the
+  /// measure cos(theta_l) d omega_l over the lights: collected flux is divided by it to obtain a BRDF. With
+  /// `exchanged`, for pairs whose two directions were exchanged after sampling.
   std::vector<double> flux_measure(bool exchanged) const;
 
-  /// Adds up what symmetry makes equal. Isotropic: all phi where a direction is the normal, which has no azimuth. Else:
-  /// the mirror images in the planes x = 0 and y = 0. `sums`: `channels` numbers a node. Ratios of pooled sums stay
-  /// ratios.
+  /// Adds up bins that are equal by symmetry. Isotropic: all phi if a direction is the normal, which has no azimuth.
+  /// Otherwise: the mirror images in the planes x = 0 and y = 0. `sums`: `channels` numbers per node. Ratios of pooled
+  /// sums remain valid.
   void pool_by_symmetry(std::span<double> sums, int channels) const;
 
-  /// Every node becomes the sum over all azimuths of its two polar angles: the next coarser bins.
+  /// Replaces every node by the sum over all azimuths at its two polar angles: the next coarser bins.
   void pool_azimuths(std::span<double> sums) const;
 
  private:
@@ -62,7 +62,7 @@ class PairGrid {
 
   int theta_steps_, phi_steps_, phi_v_steps_;
   size_t size_;
-  std::vector<double> theta_, phi_;  // of the nodes; |phi| only
+  std::vector<double> theta_, phi_;  // positions of the nodes; |phi| only
 };
 
 /// sums[node] += share x value for each bin of the stencil.

@@ -9,7 +9,7 @@
 namespace velour {
 namespace {
 
-/// Bits of `x` (10 of them) with gaps of one.
+/// Spreads the 10 bits of `x` to every other bit.
 uint32_t spread_bits(uint32_t x) {
   x = (x | (x << 8)) & 0x00ff00ffu;
   x = (x | (x << 4)) & 0x0f0f0f0fu;
@@ -17,7 +17,7 @@ uint32_t spread_bits(uint32_t x) {
   return (x | (x << 1)) & 0x55555555u;
 }
 
-/// Place along a Z-curve over the cell, in steps of a 1024th of it.
+/// Position along a Z-order curve over the cell, with 1024 steps along each side.
 uint32_t morton_code(const Vec2& place_in_cell) {
   const Vec2 steps = glm::clamp(place_in_cell * 1024.0f, Vec2(0), Vec2(1023));
   return spread_bits(static_cast<uint32_t>(steps.x)) | spread_bits(static_cast<uint32_t>(steps.y)) << 1;
@@ -44,7 +44,7 @@ uint64_t PathVertices::texel_key(const ViewSetup& view, uint32_t column, uint32_
   return RandomStream(sampling_.seed, view.number, texel).next_bits();
 }
 
-/// Streams of a vertex: its own number, and from there on others.
+/// Key of a vertex, from which its random numbers derive.
 uint64_t PathVertices::vertex_key(uint32_t path, uint32_t depth) const {
   const uint32_t sample = path % sampling_.samples;
   return mix64(keys_[path / sampling_.samples] ^ mix64(uint64_t{depth} << 32 | sample));
@@ -82,12 +82,12 @@ void PathVertices::start(const ViewSetup& view, const TexelBlock& block) {
   }
 }
 
-/// Where the line of sight through `plane`, a point of the reference plane, enters the shell: in the centre cell.
+/// Where the line of sight through `plane`, a point of the reference plane, enters the shell, moved to the center cell.
 Vec3 PathVertices::start_above(const Vec2& plane, const Vec3& wv) const {
   const float z = wv.z > 0 ? tile_.top() : tile_.bottom();
   const float distance = (z - reference_height_) / wv.z;
   const Vec2 place = tile_.into_cell(plane + distance * Vec2(wv));
-  // A little above: a surface that is flat on top is met, too.
+  // Slightly outside the shell, so that a flat top is hit, too.
   return Vec3(place, z) + (tile_.thickness() + tile_.period().x) * 1e-5f * wv;
 }
 
@@ -96,7 +96,7 @@ void PathVertices::meet(uint32_t depth) {
   for (uint32_t i = 0; i < rays_.size(); ++i) {
     if (hits_[i].instance == kNoHit) continue;
     const Vec2 place = Vec2(rays_[i].origin + hits_[i].distance * rays_[i].direction);
-    // First hits of neighbouring texels are neighbours already.
+    // First hits of neighboring texels are already neighbors.
     const uint64_t code = depth == 0 ? 0 : morton_code(tile_.into_cell(place) / tile_.period());
     order_.push_back(code << 32 | i);
   }

@@ -1,4 +1,4 @@
-// Where the paths of a block of texels meet the tile: all that lights are then tried on.
+// Vertices at which the paths of a block of texels hit the tile, and which the lights are then tested for.
 #pragma once
 
 #include <span>
@@ -14,18 +14,18 @@
 
 namespace velour {
 
-/// A place that a path met.
+/// A point where a path hits the tile.
 struct PathVertex {
   Vertex vertex;
-  Rgb throughput;  // of light that leaves it along the path, until it reaches the viewer; working space
-  uint64_t key;    // of the random numbers of its shadow rays, where surfaces let some through
+  Rgb throughput;  // of the path from here to the viewer; working space
+  uint64_t key;    // for the random numbers of its shadow rays through cutouts
 };
 
-/// Paths from the viewer through points of the texels, `samples` a texel, those of a texel one after the other. One a
-/// thread.
+/// Paths from the viewer through points of the texels, `samples` per texel; the paths of a texel are contiguous. One
+/// per thread.
 ///
-/// The points of a texel are those of a scrambled Sobol sequence; each further vertex draws its direction by the
-/// material with such a sequence of its own. Every number depends on (seed, view, texel, sample, vertex) alone.
+/// The points of a texel form a scrambled Sobol sequence; each further vertex samples its direction from the material
+/// with such a sequence of its own. All random numbers depend on (seed, view, texel, sample, vertex) alone.
 class PathVertices {
  public:
   static constexpr uint32_t kNone = 0xffffffffu;
@@ -36,12 +36,12 @@ class PathVertices {
   void trace(const ViewSetup& view, const TexelBlock& block, TileRays& rays, RayLog* log, const Progress& progress);
 
   uint32_t paths() const { return paths_; }
-  /// First hits first, then those of the first bounce, and so on; within each neighbours in space stand together.
+  /// Sorted by depth (first hits first), and within a depth so that neighbors in space are adjacent.
   std::span<const PathVertex> vertices() const { return vertices_; }
-  /// Begin of the vertices of each depth, and the end.
+  /// Index of the first vertex of each depth, and the end.
   std::span<const uint32_t> depths() const { return depths_; }
   const RayCone& cone() const { return cone_; }
-  /// The vertex that path `path` met at `depth`, or kNone.
+  /// The vertex of path `path` at `depth`, or kNone.
   uint32_t vertex_of(uint32_t path, uint32_t depth) const { return vertex_of_[size_t{depth} * paths_ + path]; }
 
  private:
@@ -62,16 +62,16 @@ class PathVertices {
   uint32_t paths_ = 0;
   std::vector<PathVertex> vertices_;
   std::vector<uint32_t> depths_, vertex_of_;
-  std::vector<uint64_t> keys_;  // of each texel's random numbers
+  std::vector<uint64_t> keys_;  // one per texel, for its random numbers
   std::vector<Vec2> points_;    // of one texel
-  RayCone cone_;  // as wide as what a path stands for, as PixelFootprint has it: a texel's samples share it
-  // Of the rays under way.
+  RayCone cone_;                // footprint of a path: the samples share the texel, as in PixelFootprint
+  // The rays being traced.
   std::vector<Ray> rays_;
   std::vector<Rgb> throughput_;
   std::vector<uint32_t> path_of_;
   std::vector<Hit> hits_;
   std::vector<uint64_t> ray_keys_;
-  std::vector<uint64_t> order_;  // Morton code of the place, then the ray's number
+  std::vector<uint64_t> order_;  // Morton code of the hit, then the ray's index
   PreparedBrdf prepared_;
 };
 

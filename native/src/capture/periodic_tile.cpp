@@ -6,10 +6,10 @@
 namespace velour {
 namespace {
 
-/// Cells beyond each side of the period that the mesh repeats, so that no ray slips through the seam.
+/// Number of cells that the mesh repeats beyond each side of the period, so that no ray slips through the seam.
 constexpr int kPad = 1;
 
-/// Distance to the far side, along `direction`, of [0, period].
+/// Distance along `direction` to the far side of [0, period].
 float distance_to_side(float origin, float direction, float period) {
   if (direction == 0.0f) return std::numeric_limits<float>::infinity();
   return std::max(0.0f, ((direction > 0.0f ? period : 0.0f) - origin) / direction);
@@ -27,7 +27,7 @@ std::vector<Vec3> padded_positions(const HeightField& field) {
   return positions;
 }
 
-/// Two triangles a cell, counter-clockwise from above, the one below the diagonal first.
+/// Two triangles per cell, counterclockwise from above, the one below the diagonal first.
 std::vector<glm::uvec3> padded_triangles(int cells) {
   const auto side = static_cast<uint32_t>(cells + 2 * kPad);
   std::vector<glm::uvec3> triangles;
@@ -42,7 +42,7 @@ std::vector<glm::uvec3> padded_triangles(int cells) {
   return triangles;
 }
 
-/// Facet of the period that triangle `triangle` of the padded mesh repeats.
+/// Facet of the period that corresponds to triangle `triangle` of the padded mesh.
 int facet_of_triangle(uint32_t triangle, int cells) {
   const int side = cells + 2 * kPad, cell = static_cast<int>(triangle / 2);
   const int x = (cell % side - kPad + cells) % cells, y = (cell / side - kPad + cells) % cells;
@@ -59,7 +59,7 @@ PeriodicTile::PeriodicTile(HeightField field, std::vector<uint8_t> base_cells)
   lift_ = std::max(period_.x, period_.y) * 0x1p-20f;  // a few roundings of the largest coordinate
   const auto triangles = padded_triangles(field_.cells);
   scene_.add_instance(scene_.add_mesh(padded_positions(field_), triangles), {});
-  // One thread: tiles are built side by side, and the hierarchy must not depend on the number of threads.
+  // One thread: tiles are built in parallel, and the BVH must not depend on the number of threads.
   scene_.commit(1, nullptr, EmbreeScene::Levels::one);
 }
 

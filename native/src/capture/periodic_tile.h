@@ -1,4 +1,4 @@
-// One period of a surface, traced as if it went on for ever.
+// One period of a surface, traced as if it repeated forever.
 #pragma once
 
 #include <cstdint>
@@ -9,7 +9,7 @@
 
 namespace velour {
 
-/// A point just above the surface: rays that leave it upwards of its facet cannot meet the facet again.
+/// A point just above the surface: rays that leave it to the upper side of its facet cannot hit the facet again.
 struct FacetPoint {
   Vec3 position{0, 0, 0};
   Vec3 normal{0, 0, 1};  // of the flat facet, unit, z > 0
@@ -18,7 +18,7 @@ struct FacetPoint {
 
 enum class Fate { hit, escaped, lost };
 
-/// Rays that leave the tile sideways come in again at the other side. Immutable after construction, thread-safe.
+/// Rays that leave the tile sideways re-enter at the opposite side. Immutable after construction, thread-safe.
 class PeriodicTile {
  public:
   /// `base_cells` [cells^2] marks the cells of diffuse base; empty: none.
@@ -32,13 +32,13 @@ class PeriodicTile {
   /// The surface above a point of the mean plane; u uniform in [0, 1)^2 makes it uniform over that plane's area.
   FacetPoint point_above(const Vec2& u) const;
 
-  /// A point that nothing of the surface is above, for rays that come down; u as of point_above.
+  /// A point at the height of the surface's top, for rays that come down; u as in point_above().
   Vec3 place_above(const Vec2& u) const { return {u * period_, top_}; }
 
-  /// First meeting with the surface. `lost` are rays that run below it through rounding, or so flat that they cross
-  /// kMaxPeriods periods without a meeting.
+  /// First hit on the surface. Rays are `lost` if rounding takes them below it, or if they are so flat that they cross
+  /// kMaxPeriods periods without a hit.
   Fate trace(const Vec3& origin, const Vec3& direction, FacetPoint& hit) const;
-  /// True when the ray meets nothing (and is not lost).
+  /// True if the ray hits nothing and is not lost.
   bool escapes(const Vec3& origin, const Vec3& direction) const;
 
   static constexpr int kMaxPeriods = 256;
@@ -51,8 +51,8 @@ class PeriodicTile {
   std::vector<uint8_t> base_cells_;
   EmbreeScene scene_;
   Vec2 period_;
-  float top_ = 0;   // nothing of the surface is higher
-  float lift_ = 0;  // of surface points along their normal, against rounding
+  float top_ = 0;   // highest point of the surface
+  float lift_ = 0;  // offset of surface points along their normal, against rounding
 };
 
 }  // namespace velour

@@ -8,7 +8,7 @@
 namespace velour {
 namespace {
 
-/// The pilot's texels along a side, and their paths: noise is the same at all heights, so few of these show the least.
+/// Texels along a side and paths per texel of the pilot. Noise is the same at all heights, so few find the minimum.
 constexpr uint32_t kSide = 32, kSamples = 4;
 constexpr uint64_t kSeed = 0;
 
@@ -26,7 +26,7 @@ PairLayout pilot_layout(bool two_sided) {
   return {views, lights};
 }
 
-/// Mean over pairs of light and texel of the variance over views. Views from one side are compared with each other:
+/// Variance over views, averaged over pairs of light and texel. Views are compared only with those from the same side:
 /// the two sides of a sheet differ at any height.
 class VarianceOverViews {
  public:

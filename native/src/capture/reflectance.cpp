@@ -11,7 +11,7 @@ namespace velour {
 double fresnel_reflectance(const RefractiveIndex& index, double cos_theta) {
   const double cos_sq = cos_theta * cos_theta, sin_sq = 1.0 - cos_sq;
   const double n_sq = index.n * index.n, k_sq = index.k * index.k;
-  // a^2 + b^2 and a of the complex cosine (a + i b) inside the metal, times its index.
+  // With a + i b the complex cosine inside the metal times its index: modulus = a^2 + b^2, two_a_cos = 2 a cos_theta.
   const double t = n_sq - k_sq - sin_sq;
   const double modulus = std::sqrt(t * t + 4.0 * n_sq * k_sq);
   const double two_a_cos = 2.0 * cos_theta * std::sqrt(std::max(0.5 * (modulus + t), 0.0));

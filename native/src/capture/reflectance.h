@@ -1,4 +1,4 @@
-// How much smooth surfaces reflect, and in which colour.
+// Fresnel reflectance of smooth surfaces, as a color.
 #pragma once
 
 #include <array>
@@ -8,29 +8,29 @@
 
 namespace velour {
 
-/// Complex index of refraction n + i k of what is below a surface, relative to what is above. n = 0 reflects
+/// Complex index of refraction n + i k of the medium below a surface, relative to the medium above. n = 0 reflects
 /// everything, k = 0 is a dielectric.
 struct RefractiveIndex {
   double n = 0.0;
   double k = 0.0;
 };
 
-/// Unpolarised Fresnel reflectance in [0, 1], for cos_theta in [0, 1] between the normal and the ray (Born and Wolf,
+/// Unpolarized Fresnel reflectance in [0, 1], for cos_theta in [0, 1] between the normal and the ray (Born and Wolf,
 /// Principles of Optics, 14.2).
 double fresnel_reflectance(const RefractiveIndex& index, double cos_theta);
 
-/// Fresnel reflectance as a colour: linear Rec. 709, each channel in [0, 1]. Tabulated over the cosine, within 1e-4.
-/// Polarisation is not carried from one reflection to the next, nor the spectrum: colours multiply.
+/// Fresnel reflectance as a color: linear Rec. 709, each channel in [0, 1]. Tabulated over the cosine, within 1e-4.
+/// Neither polarization nor the spectrum is carried from one reflection to the next: colors multiply.
 class Reflectance {
  public:
-  /// Grey: the index is the same at all wavelengths.
+  /// Gray: the index is the same at all wavelengths.
   explicit Reflectance(const RefractiveIndex& index);
 
-  /// Of the spectrum that `indices` give at `wavelengths` (nanometres, rising), seen as measured spectra are
-  /// (brdf/spectrum.h). Channels of what is too saturated for Rec. 709, as gold's red of 1.04, are held to [0, 1].
+  /// Color of the spectrum that `indices` give at `wavelengths` (nanometers, ascending), converted like measured
+  /// spectra (brdf/spectrum.h). Channels outside the Rec. 709 gamut, such as gold's red of 1.04, are clamped to [0, 1].
   Reflectance(std::span<const double> wavelengths, std::span<const RefractiveIndex> indices);
 
-  /// For the cosine between the normal and the ray; what rounding puts outside [0, 1] counts as the end.
+  /// `cos_theta`: between the normal and the ray, clamped to [0, 1] against rounding.
   Rgb at(float cos_theta) const {
     const float place = static_cast<float>(kSteps) * glm::clamp(cos_theta, 0.0f, 1.0f);
     const auto below = static_cast<size_t>(glm::min(place, static_cast<float>(kSteps - 1)));

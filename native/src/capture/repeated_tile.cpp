@@ -9,9 +9,9 @@
 namespace velour {
 namespace {
 
-constexpr float kTan85 = 11.43f;  // rays up to 85 degrees stay in the region, where memory allows
+constexpr float kTan85 = 11.43f;  // rays up to 85 degrees stay in the region, within kMostAround periods
 constexpr int kMostAround = 3;
-constexpr float kMostPeriods = 100.0f;  // that geometry may span: every object is there once a period
+constexpr float kMostPeriods = 100.0f;  // maximum span of the geometry: every object is instanced once per period
 
 void check_period(float period, char axis) {
   if (std::isfinite(period) && period > 0) return;
@@ -90,7 +90,7 @@ void RepeatedTile::choose_region() {
 }
 
 void RepeatedTile::add_instances() {
-  // Copies i of an object with low + i P <= end of the region and high + i P >= its begin.
+  // Copies i of an object with low + i P <= end of the region and high + i P >= its start.
   const auto range = [&](int axis, float low, float high) {
     const float p = period()[axis], a = static_cast<float>(around_[axis]);
     return std::pair(static_cast<int>(std::ceil(-a - high / p - 1e-3f)),
@@ -126,7 +126,7 @@ SurfacePoint RepeatedTile::surface(const Hit& of_scene) const {
   SurfacePoint point = scene_.surface(of_scene);
   point.position -= Vec3(place_.origin, 0);
   for (int axis = 0; axis < 2; ++axis) {
-    // Moving rounds: only what lies so far off that its own error is larger than that.
+    // Shifting rounds, so only points are shifted that lie so far off that their own error is larger.
     const float p = period()[axis], x = point.position[axis];
     if (x < -0.5f * p || x > 1.5f * p) point.position[axis] = x - std::floor(x / p) * p;
   }
@@ -166,13 +166,13 @@ bool TileRays::leaves(const Ray& ray, const RepeatedTile::Ends& ends) const {
 }
 
 void TileRays::enter_again(Ray& ray) {
-  // A little of the way twice: nothing was met there, and nothing falls into a gap.
+  // The pieces overlap slightly, in a stretch without hits, so that there is no gap between them.
   const float distance = ray.far * (1 - 1e-5f);
   ray.origin = tile_.entered_again(ray.origin + distance * ray.direction, ray.direction);
 }
 
-// `trace(pieces)` traces pieces_ into piece_*; `met(i, piece)` keeps the result of ray i, and says whether there is
-// one.
+// `trace()` traces pieces_ into piece_*; `met(i, piece)` stores the result of ray i and returns whether it hit
+// something.
 template <typename Trace, typename Met, typename EndsOf>
 void TileRays::follow(std::span<Ray> rays, const Trace& trace, const Met& met, const EndsOf& ends_of) {
   for (int piece = 1; !ids_.empty(); ++piece) {

@@ -7,7 +7,7 @@
 namespace velour {
 namespace {
 
-/// So many rays are traced at a time, to stay in the caches; whole packets of the ray tracer.
+/// Number of rays traced at a time: few enough for the caches, and whole packets of the ray tracer.
 constexpr size_t kRaysTogether = 2048;
 
 }  // namespace
@@ -42,7 +42,7 @@ void ShadowMasks::try_light(const PathVertices& paths, const CaptureLight& light
 }
 
 void ShadowMasks::note_reached(uint32_t bit) {
-  const uint8_t* blocked = blocked_.data();  // bytes may be anything's: without the copies all is read again each time
+  const uint8_t* blocked = blocked_.data();  // bytes may alias: these copies avoid reloading all pointers
   Mask* masks = masks_.data();
   const uint32_t* ids = ids_.data();
   const size_t count = ids_.size();
@@ -56,7 +56,7 @@ void ShadowMasks::trace_some(const PathVertices& paths, const CaptureLight& ligh
     Ray& ray = rays_[i];
     ray.origin = origins_[ids_[i]];
     ray.near = 0.0f;
-    ray.direction = light.wl;  // `far` comes with the end of the shell
+    ray.direction = light.wl;  // `far` is set to the end of the shell
   }
   blocked_.resize(ids_.size());
   if (cutouts_.any()) {

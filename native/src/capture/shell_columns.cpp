@@ -12,7 +12,7 @@ namespace {
 
 constexpr size_t kMostCrossings = 1024, kBlock = 256;
 
-/// In units of `aside`.
+/// Offsets of the tries, in units of `aside`.
 constexpr std::array<Vec2, 5> kTries = {Vec2(0, 0), Vec2(0.37f, 0.61f), Vec2(-0.71f, 0.23f), Vec2(0.53f, -0.89f),
                                         Vec2(-0.97f, -0.47f)};
 

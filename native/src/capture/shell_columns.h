@@ -1,4 +1,4 @@
-// What is inside of a tile's structure, along vertical lines.
+// Inside and outside of a tile's structure along vertical lines.
 #pragma once
 
 #include <vector>
@@ -8,27 +8,27 @@
 
 namespace velour {
 
-/// How often a vertical line from above has gone into the structure and not come out, by the facing of what it meets.
+/// Counts how often vertical lines from above have entered the structure without leaving it, by the facing of the
+/// surfaces they hit.
 class ShellColumns {
  public:
-  /// Lines through `places`, local coordinates. One that does not end as all others of its tile do - with nothing left
-  /// to come out of where the tile is open, within it where that is closed - is tried again a little to the side,
-  /// `aside` at most.
+  /// Follows lines through `places` (local coordinates). A line must end outside the structure if the tile is open, and
+  /// inside if it is closed; a line that does not is retried a little to the side, by at most about `aside`.
   ShellColumns(const RepeatedTile& tile, const std::vector<Vec2>& places, float aside, bool closed, RayShare& share);
 
-  /// Whether `height` of a line is inside. A line of an open tile that never comes out has met a sheet, which has no
-  /// inside.
+  /// Whether `height` on a line is inside. A line of an open tile that never leaves the structure has hit a sheet,
+  /// which has no inside.
   bool inside(size_t line, float height) const;
-  /// Lines that ended otherwise to the last.
+  /// Number of lines that ended wrongly in all tries.
   size_t unclosed() const { return unclosed_; }
 
  private:
   struct Crossing {
     float height;
-    int depth;  // below it
+    int depth;  // below the crossing
   };
   using Line = std::vector<Crossing>;
-  /// Lines that lie side by side, a batch of rays for each of their crossings.
+  /// Follows adjacent lines together, with a batch of rays for each crossing.
   void follow(std::span<const Vec2> places, float aside, std::span<Line> lines, RayLog* log) const;
   std::vector<Line> followed(TileRays& rays, std::span<const Vec2> places, RayLog* log) const;
   bool ends_well(const Line& line) const;

@@ -8,9 +8,9 @@
 namespace velour {
 namespace {
 
-constexpr float kBand = 2;       // pitches: how far behind what a view sees it still says something
-constexpr float kWhole = 0.98f;  // coverage from which on a texel's mean height is that of a surface
-constexpr float kSmooth = 1;     // pitches of spread, and a step of twice as many: more is an edge
+constexpr float kBand = 2;       // pitches behind the surface seen by a view within which the view counts
+constexpr float kWhole = 0.98f;  // minimum coverage for a texel's mean height to be that of a surface
+constexpr float kSmooth = 1;     // maximum spread in pitches, and half the maximum step; more is an edge
 
 OcclusionVolume without_distances(const OcclusionVolume& volume) {
   OcclusionVolume sizes = volume;
@@ -18,7 +18,7 @@ OcclusionVolume without_distances(const OcclusionVolume& volume) {
   return sizes;
 }
 
-/// Into numbers that fall; the last one goes.
+/// Inserts `number` into a descending list and drops the last element.
 void insert(float number, std::span<float> falling) {
   for (float& f : falling) {
     if (number > f) std::swap(number, f);
@@ -27,10 +27,10 @@ void insert(float number, std::span<float> falling) {
 
 }  // namespace
 
-/// The texels of a view whose heights are those of a surface.
+/// The texels of a view whose heights are those of a surface rather than an edge.
 struct ShellFusion::Surfaces {
   std::vector<float> weight;  // 0: an edge
-  std::vector<float> slant;   // pitches of perpendicular distance a width of height
+  std::vector<float> slant;   // pitches of perpendicular distance per width of height
 
   Surfaces(const SeenTexels& seen, const TileTexels& texels, float pitch);
 };
@@ -46,7 +46,7 @@ ShellFusion::Surfaces::Surfaces(const SeenTexels& seen, const TileTexels& texels
     for (uint32_t x = 0; x < texels.width; ++x) {
       const size_t t = size_t{y} * texels.width + x;
       if (!whole(t)) continue;
-      // Of the two neighbours along each axis the one that goes on more smoothly.
+      // Uses the neighbor along each axis with the smaller step in height.
       const auto step = [&](size_t a, size_t b, const Vec3& onwards) {
         const bool first = std::abs(seen.height[a] - seen.height[t]) < std::abs(seen.height[b] - seen.height[t]);
         const float rise = first ? seen.height[a] - seen.height[t] : seen.height[t] - seen.height[b];
@@ -84,7 +84,7 @@ void ShellFusion::add(const SeenTexels& seen, const Progress& progress) {
 void ShellFusion::add_layer(const SeenTexels& seen, const Surfaces& surfaces, uint32_t z) {
   const float height = grid_.bottom + static_cast<float>(z) * grid_.step();
   const Vec2 aside = Vec2(seen.wv) * ((grid_.reference - height) / seen.wv.z);
-  // In texels from the centre of the first one.
+  // Converts to texels, counted from the center of the first one.
   const Vec2 scale(static_cast<float>(texels_.width), static_cast<float>(texels_.height) / texels_.aspect);
   const TileTexels points{grid_.width, grid_.height, grid_.aspect};
   std::vector<LinearTexels> columns;
@@ -132,7 +132,7 @@ std::vector<float> ShellFusion::level() const {
   for (size_t i = 0; i < evidence_.size(); ++i) {
     const Evidence& e = evidence_[i];
     const size_t z = i / layer;
-    const bool outside = z + 1 == grid_.depth || (z == 0 && !closed_);  // the first and last points are beyond it
+    const bool outside = z + 1 == grid_.depth || (z == 0 && !closed_);  // these points lie beyond the structure
     const float seen = e.weight > 0 ? 0.5f * e.distance / e.weight : -0.5f;
     level.push_back(outside ? 0.5f : std::max(open(e), seen));
   }

@@ -1,4 +1,4 @@
-// What is solid in a shell, from what views of it show.
+// Fuses views of a structure into the solid part of its shell.
 #pragma once
 
 #include <algorithm>
@@ -13,36 +13,36 @@
 
 namespace velour {
 
-/// What one view shows of the texels, [row][column] on the plane of the volume's `reference`.
+/// Texels as seen in one view, [row][column] on the plane of the volume's `reference`.
 struct SeenTexels {
   Vec3 wv;                          // unit; below the plane where z < 0
-  std::span<const float> coverage;  // shares of the texels' rays that meet the structure
-  std::span<const float> height{};  // of what they meet first, over the surface, widths of the tile; empty: not known
-  std::span<const float> spread{};  // standard deviation of the same
+  std::span<const float> coverage;  // shares of the texels' rays that hit the structure
+  std::span<const float> height{};  // of the first hits over the surface, in tile widths; empty: unknown
+  std::span<const float> spread{};  // standard deviation of the heights
 };
 
-/// Two kinds of evidence about the points of a grid. Whatever a view sees through is empty: the structure lies within
-/// its visual hull ([Lau94]), here with the border of the coverage between texels. And where views tell heights,
-/// distances from what they see are averaged as in [CL96]: a point counts where it is before, or little behind, what
-/// the view meets on the way to it. What no view sees is solid.
+/// Combines two kinds of evidence about the points of a grid. A point that a view sees through is empty: the structure
+/// lies within its visual hull ([Lau94]), with the border of the coverage interpolated between texels. If views have
+/// heights, distances from the surfaces they see are averaged as in [CL96]: a view contributes to the points in front
+/// of, or little behind, the surface it sees. Points that no view sees are solid.
 class ShellFusion {
  public:
-  /// The sizes of `volume` are those of the grid; its distances are not looked at. `closed`: solid below the grid.
+  /// The grid has the sizes of `volume`, whose distances are ignored. `closed`: solid below the grid.
   ShellFusion(const OcclusionVolume& volume, const TileTexels& texels, bool closed);
 
   void add(const SeenTexels& seen, const Progress& progress);
-  /// A number for every point, [z][y][x], positive outside, 0 on the surface: level_distances().
+  /// One number per point, [z][y][x], positive outside, 0 on the surface; the input of level_distances().
   std::vector<float> level() const;
 
  private:
   static constexpr size_t kKept = 4;
   struct Evidence {
-    std::array<float, kKept> open;   // the largest of 1/2 - coverage, largest first
+    std::array<float, kKept> open;   // the largest values of 1/2 - coverage, descending
     float weight = 0, distance = 0;  // sums; distances in kBand pitches, weighted
 
     Evidence() { open.fill(-0.5f); }
   };
-  /// Coverages are noisy, and of many views some are always too low: the one in fifty that shows least is not believed.
+  /// Coverage is noisy, and of many views, some are always too low: the lowest one per fifty views is ignored.
   float open(const Evidence& evidence) const { return evidence.open[std::min(kKept - 1, views_ / 50)]; }
   struct Surfaces;
   void add_layer(const SeenTexels& seen, const Surfaces& surfaces, uint32_t z);

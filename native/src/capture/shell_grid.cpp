@@ -10,7 +10,7 @@
 namespace velour {
 namespace {
 
-constexpr float kReach = 8;  // of distances, pitches
+constexpr float kReach = 8;  // range of the distances, in pitches
 constexpr uint32_t kLeastTexels = 4;
 
 }  // namespace

@@ -6,12 +6,12 @@
 
 namespace velour {
 
-/// A volume without distances: `texels` points along x, y and z as fine, a point beyond the structure at both ends, so
-/// that a ray begins and ends outside; the reach of its distances. Heights over the surface that carries the shell, in
-/// widths of the tile. Throws Error(invalid_argument) for sizes that make no grid.
+/// A volume without distances, but with their reach: `texels` points along x, the same resolution along y and z, and
+/// one point beyond the structure at both ends, so that rays begin and end outside. `lowest` and `highest` are heights
+/// over the surface that carries the shell, in tile widths. Throws Error(invalid_argument) for invalid sizes.
 OcclusionVolume empty_shell(uint32_t texels, float aspect, float lowest, float highest);
 
-/// Where its points are.
+/// Positions of the points of `volume`.
 DistanceGrid grid_of(const OcclusionVolume& volume);
 
 }  // namespace velour

@@ -10,7 +10,7 @@ namespace velour {
 
 /// Nodes at (r, psi) = polar coordinates of (|slope_x| / alpha_x, |slope_y| / alpha_y): r at steps of 1 / kPerAlpha up
 /// to kMaxRadius, psi at equal steps over the quarter turn that the surface's symmetry leaves; one psi when isotropic.
-/// A bin is the hat function of its node; slopes beyond the last node are left out.
+/// A bin is the hat function of its node; slopes beyond the last node are ignored.
 class SlopeBins {
  public:
   static constexpr int kPerAlpha = 12, kMaxRadius = 6;

@@ -11,7 +11,7 @@ namespace {
 
 constexpr float kNone = std::numeric_limits<float>::infinity();
 
-/// Vectors from points to what they are nearest to.
+/// Vectors from the grid's points to their nearest surface points.
 class NearestVectors {
  public:
   explicit NearestVectors(const DistanceGrid& grid)
@@ -21,7 +21,7 @@ class NearestVectors {
         to_(square_.size(), Vec3(0.0f)) {}
 
   void splat(std::span<const Triangle> triangles, uint32_t z);
-  /// Points beside a change of sign, to where it is.
+  /// Initializes the points next to a sign change of `level` with vectors to it.
   void start(std::span<const float> level);
   bool spread();
   std::vector<float> distances() const;
@@ -30,7 +30,7 @@ class NearestVectors {
   void splat(const Triangle& triangle, uint32_t z);
   void start(std::span<const float> level, const glm::uvec3& at);
   bool take(size_t point, size_t neighbour, const Vec3& step);
-  /// Along one axis, onwards and back; `stride` between its points, `count` of them.
+  /// Propagates forward and back along one axis, over `count` points that are `stride` apart.
   bool spread_line(size_t first, size_t stride, uint32_t count, const Vec3& step, bool periodic);
 
   const DistanceGrid& grid_;
@@ -83,8 +83,8 @@ void NearestVectors::start(std::span<const float> level, const glm::uvec3& at) {
   const auto index = [&](const glm::uvec3& p) { return p.z * layer_ + size_t{p.y} * grid_.width + p.x; };
   const size_t point = index(at);
   const float here = level[point];
-  Vec3 inverse(0.0f);   // 1 / the way along each axis, signed
-  bool beyond = false;  // a neighbour is on the other side
+  Vec3 inverse(0.0f);   // 1 / signed distance along each axis
+  bool beyond = false;  // a neighbor is on the other side
   for (int axis = 0; axis < 3; ++axis) {
     for (const bool onwards : {false, true}) {
       const uint32_t border = onwards ? extent[axis] - 1 : 0;
@@ -93,7 +93,7 @@ void NearestVectors::start(std::span<const float> level, const glm::uvec3& at) {
       beside[axis] = at[axis] == border ? extent[axis] - 1 - border : onwards ? at[axis] + 1 : at[axis] - 1;
       const float there = level[index(beside)];
       beyond |= (here < 0) != (there < 0);
-      const float share = here / (here - there);  // of the step, more than 1 where the surface is behind the neighbour
+      const float share = here / (here - there);  // of the step; above 1 if the surface is behind the neighbor
       if (!(share >= 0) || !std::isfinite(share)) continue;
       const float way = std::max(share, 1e-3f) * grid_.step[axis];
       if (1 / way > std::abs(inverse[axis])) inverse[axis] = (onwards ? 1.0f : -1.0f) / way;

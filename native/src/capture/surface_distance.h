@@ -1,4 +1,4 @@
-// Distances from the points of a grid to triangles.
+// Distances from the points of a grid to surfaces.
 #pragma once
 
 #include <span>
@@ -19,13 +19,14 @@ struct DistanceGrid {
   Vec3 first, step;
 };
 
-/// To the nearest triangle, of every point, [z][y][x]; all triangles repeat with the grid's periods. Exact within about
-/// one and a half steps of the surface; beyond, the nearest of what neighbours are nearest to, handed on ([Dan80]).
-/// Call it in the arena that shall do the work; the same bits for any number of threads. Throws Error(cancelled).
+/// Distance of every point, [z][y][x], to the nearest triangle; all triangles repeat with the grid's periods. Exact
+/// within about one and a half steps of the surface; farther points take the nearest of their neighbors' nearest points
+/// ([Dan80]). Runs in the calling task arena; the same bits for any number of threads. Throws Error(cancelled).
 std::vector<float> surface_distances(std::span<const Triangle> triangles, const DistanceGrid& grid, Progress& progress);
 
-/// To where `level`, a number for every point, positive outside, changes its sign between neighbours; beside it as from
-/// the plane through the places where it does along the axes, beyond as above. Infinite where the sign never changes.
+/// Distance of every point to where `level`, one number per point and positive outside, changes its sign: next to a
+/// sign change, to the plane through the sign changes along the axes; farther away, propagated as in
+/// surface_distances(). Infinite if the sign never changes.
 std::vector<float> level_distances(std::span<const float> level, const DistanceGrid& grid, Progress& progress);
 
 /// The point of a triangle that is nearest to `p` [Eri05].

@@ -1,4 +1,4 @@
-// Texels that are traced together, and what is traced for them.
+// Blocks of texels that are traced together, and how texels are sampled.
 #pragma once
 
 #include <algorithm>
@@ -9,9 +9,9 @@
 
 namespace velour {
 
-/// What decides the values of every texel.
+/// Parameters that determine the values of every texel.
 struct TexelSampling {
-  uint32_t samples = 16;  // paths a texel and view
+  uint32_t samples = 16;  // paths per texel and view
   uint32_t bounces = 1;   // further surfaces that a path meets after the first
   uint64_t seed = 0;
 };
@@ -22,7 +22,7 @@ struct TexelBlock {
   uint32_t texels() const { return columns * rows; }
 };
 
-/// A grid cut into blocks of the same shape, but for the last of each row and column. Their size follows from the
+/// A grid divided into square blocks; the last of each row and column may be smaller. Their size depends on the
 /// sampling alone, so that values do not depend on threads or memory.
 class TexelBlocks {
  public:
@@ -35,7 +35,7 @@ class TexelBlocks {
   }
 
  private:
-  /// Measured: rays of the bounce profit from neighbours, up to where a block's vertices no longer fit the caches.
+  /// Vertices per block, as measured: bounce rays profit from neighbors until the vertices no longer fit the caches.
   static constexpr double kVertices = 16384;
   static uint32_t side(const TexelSampling& s) {
     const double texels = kVertices / (static_cast<double>(s.samples) * (1.0 + s.bounces));

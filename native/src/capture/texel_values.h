@@ -1,4 +1,4 @@
-// From the vertices of a texel's paths and the lights that reach them to the texel's values.
+// Computes a texel's values from the vertices of its paths and the lights that reach them.
 #pragma once
 
 #include <optional>
@@ -11,24 +11,24 @@
 
 namespace velour {
 
-/// Sums over the samples of a texel, of each light of a group.
+/// Sums over the samples of a texel for each light of a group.
 struct TexelValues {
   PathSums sums;  // working space
   uint32_t samples;
   uint32_t broken;  // values that were not finite and count as 0
 
   Rgb mean(uint32_t light) const;  // working space
-  /// Of the mean's luminance, from the spread of the samples. These are stratified, so it is an upper bound. 0 for a
-  /// single sample.
+  /// Standard error of the mean's luminance, from the spread of the samples. An upper bound, because the samples are
+  /// stratified. 0 for a single sample.
   float standard_error(uint32_t light) const;
 };
 
-/// One a thread.
+/// One per thread.
 class TexelShader {
  public:
   TexelShader(const Scene& scene, const TexelSampling& sampling);
 
-  /// Of texel number `texel` of the block. `masks` are those of `lights`.
+  /// Computes the values of texel number `texel` of the block. `masks` must be those of `group`.
   void shade(const PathVertices& paths, uint32_t texel, const LightGroup& group, const ShadowMasks& masks,
              TexelValues& values);
 
@@ -39,12 +39,12 @@ class TexelShader {
 
   const TexelSampling sampling_;
   const std::optional<Mat3>& rec709_to_working_;
-  Vec3 luminance_weights_;  // of colours of the working space
+  Vec3 luminance_weights_;  // for colors in the working space
   PreparedBrdf prepared_;
-  LitLights lit_;  // of a vertex
+  LitLights lit_;  // of one vertex
   RgbBatch f_;
   ScalarBatch pdf_;
-  alignas(64) float path_[3][kLightsTogether];  // what each light brings along one path
+  alignas(64) float path_[3][kLightsTogether];  // contribution of each light along one path
 };
 
 }  // namespace velour

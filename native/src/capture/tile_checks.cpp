@@ -13,7 +13,7 @@
 namespace velour {
 namespace {
 
-/// Heights of the first hits of vertical rays from above; the bottom where there is none.
+/// Heights of the first hits of vertical rays from above; the tile's bottom for rays that hit nothing.
 class Heights {
  public:
   explicit Heights(const RepeatedTile& tile) : tile_(tile), rays_(tile) {}
@@ -42,12 +42,12 @@ class Heights {
 };
 
 struct Jumps {
-  double share = 0;  // of the places where the surface jumps by more than kJump of the thickness
+  double share = 0;  // of places where the surface jumps by more than kJump of the thickness
   double rms = 0;    // of all places
 };
-constexpr double kJump = 0.02, kRounding = 1e-5;  // of the thickness; of the period
+constexpr double kJump = 0.02, kRounding = 1e-5;  // relative to the thickness; to the period
 
-/// Across the line x (axis 0) or y (axis 1) = `at` periods.
+/// Jumps across the line x (axis 0) or y (axis 1) = `at` periods.
 Jumps jumps_across(Heights& heights, const RepeatedTile& tile, int axis, float at) {
   constexpr int kPlaces = 256;
   constexpr float kAside = 1e-4f;  // periods
@@ -78,7 +78,7 @@ std::span<const uint8_t> bytes_of(std::span<const T> values) {
   return {reinterpret_cast<const uint8_t*>(values.data()), values.size_bytes()};
 }
 
-/// f of a few pairs of directions: materials have no other name.
+/// f for a few pairs of directions, which serves as the identity of a material.
 std::vector<Rgb> probe(const Material& material) {
   std::vector<Rgb> values;
   PreparedBrdf point;

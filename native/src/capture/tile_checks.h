@@ -1,4 +1,4 @@
-// What is wrong, or special, about a tile.
+// Checks of a tile: whether it is open and periodic, and its hash.
 #pragma once
 
 #include <optional>
@@ -8,15 +8,15 @@
 
 namespace velour {
 
-/// Whether some vertical ray through the tile, of 4096 spread evenly, meets nothing.
+/// Whether any of 4096 evenly distributed vertical rays through the tile hits nothing.
 bool is_open(const RepeatedTile& tile);
 
-/// A sentence with numbers where the surface seen from above jumps across the cell's border and hardly anywhere else:
-/// the geometry is not periodic, or the period is not its own.
+/// Warning with numbers if the surface seen from above jumps across the cell's border and hardly anywhere else: the
+/// geometry is not periodic, or the period is wrong.
 std::optional<std::string> seam_warning(const RepeatedTile& tile);
 
-/// SHA-256 of what the values of the tile depend on: vertices, triangles, places, and what its
-/// materials answer for a few directions.
+/// SHA-256 of everything the values of the tile depend on: vertices, triangles, transforms, and f of its materials for
+/// a few pairs of directions.
 std::string tile_hash(const Scene& scene, const Progress& progress);
 
 }  // namespace velour

@@ -7,7 +7,7 @@
 namespace velour {
 namespace {
 
-/// Number of a texel of a block in the grid.
+/// Index in the grid of texel `number` of a block.
 uint64_t grid_texel(const TexelGrid& grid, const TexelBlock& block, uint32_t number) {
   const uint64_t row = block.row + number / block.columns, column = block.column + number % block.columns;
   return row * grid.width + column;

@@ -1,4 +1,4 @@
-// All texels of one view.
+// Captures all texels of one view.
 #pragma once
 
 #include <tbb/enumerable_thread_specific.h>
@@ -15,25 +15,25 @@
 
 namespace velour {
 
-/// Where a view's images go; layouts as of BtfView and ViewStructure.
+/// Destination of a view's images; layouts as in BtfView and ViewStructure.
 struct ViewImages {
   std::span<HalfBits> values;
-  std::span<HalfBits> errors;        // empty: not asked for
+  std::span<HalfBits> errors;        // empty: not requested
   ViewStructure structure;           // of the grid's size
-  const ViewStore* store = nullptr;  // what `values` and `errors` are of, where that may lie in a file
+  const ViewStore* store = nullptr;  // holds `values` and `errors` if they may lie in a file
 };
 
 struct CaptureCounts {
   uint64_t rays = 0;    // traced
-  uint64_t lost = 0;    // that never left the shell, and count as meeting nothing
-  uint64_t broken = 0;  // values that were not finite, and count as 0
+  uint64_t lost = 0;    // rays that never left the shell; they count as misses
+  uint64_t broken = 0;  // values that were not finite; they count as 0
 };
 
-/// Captures views one after the other, block by block on all threads of the arena that it is called in. What comes out
-/// depends on neither their number nor the order of views.
+/// Captures views one after the other, block by block on all threads of the calling task arena. The result depends
+/// neither on the number of threads nor on the order of the views.
 class ViewCapture {
  public:
-  /// `tile` outlives this. `reference_height`: of the reference plane, in the scene's z.
+  /// `tile` must outlive this. `reference_height`: height of the reference plane (scene's z).
   ViewCapture(const RepeatedTile& tile, const TexelGrid& grid, float reference_height, const TexelSampling& sampling)
       : tile_(tile), grid_(grid), sampling_(sampling), blocks_(grid, sampling), workers_([this, reference_height] {
           return Worker(tile_, grid_, reference_height, sampling_);
@@ -41,7 +41,7 @@ class ViewCapture {
     if (const auto& to_working = tile.scene().rec709_to_working()) to_rec709_ = glm::inverse(*to_working);
   }
 
-  /// Traces `view` into `images`. `begin`, `end`: what of the progress's stage this is. `share`: may be null.
+  /// Traces `view` into `images`. `begin`, `end`: its range of the progress stage. `share` may be null.
   void run(const ViewSetup& view, ViewImages& images, double begin, double end, RayShare* share, Progress& progress);
 
   CaptureCounts counts() const;
@@ -71,7 +71,7 @@ class ViewCapture {
   const TexelGrid grid_;
   const TexelSampling sampling_;
   const TexelBlocks blocks_;
-  Mat3 to_rec709_{1.0f};  // from the scene's colours
+  Mat3 to_rec709_{1.0f};  // from the scene's working space
   tbb::enumerable_thread_specific<Worker> workers_;
 };
 

@@ -1,4 +1,4 @@
-// One view of a capture: where it looks from, and the lights that it is lit by.
+// One view of a capture: its direction and its lights.
 #pragma once
 
 #include <algorithm>
@@ -13,21 +13,21 @@ namespace velour {
 
 struct CaptureLight {
   Vec3 wl;
-  uint32_t number;       // in the layout's set
+  uint32_t number;       // index in the layout's set
   float per_irradiance;  // 1 / |cos(theta_l)|: the light's irradiance on the reference plane is its cosine
   RepeatedTile::Ends ends;
 };
 
-/// Up to kLightsTogether lights are tried together.
+/// Maximum number of lights that are tested together.
 inline constexpr uint32_t kLightsTogether = 128;
 
-/// Some of a view's lights, side by side.
+/// A group of a view's lights, as a structure of arrays.
 struct LightGroup {
   std::span<const CaptureLight> lights;
   alignas(64) float x[kLightsTogether] = {}, y[kLightsTogether] = {}, z[kLightsTogether] = {};
   alignas(64) float per_irradiance[kLightsTogether] = {};
 
-  /// Lights [first, first + kLightsTogether) of `all`, or as many as there are.
+  /// Lights [first, first + kLightsTogether) of `all`, or fewer at its end.
   LightGroup(std::span<const CaptureLight> all, size_t first)
       : lights(all.subspan(first, std::min<size_t>(kLightsTogether, all.size() - first))) {
     for (size_t l = 0; l < lights.size(); ++l) {

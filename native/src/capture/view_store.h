@@ -1,4 +1,4 @@
-// Memory of one view's images, or a file in its place.
+// Memory of one view's images, or a file in place of it.
 #pragma once
 
 #include <cstdint>
@@ -10,17 +10,17 @@
 
 namespace velour {
 
-/// Zeros at first; above `limit` bytes as a temporary file in `folder`, as of ScratchPages.
+/// Zero-initialized array of halves; above `limit` bytes it is a temporary file in `folder` (see ScratchPages).
 class ViewStore {
  public:
-  /// Throws Error(io) when the file cannot be made.
+  /// Throws Error(io) if the file cannot be created.
   ViewStore(uint64_t halves, uint64_t limit, const std::string& folder)
       : halves_(halves), pages_(halves * sizeof(uint16_t), limit, folder) {}
 
   std::span<uint16_t> halves() const { return {static_cast<uint16_t*>(pages_.data()), halves_}; }
-  /// Takes the array out of the process's memory; it is read from the file again when used. Thread-safe.
+  /// Evicts the array from the process's memory; it is read back from the file on use. Thread-safe.
   void release() const { pages_.release(); }
-  /// Runs `work`, which reads the array, and releases while it does.
+  /// Runs `work`, which reads the array, and evicts what it has read in the meantime.
   void read_by(const std::function<void()>& work) const;
 
  private:

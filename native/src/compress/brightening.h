@@ -1,4 +1,4 @@
-// Models as bright as what they were fitted to.
+// Brightness correction of fitted models.
 #pragma once
 
 #include <cmath>
@@ -7,11 +7,11 @@
 
 namespace velour {
 
-/// What a level's coefficients are multiplied by. Least squares leave out how roots are spread about the fit; f is
-/// their square, so its mean falls by the mean square of what is left out, and a material would be darker than
-/// measured. `measured`: the sum of squares of a level's roots over texels, channels and pairs, each times
-/// cos(theta_l) cos(theta_v); `modelled`: that of their fit. With the result the light that the plane sends on is the
-/// same where it comes evenly.
+/// Factor for a level's coefficients that restores the measured brightness. A least-squares fit of roots leaves out
+/// their spread around the fit; f is their square, so its mean falls by the mean square of the residual, and the
+/// material would be darker than measured. `measured`: the sum of squares of a level's roots over texels, channels and
+/// pairs, each times cos(theta_l) cos(theta_v); `modelled`: the same of their fit. The factor preserves the light that
+/// leaves the plane under uniform illumination.
 inline float brightening(Companding companding, double measured, double modelled) {
   if (companding == Companding::none || !(modelled > 0)) return 1.0f;
   return static_cast<float>(std::sqrt(measured / modelled));

@@ -45,7 +45,7 @@ Sums compare_images(std::span<const float> truth, std::span<const float> model, 
 }  // namespace
 
 double percentile_99(const BtfMeasurement& measurement, const Progress& progress) {
-  // Positive half floats rise with their bits.
+  // Positive half floats are ordered like their bits.
   constexpr HalfBits kInfinity = 0x7c00, kSign = 0x8000;
   std::vector<uint64_t> count(kInfinity, 0);
   std::vector<HalfBits> values(measurement.grid().texels() * 3);

@@ -14,7 +14,7 @@ struct BtfErrors {
   double psnr = 0;         // dB, of sRGB(clamp(f / p99, 0, 1))
   double ser = 0;          // sum of squared errors of f cos(theta_l) over the sum of its squares
   double relative_l2 = 0;  // of companded values: root of the sum of squared errors over the sum of squares
-  double brightness = 0;   // sum of the modelled f cos(theta_l) cos(theta_v) over that of the measured
+  double brightness = 0;   // sum of f cos(theta_l) cos(theta_v) of the model over that of the measurement
   uint64_t pairs = 0;
 };
 
@@ -24,14 +24,14 @@ double percentile_99(const BtfMeasurement& measurement, const Progress& progress
 /// f of every texel for a pair of directions, [row][column][channel].
 using BtfImages = std::function<void(const DirectionPair&, std::vector<float>&)>;
 
-/// What values are judged by.
+/// Parameters of the error metrics.
 struct BtfJudgement {
-  double p99 = 1;  // white: of the measurement that was fitted, also for other pairs
+  double p99 = 1;  // white: that of the fitted measurement, even for other pairs
   Companding companding = Companding::root;
 };
 
-/// Over all pairs of `truth` with equal weight. `images` is called from several threads. Entries of `truth` that are
-/// not finite are left out.
+/// Compares all pairs of `truth` with equal weight. `images` is called from several threads. Entries of `truth` that
+/// are not finite are ignored.
 BtfErrors compare_btf(const BtfMeasurement& truth, const BtfImages& images, const BtfJudgement& by, int threads,
                       Progress& progress);
 

@@ -1,4 +1,4 @@
-// A fit of a BTF that can be made at many sizes.
+// Base of BTF fits that can be made at many sizes.
 #pragma once
 
 #include <string>
@@ -10,28 +10,28 @@
 
 namespace velour {
 
-/// What is common to all sizes - colours, and in which order functions are worth their bytes - is found once, when it
-/// is constructed; a model of one size is what fit() makes.
+/// The constructor computes what all sizes share: the colors, and the order in which functions are worth their bytes.
+/// fit() makes a model of one size.
 class BtfFitter {
  public:
   virtual ~BtfFitter() = default;
 
-  /// A point a size, rising. `relative_l2`: what the method expects of it before it is fitted, in companded values;
-  /// `parameter_bytes`: at most.
+  /// One point per size, ascending. `relative_l2`: expected error of the companded values before the fit;
+  /// `parameter_bytes`: upper bound.
   const OrderCurve& curve() const { return curve_; }
-  /// The number of the largest point within the bytes that were asked for.
+  /// Index of the largest point within the requested bytes.
   size_t largest() const { return largest_; }
-  /// Of the model at a point. Deterministic; the same bits for any number of threads.
+  /// Fits the model of a point. Deterministic; the same bits for any number of threads.
   virtual ModelBody fit(size_t point) = 0;
   /// Shapes of clustered tensors that were tried.
   const std::vector<ShapeTrial>& shapes() const { return shapes_; }
-  /// Entries of the measurement that were left out.
+  /// Number of entries of the measurement that are not finite.
   uint64_t not_finite() const { return not_finite_; }
-  /// What else is to be said of the models.
+  /// Warnings about the models.
   const std::vector<std::string>& warnings() const { return warnings_; }
 
  protected:
-  /// Sets largest(). Throws Error(invalid_argument), with what `one` takes, when not even the first point is within.
+  /// Sets largest(). Throws Error(invalid_argument) if even the first point, described by `one`, exceeds `bytes`.
   void bound(uint64_t bytes, const char* one);
 
   OrderCurve curve_;

@@ -5,7 +5,7 @@
 namespace velour {
 namespace {
 
-constexpr double kRoundingRidge = 1e-6;  // of the mean square of a lobe
+constexpr double kRoundingRidge = 1e-6;  // relative to the mean square of a lobe
 
 }  // namespace
 

@@ -1,4 +1,4 @@
-// The first pass over a BTF: its colour axes, and how bright its pairs are.
+// First pass over a BTF: its color axes and the energies of its pairs.
 #pragma once
 
 #include <cstdint>
@@ -20,7 +20,7 @@ struct ColourAxes {
   double all_energy() const;
 };
 
-/// Sets the axes of `views`, of a complete layout; reads every view once, or what a checkpoint has kept.
+/// Finds the color axes and sets them in `views`, of a complete layout; reads every view once, or the checkpoint.
 ColourAxes find_colours(CompandedViews& views, const PairLayout& layout, FitCheckpoint& checkpoint);
 
 }  // namespace velour

@@ -70,7 +70,7 @@ Mat3 CompandedViews::decorrelate() {
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(products);  // reads the lower triangle
   for (int a = 0; a < 3; ++a) {
     const Eigen::Vector3d axis = solver.eigenvectors().col(2 - a);
-    const double sign = axis.sum() < 0 ? -1 : 1;  // an eigenvector has no sign of its own
+    const double sign = axis.sum() < 0 ? -1 : 1;  // the sign of an eigenvector is arbitrary
     axes_[a] = Vec3(Vec3d(axis.x(), axis.y(), axis.z()) * sign);
   }
   return axes_;

@@ -1,4 +1,4 @@
-// The views of a BTF as matrices, one a colour axis.
+// The views of a BTF as matrices, one per color axis.
 #pragma once
 
 #include <array>
@@ -10,23 +10,23 @@
 
 namespace velour {
 
-/// Reads views one by one. Entries that are not finite are replaced by the mean of their image, so that they pull at
-/// nothing; they are counted. Negative f is companded as 0 by roots.
+/// Reads views one by one. Entries that are not finite are counted and replaced by the mean of their image, so that
+/// they do not bias the fit. Companding by roots treats negative f as 0.
 class CompandedViews {
  public:
   CompandedViews(const BtfMeasurement& btf, Companding companding, int threads, const Progress& progress);
 
-  /// [light][texel x 3] of linear f.
+  /// Reads linear f, [light][texel x 3].
   void read(uint32_t view, std::vector<float>& f);
-  /// The matrices light x texel of f after companding, along the three axes.
+  /// Companded f along the three axes, a matrix light x texel each.
   using Planes = std::array<RowMatrix, 3>;
   void planes(const std::vector<float>& f, uint64_t texels, Planes& planes) const;
 
-  /// Colour axes of least correlation: eigenvectors of the mean outer product of companded colours, strongest first.
+  /// Decorrelated color axes: eigenvectors of the mean outer product of companded colors, strongest first.
   Mat3 decorrelate();
   void set_axes(const Mat3& axes) { axes_ = axes; }
 
-  /// Sums of squares of the companded values that decorrelate() has read, [view][light] of a complete layout.
+  /// Sums of squares of the companded values read by decorrelate(), [view][light] of a complete layout.
   const std::vector<double>& energies() const { return energies_; }
 
   uint32_t views() const { return static_cast<uint32_t>(btf_.layout().views().size()); }
@@ -40,7 +40,7 @@ class CompandedViews {
   Mat3 axes_{1.0f};
   std::vector<HalfBits> halves_;
   std::vector<double> energies_;
-  uint64_t not_finite_ = 0;  // in the views read last: each counts once a pass
+  uint64_t not_finite_ = 0;  // in the last pass over the views
 };
 
 }  // namespace velour

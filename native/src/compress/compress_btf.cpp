@@ -39,7 +39,7 @@ const char* name_of(CompressMethod method) {
   return kNames[static_cast<size_t>(method)];
 }
 
-/// Names the measurement and all that the bits of the fit depend on. Whatever changes a fit's numbers changes
+/// Identifies the measurement and all that affects the bits of the fit. Whatever changes a fit's numbers must increment
 /// kFitVersion.
 std::string checkpoint_key(const BtfMeasurement& measurement, const CompressOptions& options) {
   constexpr int kFitVersion = 9;
@@ -52,7 +52,7 @@ std::string checkpoint_key(const BtfMeasurement& measurement, const CompressOpti
   return key.str();
 }
 
-/// f of what has sides, without what a material prepares for samples.
+/// f of a model with sides, without the data that a material prepares for sampling.
 template <typename Evaluator>
 BtfValue value_by(std::shared_ptr<const Evaluator> evaluator) {
   return [evaluator, point = std::make_shared<typename Evaluator::Point>()](const BtfQuery& query) {
@@ -63,7 +63,7 @@ BtfValue value_by(std::shared_ptr<const Evaluator> evaluator) {
   };
 }
 
-/// f of a model of a BTF.
+/// f of a BTF's model.
 BtfValue value_of(const std::shared_ptr<const Model>& model) {
   if (const auto* srbf = std::get_if<SrbfBtf>(&model->body)) {
     return value_by(std::make_shared<const SrbfEvaluator>(std::shared_ptr<const SrbfBtf>(model, srbf)));

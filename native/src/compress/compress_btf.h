@@ -1,4 +1,4 @@
-// From a BTF to its model.
+// Compression of a BTF to a model.
 #pragma once
 
 #include <memory>
@@ -14,23 +14,23 @@ enum class CompressMethod : uint8_t { svd = 0, srbf = 1, tucker = 2, cta = 3, kc
 
 struct CompressOptions : BtfFitOptions {
   CompressMethod method = CompressMethod::srbf;
-  std::string checkpoint;  // a file that finished stages are kept in until the fit has succeeded; empty: none
-  bool resume = false;     // what it holds is not done again
-  std::shared_ptr<const BtfMeasurement> held_out;  // pairs that no fit has seen; null: none
-  /// Leave out what these scenes do not resolve (scene_reduction.h); null: the model serves any scene.
+  std::string checkpoint;                          // stores finished stages until the fit has succeeded; empty: none
+  bool resume = false;                             // reuse the stages in the checkpoint
+  std::shared_ptr<const BtfMeasurement> held_out;  // held-out pairs for validation; null: none
+  /// Scene usage to which the model is reduced (scene_reduction.h); null: the model serves any scene.
   std::shared_ptr<const SceneObservation> for_scene;
-  std::shared_ptr<const Model> full_model;  // with for_scene: what is reduced; null: it is fitted first
+  std::shared_ptr<const Model> full_model;  // with for_scene: the model to reduce; null: it is fitted first
 };
 
-/// A model with its errors, for any scene: whatever options.for_scene is. Throws Error(invalid_argument) when
-/// `held_out` has other texels.
+/// Fits a model for any scene, whatever options.for_scene is, and measures its errors. Throws Error(invalid_argument)
+/// if `held_out` has other texels.
 Model compress_btf(const BtfMeasurement& measurement, const CompressOptions& options, Progress& progress);
 
-/// Errors of a BTF's model against the pairs of `truth`; white is the model's own. Throws Error(invalid_argument) when
+/// Errors of a BTF's model on the pairs of `truth`, with the model's own white point. Throws Error(invalid_argument) if
 /// the texels differ.
 BtfErrors compare_with_model(const BtfMeasurement& truth, const Model& model, int threads, Progress& progress);
 
-/// The same of another BTF, interpolated in f between its own pairs: what no model of it needs to beat.
+/// Errors of another BTF, with f interpolated between its own pairs: a bound that no model of it needs to beat.
 BtfErrors compare_with_table(const BtfMeasurement& truth, const BtfMeasurement& table, double p99, int threads,
                              Progress& progress);
 

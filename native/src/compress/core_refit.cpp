@@ -8,9 +8,8 @@ namespace velour {
 namespace {
 
 constexpr int kCoreSteps = 12;
-constexpr double kCoreConverged = 1e-8;  // of the rest's square
-constexpr double kCoreRidge =
-    1e-5;  // of the mean diagonal, over all clusters: what hardly any texel has stays as it is
+constexpr double kCoreConverged = 1e-8;  // relative to the initial squared residual
+constexpr double kCoreRidge = 1e-5;      // relative to the mean diagonal: keeps cores that few texels use as they are
 constexpr double kMinDiagonal = 1e-30;
 
 using Cores = std::vector<RowMatrix>;
@@ -53,7 +52,7 @@ class CoreRefit {
   double ridge_;
 };
 
-/// Sums over views, in groups of a fixed number.
+/// Sums over views in a fixed number of groups.
 template <class Use>
 Cores CoreRefit::summed(const Use& use) const {
   std::vector<Cores> group(kMomentGroups);
@@ -65,7 +64,7 @@ Cores CoreRefit::summed(const Use& use) const {
   return std::move(group[0]);
 }
 
-/// Adds what `values`, [cluster, rank][light] of an axis, are in the cores' factors.
+/// Adds the projection of `values`, [cluster, rank][light] of an axis, onto the cores' factors.
 void CoreRefit::project(size_t view, size_t axis, const RowMatrix& values, Cores& to) const {
   for (size_t c = 0; c < cluster_.size(); ++c) {
     const DirectionCluster& of = cluster_[c];
@@ -98,7 +97,7 @@ Cores CoreRefit::product(const Cores& direction) const {
   return sums;
 }
 
-/// Of each cluster, the inverse of its mean products: about what cores are multiplied with, where factors are
+/// Preconditioner: the inverse of each cluster's mean products, near that of the normal matrix if factors are
 /// orthonormal.
 std::vector<Eigen::MatrixXf> CoreRefit::inverse_means() const {
   std::vector<Eigen::MatrixXf> inverse;

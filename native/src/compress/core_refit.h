@@ -1,4 +1,4 @@
-// Cores of clustered tensors solved for anew, for factors and coefficients that are given.
+// Refit of the cores of clustered tensors for given factors and coefficients.
 #pragma once
 
 #include <vector>
@@ -8,9 +8,9 @@
 
 namespace velour {
 
-/// Least squares over the images that `moments` (of every view) were summed from, for the cores of all clusters
-/// together, by conjugate gradients ([HS52]) from what they are; fastest where factors are orthonormal. The same bits
-/// for any number of threads.
+/// Solves for the cores of all clusters together: least squares over the images that `moments` (of every view) were
+/// summed from, by conjugate gradients ([HS52]) from their current values; fastest if factors are orthonormal. The same
+/// bits for any number of threads.
 void refit_cores(const std::vector<ViewMoments>& moments, int threads, const Progress& progress,
                  std::vector<DirectionCluster>& clusters);
 

@@ -13,7 +13,7 @@
 namespace velour {
 namespace {
 
-constexpr double kNegligible = 1e-10;  // of the strongest energy: rounding
+constexpr double kNegligible = 1e-10;  // relative to the strongest energy; less is rounding error
 
 /// The strongest eigenvectors of mean products.
 DirectionBasis basis_of(const Eigen::MatrixXd& products, Index rank) {
@@ -28,7 +28,7 @@ DirectionBasis basis_of(const Eigen::MatrixXd& products, Index rank) {
   return basis;
 }
 
-/// What hides from a view is taken to look there as from the nearest view that shows it.
+/// Gives points hidden from a view their values in the nearest view that shows them.
 void fill_hidden(const std::vector<Vec3>& views, const RowMatrix& shown, DenseTensor& values) {
   const auto order = nearest_first(views);
   const Index of_views = shown.cols(), row = static_cast<Index>(values.data.size()) / shown.size();
@@ -44,7 +44,7 @@ void fill_hidden(const std::vector<Vec3>& views, const RowMatrix& shown, DenseTe
   }
 }
 
-/// What points show: [point][view][light][axis].
+/// Values of points: [point][view][light][axis].
 DenseTensor values_of_points(CompandedViews& views, const TensorSource& source, const std::vector<uint32_t>& texels,
                              Progress& progress) {
   const auto count = static_cast<Index>(texels.size()), lights = static_cast<Index>(source.side.light.size()),

@@ -1,4 +1,4 @@
-// What a BTF's views and lights have in common: bases that its texels are described in before clusters are sought.
+// Bases of a BTF's views and lights, in which its texels are described before clustering.
 #pragma once
 
 #include <Eigen/Core>
@@ -10,31 +10,31 @@
 
 namespace velour {
 
-/// A side of a BTF whose tensor is sought.
+/// A side of a BTF to be fitted by tensors.
 struct TensorSource {
   const TexelGrid& grid;
   const SideDirections& side;
-  const std::vector<Relief>& relief;  // of each level, the finest first
+  const std::vector<Relief>& relief;  // per level, finest first
   uint64_t seed;
   int threads;
 };
 
 struct DirectionBasis {
-  RowMatrix vector;        // direction x rank, orthonormal columns, the strongest first
-  Eigen::VectorXd energy;  // of each, in the mean over texels
-  double rest = 0;         // of a direction, in the mean: what they leave
+  RowMatrix vector;        // direction x rank, orthonormal columns, strongest first
+  Eigen::VectorXd energy;  // energy of each vector, averaged over texels
+  double rest = 0;         // mean residual energy of a direction
 };
 
 struct DirectionBases {
   DirectionBasis view, light;
 };
 
-/// Eigenvectors of the mean products of what random points of the relief show, between any two views and any two
-/// lights; `rank` of each at most. Reads every view once, and holds what `points` points show.
+/// Eigenvectors of the mean products between any two views, and between any two lights, of the values of random points
+/// of the relief; at most `rank` each. Reads every view once and holds the values of `points` points.
 DirectionBases direction_bases(CompandedViews& views, const TensorSource& source, Index rank, size_t points,
                                Progress& progress);
 
-/// Numbers of `count` random texels, all different, in random order; of all texels where that is not fewer.
+/// Indices of `count` different random texels, in random order; all texels if there are no more.
 std::vector<uint32_t> random_texels(uint64_t texels, size_t count, uint64_t seed);
 
 }  // namespace velour

@@ -9,11 +9,11 @@ namespace velour {
 namespace {
 
 constexpr float kSameDirection = 1e-4f;
-constexpr float kHalfRounding = 1.0f / 2048;  // of a value, at most
-// Squared differences over noise that may be chance: of one view, of all.
+constexpr float kHalfRounding = 1.0f / 2048;  // maximum relative rounding error
+// Maximum ratio of squared differences to noise that counts as chance: in one view, in all views.
 constexpr double kOneView = 4, kAllViews = 1.1;
 
-/// For each of `a` the place of the same direction in `b`.
+/// For each direction of `a`, the index of the same direction in `b`.
 std::optional<std::vector<size_t>> places(const std::vector<Vec3>& a, const std::vector<Vec3>& b) {
   if (a.size() != b.size()) return std::nullopt;
   std::vector<size_t> places;
@@ -26,7 +26,7 @@ std::optional<std::vector<size_t>> places(const std::vector<Vec3>& a, const std:
   return places;
 }
 
-/// Squared differences, and what noise alone would make of them.
+/// Squared differences, and their expected value for noise alone.
 struct Difference {
   double squares = 0, noise = 0;
   void add(const Difference& d) {
@@ -36,7 +36,7 @@ struct Difference {
   bool is_noise(double times) const { return squares <= times * noise; }
 };
 
-/// An image of a pair and its standard errors of luminance.
+/// Reads the image of a pair and the standard errors of its luminance.
 class PairReader {
  public:
   explicit PairReader(const BtfMeasurement& measurement)
@@ -56,7 +56,7 @@ class PairReader {
   std::vector<HalfBits> halves_, errors_;
 };
 
-/// Of one pair of directions on both sides, by texels and by their mean.
+/// Differences between two sides for one pair of directions, per texel and of the mean.
 class PairDifference {
  public:
   explicit PairDifference(const BtfMeasurement& measurement) : reader_(measurement) {}
@@ -80,7 +80,7 @@ class PairDifference {
  private:
   static Vec3 color(const std::vector<float>& f, size_t t) { return {f[3 * t], f[3 * t + 1], f[3 * t + 2]}; }
 
-  /// Variances of the channels' difference: a channel's noise is to that of the luminance as their values are.
+  /// Variances of the channels' difference. A channel's noise is assumed to be proportional to its value.
   Vec3 noise_of(const Vec3& a, const Vec3& b, size_t t) const {
     const float brightness = luminance(a + b);
     const float variance = error_[0][t] * error_[0][t] + error_[1][t] * error_[1][t];

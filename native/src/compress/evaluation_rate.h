@@ -1,4 +1,4 @@
-// How fast a BTF is evaluated.
+// Speed of BTF evaluation.
 #pragma once
 
 #include <algorithm>
@@ -15,10 +15,10 @@ struct BtfQuery {
   Vec2 place;  // in tiles
   DirectionPair pair;
 };
-/// 20,000 of random places, views and lights (by the cosine).
+/// 20,000 queries with random places, views and lights (sampled by the cosine).
 std::vector<BtfQuery> random_queries();
 
-/// Processor seconds of `use` a query: of seven runs the least, since other programs only ever make one slower.
+/// CPU seconds of `use` per query: the minimum of seven runs, since other programs can only slow a run down.
 template <class Use>
 double seconds_a_query(const std::vector<BtfQuery>& queries, const Use& use) {
   constexpr int kRuns = 7;
@@ -27,7 +27,7 @@ double seconds_a_query(const std::vector<BtfQuery>& queries, const Use& use) {
     const double start = thread_seconds();
     for (const BtfQuery& query : queries) {
       const auto result = use(query);
-      asm volatile("" : : "r"(&result) : "memory");  // keeps the work from being left out
+      asm volatile("" : : "r"(&result) : "memory");  // keeps the work from being optimized away
     }
     least = std::min(least, thread_seconds() - start);
   }
@@ -37,7 +37,7 @@ double seconds_a_query(const std::vector<BtfQuery>& queries, const Use& use) {
 /// f of a query, without a footprint.
 using BtfValue = std::function<Rgb(const BtfQuery& query)>;
 
-/// Evaluations a second of processor time, by one thread.
+/// Evaluations per second of CPU time on one thread.
 double evaluation_rate(const BtfValue& value);
 
 }  // namespace velour

@@ -13,10 +13,10 @@
 namespace velour {
 namespace {
 
-// Components of less energy, relative to the strongest, are rounding: their functions are not orthogonal to the others.
+// Components with less relative energy are rounding error: their functions are not orthogonal to the others.
 constexpr double kRounding = 1e-9;
 
-// What a small BTF gets where nobody asked for a size.
+// Default size: this fraction of the measurement, and a minimum number of components.
 constexpr uint64_t kDefaultFactoredRatio = 200, kDefaultMinComponents = 8;
 
 uint64_t component_bytes(const BtfMeasurement& measurement, bool by_view) {
@@ -25,7 +25,7 @@ uint64_t component_bytes(const BtfMeasurement& measurement, bool by_view) {
   return (rows + pyramid_texels(measurement.grid())) * sizeof(HalfBits);
 }
 
-/// Components of any model.
+/// Maximum number of components of any model.
 uint64_t most_ever(bool by_view) { return by_view ? FactoredBtf::kMaxOfViews : FactoredBtf::kMaxComponents; }
 
 uint64_t bytes_of(const BtfMeasurement& measurement, const BtfFitOptions& options, bool by_view) {
@@ -35,7 +35,7 @@ uint64_t bytes_of(const BtfMeasurement& measurement, const BtfFitOptions& option
   return std::max(measurement.raw_bytes() / kDefaultFactoredRatio, kDefaultMinComponents * one);
 }
 
-/// Of as many components as are looked at where the memory allows it.
+/// Extent with the number of components that is computed if memory allows.
 FitExtent extent_of(const BtfMeasurement& measurement, const BtfFitOptions& options, bool by_view) {
   const uint64_t within = bytes_of(measurement, options, by_view) / component_bytes(measurement, by_view);
   return {.texels = measurement.grid().texels(),
@@ -133,14 +133,14 @@ void FactoredFitter::choose(size_t components, FactoredBtf& btf) {
     copy_function(chosen[static_cast<size_t>(k)], values);
     function_.col(k) = values;
   }
-  // What is stored is what the texels are projected on.
+  // Texels are projected on the functions as stored.
   btf.pair_value.resize(static_cast<size_t>(function_.size()));
   const std::span<float> stored(function_.data(), btf.pair_value.size());
   floats_to_halves(stored, btf.pair_value);
   halves_to_floats(btf.pair_value, stored);
 }
 
-/// Coefficients of every level: products of the functions with the filtered measurement.
+/// Computes the coefficients of every level: products of the functions with the filtered measurement.
 void FactoredFitter::project(FactoredBtf& btf) {
   const ComponentRanges ranges(btf);
   std::vector<Level> levels;
@@ -186,7 +186,7 @@ void FactoredFitter::project(const FactoredBtf& btf, const ComponentRanges& rang
   }
 }
 
-/// Each group of components for itself: what a view lacks no other view makes up for.
+/// Corrects each group of components separately, because no view can make up for another.
 void FactoredFitter::brighten(const FactoredBtf& btf, const ComponentRanges& ranges, Level& level) const {
   for (size_t group = 0; group < ranges.groups(); ++group) {
     const auto range = ranges.of(group);
@@ -195,13 +195,13 @@ void FactoredFitter::brighten(const FactoredBtf& btf, const ComponentRanges& ran
   }
 }
 
-/// Of the light times that of the view.
+/// Cosine of the light times that of the view.
 double FactoredFitter::cosine(Eigen::Index pair) const {
   const DirectionPair directions = measurement_.layout().directions(static_cast<uint64_t>(pair));
   return static_cast<double>(std::abs(directions.wl.z * directions.wv.z));
 }
 
-/// Sum of the squares of what a group's components make of a level, times both cosines.
+/// Sum of squares of a level as modeled by a group's components, times both cosines.
 double FactoredFitter::modelled(const FactoredBtf& btf, const ComponentRanges& ranges, size_t group,
                                 const RowMatrix& value) const {
   const Eigen::Index first = btf.by_view() ? static_cast<Eigen::Index>(btf.layout.first(group)) : 0;

@@ -1,4 +1,4 @@
-// What fits of BTFs as sums of products share: which components are worth their bytes, and the texels' part of them.
+// Base of BTF fits as sums of products: choice of the components and projection of the texels.
 #pragma once
 
 #include "btf/component_ranges.h"
@@ -11,35 +11,35 @@ namespace velour {
 
 FitSize factored_fit_size(const BtfMeasurement& measurement, const BtfFitOptions& options, bool by_view);
 
-/// Functions of the pair are orthonormal, of all axes (and views) those of the most energy are chosen. Coarse levels
-/// are projections of the filtered measurement on the same functions, so they keep its mean.
+/// Functions of the pair are orthonormal; those with the most energy over all axes (and views) are chosen. Coarse
+/// levels are projections of the filtered measurement on the same functions, so they preserve its mean.
 class FactoredFitter : public BtfFitter {
  public:
   ModelBody fit(size_t point) final;
 
  protected:
   struct Component {
-    uint32_t view;  // that it serves; 0 where all serve all
+    uint32_t view;  // view it serves; 0 if components serve all views
     uint8_t axis;
-    Eigen::Index column;  // among those of the view and the axis
+    Eigen::Index column;  // among those of its view and axis
     double energy;
   };
 
-  /// Arguments must outlive this. `by_view`: a component serves one view. Throws Error(unsupported) for a layout that
-  /// is not complete.
+  /// The arguments must outlive the fitter. `by_view`: each component serves one view. Throws Error(unsupported) for
+  /// incomplete layouts.
   FactoredFitter(const BtfMeasurement& measurement, const BtfFitOptions& options, FitCheckpoint& checkpoint,
                  Progress& progress, bool by_view);
 
   /// Reads every view once.
   void find_axes();
-  /// What may be spent: what was asked for, or the method's usual part.
+  /// Byte budget: the requested size, or the method's default.
   uint64_t bytes() const;
-  /// How many components are looked at: within the bytes, and within the memory that was allowed. Throws
-  /// Error(unsupported) where that is too little.
+  /// Maximum number of components to compute within the bytes and the memory limit. Throws Error(unsupported) if the
+  /// memory does not suffice.
   uint64_t most_components() const;
-  /// Of all axes and views, in any order: the strongest that are more than rounding, and the curve of what they leave.
-  /// Beyond the weakest one of an axis that was found there may be unknown ones: there the curve is too high, never too
-  /// low.
+  /// Ranks components of all axes and views, given in any order: keeps the strongest `most` above rounding error and
+  /// sets the curve of their residuals. An axis may have unknown components weaker than those found: the curve may be
+  /// too high, never too low.
   void rank(std::vector<Component> components, size_t most);
   /// Writes the values of a component's function.
   virtual void copy_function(const Component& component, Eigen::Ref<Eigen::VectorXf> values) const = 0;
@@ -56,7 +56,7 @@ class FactoredFitter : public BtfFitter {
   struct Level {
     uint32_t width, height;
     RowMatrix value;               // texel x component
-    std::vector<double> measured;  // a group of components: squares of companded images, times both cosines
+    std::vector<double> measured;  // per group of components: squares of companded images, times both cosines
   };
 
   void choose(size_t components, FactoredBtf& btf);
@@ -67,14 +67,14 @@ class FactoredFitter : public BtfFitter {
   double modelled(const FactoredBtf& btf, const ComponentRanges& ranges, size_t group, const RowMatrix& value) const;
 
   const bool by_view_;
-  const uint64_t one_;  // bytes of a component
+  const uint64_t one_;  // bytes per component
   Mat3 axes_{1.0f};
   double all_ = 0;                 // sum of squares of all companded values
-  std::vector<Component> ranked_;  // the strongest first
-  RowMatrix function_;             // row x component, of the fit that runs
+  std::vector<Component> ranked_;  // strongest first
+  RowMatrix function_;             // row x component, of the current fit
 };
 
-/// Work over blocks of rows or columns: fixed, so that sums do not depend on threads.
+/// Calls work(first, count) for blocks of rows or columns of fixed size, so that sums do not depend on threads.
 template <class Work>
 void for_blocks(Eigen::Index extent, Eigen::Index step, int threads, const Progress& progress, const Work& work) {
   parallel_pieces(static_cast<size_t>((extent + step - 1) / step), threads, progress, [&](size_t i) {

@@ -12,7 +12,7 @@ namespace velour {
 namespace {
 
 constexpr char kKind[] = "velour.kind", kKindOfThis[] = "fit-checkpoint", kKey[] = "velour.checkpoint.key";
-constexpr int kWords = 4;  // 16 bits of a double each: floats hold them exactly
+constexpr int kWords = 4;  // 16-bit words of a double, which floats represent exactly
 
 void append_words(double number, std::vector<float>& out) {
   const auto bits = std::bit_cast<uint64_t>(number);
@@ -122,7 +122,7 @@ void FitCheckpoint::write() {
 }
 
 void FitCheckpoint::remove() {
-  std::error_code ignored;  // a file that is not there is as good as removed
+  std::error_code ignored;  // a missing file counts as removed
   if (!options_.path.empty()) std::filesystem::remove(options_.path, ignored);
 }
 

@@ -1,4 +1,4 @@
-// What a fit has finished, kept in a file so that a killed one can go on.
+// Finished stages of a fit, stored in a file so that a killed fit can be resumed.
 #pragma once
 
 #include <optional>
@@ -12,39 +12,39 @@
 namespace velour {
 
 struct CheckpointOptions {
-  std::string path;     // empty: nothing is kept
-  std::string key;      // names the measurement and all options that bits depend on
-  bool resume = false;  // what the file holds is used, where its key is this one
+  std::string path;     // empty: nothing is stored
+  std::string key;      // identifies the measurement and all options that affect the bits
+  bool resume = false;  // use the stages in the file if its key matches
 };
 
 /// Name of the stage that fits side `side` of a BTF.
 std::string side_stage(size_t side);
 
-/// Results of stages by name. Whatever comes from the file is checked: what is missing or not as it should be is as if
-/// it had not been kept. Not thread-safe.
+/// Results of stages by name. Data from the file is validated; what is missing or invalid counts as not stored. Not
+/// thread-safe.
 class FitCheckpoint {
  public:
-  FitCheckpoint() = default;  // keeps nothing
+  FitCheckpoint() = default;  // stores nothing
   explicit FitCheckpoint(CheckpointOptions options);
 
-  /// Of [rows][columns]; nothing where it is not there in that shape, all finite.
+  /// A matrix [rows][columns]; empty unless it is stored with that shape and finite.
   std::optional<RowMatrix> matrix(const std::string& stage, Eigen::Index rows, Eigen::Index columns) const;
-  /// Of any number up to `most`, finite.
+  /// Up to `most` finite numbers.
   std::optional<std::vector<double>> numbers(const std::string& stage, size_t most) const;
-  /// The same of whole numbers from 0 to `largest`.
+  /// Up to `most` integers from 0 to `largest`.
   std::optional<std::vector<size_t>> wholes(const std::string& stage, size_t most, size_t largest) const;
 
   void keep(const std::string& stage, const RowMatrix& matrix);
   void keep_numbers(const std::string& stage, std::span<const double> numbers);
   void keep_wholes(const std::string& stage, const std::vector<size_t>& wholes);
-  /// Forgets all stages whose names begin so; the file follows with the next write().
+  /// Removes all stages whose names start with `prefix`; the file is updated by the next write().
   void forget(const std::string& prefix);
-  /// All that was kept so far, whole or not at all. A file that cannot be written is warned of, once; the fit goes on.
+  /// Writes all stages atomically. If the file cannot be written, warns once; the fit continues.
   void write();
-  /// After a success.
+  /// Deletes the file, after a successful fit.
   void remove();
 
-  /// Sentences.
+  /// One sentence each.
   const std::vector<std::string>& warnings() const { return warnings_; }
 
  private:

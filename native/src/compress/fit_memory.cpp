@@ -13,9 +13,9 @@ constexpr uint64_t kFloat = sizeof(float), kHalf = sizeof(HalfBits);
 constexpr uint32_t kUsualPoints = 64, kMinPoints = 8;
 constexpr uint64_t kSliceCopies = 4;
 constexpr uint32_t kLeastFunctions = 40, kLeastSlices = 384;
-constexpr uint64_t kLibraries = 8 << 20;  // threads' stacks and pools, and what is small
+constexpr uint64_t kLibraries = 8 << 20;  // thread stacks and pools, and small allocations
 
-/// A view: halves, values, planes along the axes, all levels of them by texel, and the next level's values.
+/// A view: halves, values, planes along the axes, all their levels by texel, and the values of the next level.
 uint64_t reading_bytes(const FitExtent& e) {
   return e.texels * e.lights * 3 * (2 * kHalf + kFloat + kFloat + 2 * kFloat + kFloat);
 }
@@ -25,24 +25,24 @@ uint64_t point_bytes(const FitExtent& e) {
   return e.sides * e.points * e.point_pairs * 2 * (sizeof(LobeArguments) + 3 * kFloat);
 }
 
-/// Of one point: every candidate at its pairs, and bases of three axes with room for as much again.
+/// One point: all candidates at its pairs, and bases of three axes with room for as much again.
 uint64_t search_point_bytes(const FitExtent& e) {
   const uint64_t pairs = std::min(e.point_pairs, kOrderPairs);
   return pairs * kFloat * (kLobeCandidates + 4 * e.coefficients) + 6 * kLobeCandidates * kFloat;
 }
 
-/// Arguments of both frames, and a thread's matrices of values.
+/// Lobe arguments in both frames, and each thread's matrices of values.
 uint64_t refinement_bytes(const FitExtent& e) {
   return e.points * e.point_pairs * 2 * 9 * kFloat + e.threads * e.point_pairs * e.coefficients * 4 * kFloat +
          e.points * e.coefficients * 9 * kFloat;
 }
 
-/// Moments of all levels, and vectors of the finest one's conjugate gradients.
+/// Moments of all levels, and the vectors of the conjugate gradients on the finest one.
 uint64_t texel_bytes(const FitExtent& e) {
   return (e.pyramid_texels + 10 * e.texels) * e.coefficients * kFloat + e.texels * 128;
 }
 
-/// The model and its evaluator, and images of each thread.
+/// The model, its evaluator, and the images of each thread.
 uint64_t judging_bytes(const FitExtent& e) {
   return 3 * e.pyramid_texels * e.coefficients * kFloat + e.threads * e.texels * 3 * (kHalf + 2 * kFloat);
 }
@@ -61,7 +61,7 @@ uint64_t svd_bytes(const FitExtent& e) {
   return kLibraries + reading_bytes(e) + sketches + std::max(turning, projecting) + judging_bytes(e);
 }
 
-/// Functions of all views, products of one view's images, what is projected.
+/// Functions of all views, products of one view's images, and the projection.
 uint64_t view_svd_bytes(const FitExtent& e) {
   const uint64_t columns = std::min<uint64_t>(e.lights, FactoredBtf::kMaxOfView / 3);
   const uint64_t functions = 3 * e.pairs * columns * kFloat + 5 * e.lights * e.lights * sizeof(double);
@@ -73,7 +73,7 @@ uint64_t slice_bytes(const FitExtent& e, const TensorAllowance& allowance, uint6
   return std::min<uint64_t>(allowance.slices, e.texels) * entries * kFloat;
 }
 
-/// Slices, copies of a cluster's and what they are projected on, or points with what they are filled from.
+/// Slices with copies and projections of a cluster's slices, or slices with a view and the points of the bases.
 uint64_t clustering_bytes(const FitExtent& e, const TensorAllowance& allowance, uint64_t entries) {
   const uint64_t slices = slice_bytes(e, allowance, entries);
   return std::max(kSliceCopies * slices, slices + reading_bytes(e) + 2 * allowance.point_floats * kFloat);
@@ -84,18 +84,18 @@ void halve_slices(TensorAllowance& allowance) {
   allowance.point_floats /= 2;
 }
 
-/// What views show of texels: where, what stands in, and of one view the values.
+/// Visibility of texels: positions and stand-ins in all views, and the values of one view.
 uint64_t shown_bytes(const FitExtent& e) {
   return e.pairs / e.lights * e.pyramid_texels * (sizeof(Vec2) + sizeof(int32_t)) + 3 * e.texels * e.lights * kFloat;
 }
 
-/// Moments of all levels, a view's, functions of all views and their products.
+/// Moments of all levels and of a view, functions of all views and their products.
 uint64_t tensor_texel_bytes(const FitExtent& e, uint64_t functions) {
   return (3 * e.pyramid_texels + 2 * e.texels) * functions * kFloat + shown_bytes(e) +
          e.pairs / e.lights * (functions + 3 * e.lights) * functions * kFloat;
 }
 
-/// Moments of all views, what a view's texels see, and systems of the factors' ranks.
+/// Moments of all views, the texels seen in a view, and linear systems over the factors' ranks.
 uint64_t tensor_refit_bytes(const FitExtent& e, uint64_t functions) {
   const uint64_t views = e.pairs / e.lights;
   const uint64_t moments = views * (functions + 3 * e.lights) * functions * kFloat;
@@ -103,7 +103,7 @@ uint64_t tensor_refit_bytes(const FitExtent& e, uint64_t functions) {
   return moments + seen + 2 * kMomentGroups * uint64_t{kMostJointRanks} * kMostJointRanks * sizeof(double);
 }
 
-/// Of a fit of SRBFs whose order is chosen by `points`.
+/// Memory of a fit of SRBFs whose order is chosen from `points` points.
 uint64_t search_bytes(const FitExtent& e, uint64_t points) {
   return kLibraries + point_bytes(e) +
          std::max({reading_bytes(e) + texel_bytes(e), refinement_bytes(e), judging_bytes(e),
@@ -117,7 +117,7 @@ std::string megabytes(uint64_t bytes) { return std::to_string((bytes + 999999) /
 uint64_t memory_for_tensors(const FitExtent& extent, uint64_t entries, const TensorAllowance& allowance) {
   const uint64_t texels =
       std::max(tensor_texel_bytes(extent, allowance.functions), tensor_refit_bytes(extent, allowance.functions));
-  // Slices stay where another shape or size may be fitted.
+  // Slices are kept because another shape or size may be fitted.
   return kLibraries + std::max(clustering_bytes(extent, allowance, entries),
                                slice_bytes(extent, allowance, entries) + reading_bytes(extent) + texels);
 }

@@ -1,4 +1,4 @@
-// What fits hold in memory at once, and what a limit allows.
+// Memory use of fits, and what fits into a memory limit.
 #pragma once
 
 #include <cstdint>
@@ -8,57 +8,57 @@
 
 namespace velour {
 
-/// Sizes that a fit's memory follows from.
+/// Sizes that determine the memory of a fit.
 struct FitExtent {
   uint64_t texels = 0, pyramid_texels = 0, pairs = 0;
-  uint64_t lights = 0;  // of a view
+  uint64_t lights = 0;  // per view
   uint64_t sides = 1;
-  uint64_t points = 0, point_pairs = 0;  // that lobes are refined by: of a side, of a point
-  uint64_t coefficients = 0;             // of a texel, or components
+  uint64_t points = 0, point_pairs = 0;  // for refining lobes: points per side, pairs per point
+  uint64_t coefficients = 0;             // per texel, or number of components
   uint64_t threads = 1;
-  bool by_view = false;  // components: of a view each
+  bool by_view = false;  // each component serves one view
 };
 
-/// What a fit is about to take, by its sizes alone.
+/// Estimated requirements of a fit, from its sizes alone.
 struct FitSize {
-  uint64_t memory = 0;        // bytes that it holds at once where nothing limits it
-  uint64_t least_memory = 0;  // the least limit that it can be kept to
-  uint64_t bytes = 0;         // of all coefficients, at most
+  uint64_t memory = 0;        // peak memory in bytes without a limit
+  uint64_t least_memory = 0;  // smallest feasible limit in bytes
+  uint64_t bytes = 0;         // upper bound on the bytes of all coefficients
 };
 
-/// The number of points that the order of SRBFs is chosen by, between the least and the usual one, which keeps the fit
-/// within `memory` bytes. Throws Error(unsupported) with the least that would do.
+/// Number of points for choosing the order of SRBFs, between the minimum and the default, that keeps the fit within
+/// `memory` bytes. Throws Error(unsupported) with the smallest feasible limit.
 uint32_t search_points_within(uint64_t memory, const FitExtent& extent);
-/// The least limit that leaves it all of the points, and so the model that it makes without one.
+/// The smallest limit that allows all points, and so gives the same model as no limit.
 uint64_t memory_for_all_points(const FitExtent& extent);
-/// The least limit that it can be kept to.
+/// The smallest feasible limit.
 uint64_t memory_for_least_points(const FitExtent& extent);
 
-/// Whole ones, rounded up: "17 MB".
+/// Rounded up to whole megabytes: "17 MB".
 std::string megabytes(uint64_t bytes);
 
-/// Of a truncated SVD of so many components.
+/// Memory of a truncated SVD of `extent.coefficients` components.
 uint64_t memory_for_components(const FitExtent& extent);
-/// Throws Error(unsupported), with what would do, where a truncated SVD of so many components holds more than `memory`.
+/// Throws Error(unsupported), with the required memory, if such an SVD holds more than `memory` bytes.
 void require_components(uint64_t memory, const FitExtent& extent);
 
-/// The most components, `coefficients` at most, that a truncated SVD can look at within `memory` bytes. Throws
-/// Error(unsupported) with the least that would do.
+/// Maximum number of components, up to `extent.coefficients`, of a truncated SVD within `memory` bytes. Throws
+/// Error(unsupported) with the smallest feasible limit.
 uint64_t components_within(uint64_t memory, FitExtent extent);
 
-/// What a fit of clustered tensors may hold.
+/// Limits on the data held by a fit of clustered tensors.
 struct TensorAllowance {
-  size_t point_floats = 16 << 20;  // that bases of the directions are found by
-  size_t slices = 6144;            // texels that clusters are sought for
-  uint32_t functions = 640;        // of all clusters: whose products of each view the texels are solved for by
+  size_t point_floats = 16 << 20;  // size of the points from which direction bases are computed
+  size_t slices = 6144;            // texels that are clustered
+  uint32_t functions = 640;        // total over all clusters; their products are held for each view
 };
 
-/// Bytes of a fit that may hold so much; `entries`: of a slice.
+/// Memory of a fit with this allowance. `entries`: per slice.
 uint64_t memory_for_tensors(const FitExtent& extent, uint64_t entries, const TensorAllowance& allowance);
-/// What any fit needs.
+/// The minimum for any fit.
 TensorAllowance least_tensor_allowance();
-/// The most that keeps the fit within `memory` bytes (0: no limit). Throws Error(unsupported)
-/// with the least that would do.
+/// The largest allowance that keeps the fit within `memory` bytes (0: no limit). Throws Error(unsupported) with the
+/// smallest feasible limit.
 TensorAllowance tensor_allowance(uint64_t memory, const FitExtent& extent, uint64_t entries);
 
 }  // namespace velour

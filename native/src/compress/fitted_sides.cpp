@@ -10,13 +10,13 @@
 namespace velour {
 namespace {
 
-constexpr double kUnlike = 0.1;  // of energies, relative
+constexpr double kUnlike = 0.1;  // relative difference of energies
 
-/// The number of a side that looks like this one.
+/// Index of a side that equals this one.
 std::optional<size_t> side_like(const BtfMeasurement& measurement, const std::vector<FittedSide>& sides,
                                 const SideDirections& side, double energy, const Progress& progress) {
   for (size_t s = 0; s < sides.size(); ++s) {
-    if (std::abs(energy - sides[s].energy) > kUnlike * energy) continue;  // without a look at their images
+    if (std::abs(energy - sides[s].energy) > kUnlike * energy) continue;  // without reading their images
     if (sides_are_equal(measurement, sides[s].directions, side, progress)) return s;
   }
   return std::nullopt;

@@ -1,4 +1,4 @@
-// The sides of a BTF that a fit has to make.
+// The sides of a BTF that need to be fitted.
 #pragma once
 
 #include "btf/sides.h"
@@ -9,7 +9,7 @@ namespace velour {
 
 struct FittedSide {
   SideDirections directions;
-  double energy = 0;  // sum of squares of all its companded values, and of those of the sides that it serves
+  double energy = 0;  // sum of squares of all companded values of this side and of those that share it
 };
 
 struct FittedSides {
@@ -17,11 +17,11 @@ struct FittedSides {
   std::vector<SharedSide> shared;
 };
 
-/// Without those that no light goes through to: what no side shows is black. And without those that another one
-/// serves (sides_are_equal).
+/// All sides except those without transmitted light (missing sides are black) and those that share another side
+/// (sides_are_equal).
 FittedSides fitted_sides(const BtfMeasurement& measurement, const ColourAxes& colours, const Progress& progress);
 
-/// Throws Error(unsupported) for a layout in which a view lacks a light.
+/// Throws Error(unsupported) if a view lacks a light.
 void require_complete(const PairLayout& layout);
 
 }  // namespace velour

@@ -10,14 +10,14 @@
 namespace velour {
 namespace {
 
-constexpr double kFunctionRidge = 1e-5;  // of the mean diagonal
+constexpr double kFunctionRidge = 1e-5;  // relative to the mean diagonal
 
 Eigen::MatrixXd sum_of(std::vector<Eigen::MatrixXd>& groups) {
   for (size_t g = 1; g < groups.size(); ++g) groups[0] += groups[g];
   return std::move(groups[0]);
 }
 
-/// x of A x = b for a symmetric A that may have no inverse: it is near `start` where A says nothing.
+/// Solves A x = b for a symmetric A that may be singular; x stays near `start` where A does not determine it.
 Eigen::MatrixXd solved_near(Eigen::MatrixXd matrix, const Eigen::MatrixXd& right, const Eigen::MatrixXd& start) {
   const double ridge = kFunctionRidge * matrix.trace() / static_cast<double>(matrix.rows());
   if (!(ridge > 0)) return start;
@@ -25,7 +25,7 @@ Eigen::MatrixXd solved_near(Eigen::MatrixXd matrix, const Eigen::MatrixXd& right
   return matrix.llt().solve(right + ridge * start);
 }
 
-/// Makes columns orthonormal; what turns the new ones into the old.
+/// Orthonormalizes the columns. Returns the matrix that maps the new columns to the old ones.
 RowMatrix orthonormalised(RowMatrix& factor) {
   QrParts parts = qr_parts(factor);
   factor = std::move(parts.basis);
@@ -67,7 +67,7 @@ class FunctionRefit {
   Index rank_;
 };
 
-/// Functions of a view are this times the rows of the lights: [cluster, rank] x [cluster, rank of the lights].
+/// Functions of a view are this matrix times rows of the light factors: [cluster, rank] x [cluster, light rank].
 RowMatrix FunctionRefit::of_lights(Index view, size_t axis) const {
   const Index lights = cluster_[0].light.cols(), colors = cluster_[0].color.cols(), views = cluster_[0].view.cols();
   RowMatrix all = RowMatrix::Zero(count(), static_cast<Index>(cluster_.size()) * lights);
@@ -84,7 +84,7 @@ RowMatrix FunctionRefit::of_lights(Index view, size_t axis) const {
   return all;
 }
 
-/// All lights have the same matrix.
+/// The matrix is the same for all lights.
 void FunctionRefit::solve_lights() {
   const Index ranks = cluster_[0].light.cols(), all = static_cast<Index>(cluster_.size()) * ranks,
               lights = cluster_[0].light.rows();
@@ -110,8 +110,8 @@ void FunctionRefit::solve_lights() {
   }
 }
 
-/// Functions of a view are sums over ranks of the views of these times rows of their factor: of a cluster and rank,
-/// [rank of the texels] x [axis, light].
+/// The functions of a view are sums of these parts, weighted by a row of the view factors: per cluster and view rank,
+/// [texel rank] x [axis, light].
 std::vector<RowMatrix> FunctionRefit::of_view_ranks() const {
   const Index views = cluster_[0].view.cols(), lights = cluster_[0].light.rows();
   std::vector<RowMatrix> parts(cluster_.size() * static_cast<size_t>(views), RowMatrix(rank_, 3 * lights));
@@ -127,7 +127,7 @@ std::vector<RowMatrix> FunctionRefit::of_view_ranks() const {
   return parts;
 }
 
-/// Rows of all clusters' factors.
+/// Solves for the view's rows of all clusters' factors.
 Eigen::VectorXd FunctionRefit::solved_view(size_t view, const std::vector<RowMatrix>& parts) const {
   const ViewMoments& moments = moments_[view];
   const Index views = cluster_[0].view.cols(), lights = cluster_[0].light.rows(),
@@ -169,7 +169,7 @@ void FunctionRefit::solve_views() {
   }
 }
 
-/// What that takes out of the factors goes into the cores.
+/// Orthonormalizes the factors; the cores absorb the change.
 void FunctionRefit::make_orthonormal() {
   for (DirectionCluster& of : cluster_) {
     const Index views = of.view.cols(), lights = of.light.cols(), colors = of.color.cols();

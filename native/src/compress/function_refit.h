@@ -1,4 +1,4 @@
-// Functions of clustered tensors solved for anew, for coefficients that are given.
+// Refit of the functions of clustered tensors for given coefficients.
 #pragma once
 
 #include <vector>
@@ -8,7 +8,7 @@
 
 namespace velour {
 
-/// Ranks of all clusters that are solved for at once; factors with more stay as they are.
+/// Maximum total rank of all clusters that is solved for jointly; factors with more stay unchanged.
 inline constexpr Index kMostJointRanks = 640;
 
 struct RefitOptions {
@@ -16,10 +16,9 @@ struct RefitOptions {
   int threads = 0;
 };
 
-/// Least squares over the images that `moments` (of every view) were summed from: by turns the rows of the lights'
-/// factors, those of the views', and the cores, each with the rest as it is, of all clusters together. No step raises
-/// the error. Factors are orthonormal in the end. Returns the least squares' value after each step, without the images'
-/// own squares.
+/// Alternating least squares over the images that `moments` (of every view) were summed from: the light factors, the
+/// view factors and the cores in turn, for all clusters jointly. No step raises the error. The resulting factors are
+/// orthonormal. Returns the objective at the start and after each step, without the squares of the images themselves.
 std::vector<double> refit_functions(const std::vector<ViewMoments>& moments, const RefitOptions& options,
                                     const Progress& progress, std::vector<DirectionCluster>& clusters);
 

@@ -7,7 +7,7 @@
 namespace velour {
 namespace {
 
-/// Between `size`, which is too small, and its double: the first of four parts of an octave that is good.
+/// Between `size`, which is too small, and its double: the first good one of four steps per octave.
 size_t least_between(size_t size, size_t end, const std::function<bool(size_t)>& good) {
   std::array<size_t, 4> sizes{};
   for (size_t i = 0; i < sizes.size(); ++i) {

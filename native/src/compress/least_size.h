@@ -1,4 +1,4 @@
-// The least of many sizes that is good enough, by few trials.
+// Search for the smallest sufficient size with few trials.
 #pragma once
 
 #include <cstddef>
@@ -6,11 +6,11 @@
 
 namespace velour {
 
-/// Sizes are numbered from 0 on. Looks at doubled sizes from the smallest on until one is good, then between that and
-/// the one before, to a fifth. Which sizes there are to look at does not depend on what is sought, and larger ones are
-/// not taken for better: so a search that finds good whatever another one does never ends with a larger size.
+/// Sizes are numbered from 0. Doubles the size from the smallest until one is good, then searches between it and the
+/// previous one, to within a fifth. The candidate sizes do not depend on `good`, and larger sizes are not assumed to be
+/// better: a search that accepts every size that another one accepts never returns a larger size.
 ///
-/// `good`: whether a size is. Returns a size that is good, or `end` where none is found below it.
+/// `good`: whether a size is sufficient. Returns a good size, or `end` if none is found below it.
 size_t least_size(size_t end, const std::function<bool(size_t)>& good);
 
 }  // namespace velour

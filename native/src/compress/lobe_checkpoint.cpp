@@ -12,7 +12,7 @@ constexpr size_t kMaxCandidates = 3 * SrbfBtf::kMaxLobes;
 
 std::string of_axis(const std::string& name, size_t axis) { return name + "." + std::to_string(axis); }
 
-/// Sizes agree and shares fall within [0, 1].
+/// Whether sizes agree and residuals lie within [0, 1].
 bool is_sound(const LobeOrder& order) {
   const auto share = order.share(order.axis.size());
   for (size_t a = 0; a < 3; ++a) {
@@ -33,7 +33,7 @@ std::optional<LobeOrder> kept_order(const FitCheckpoint& checkpoint, const std::
   for (const size_t a : *axis) order.axis.push_back(static_cast<uint8_t>(a));
   order.left = *left;
   for (size_t a = 0; a < 3; ++a) {
-    // An axis without candidates has none to keep.
+    // Nothing is stored for an axis without candidates.
     order.candidate[a] = checkpoint.wholes(of_axis(stage + ".candidate", a), kMaxCandidates, kLobeCandidates - 1)
                              .value_or(std::vector<size_t>());
   }

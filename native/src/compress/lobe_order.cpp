@@ -11,12 +11,12 @@
 namespace velour {
 namespace {
 
-/// Evenly distributed by logarithm.
+/// Log-uniform.
 float random_bandwidth(RandomStream& random, float narrowest, float widest) {
   return narrowest * std::pow(widest / narrowest, random.next());
 }
 
-/// A direction with z in [least_z, 1] times a bandwidth, evenly distributed by area.
+/// A direction, uniform by area with z in [least_z, 1], times a random bandwidth.
 Vec3 random_vector(RandomStream& random, float least_z, float narrowest, float widest) {
   const float z = std::lerp(least_z, 1.0f, random.next()), phi = 2 * kPi * random.next(), s = std::sqrt(1 - z * z);
   return Vec3(s * std::cos(phi), s * std::sin(phi), z) * random_bandwidth(random, narrowest, widest);
@@ -25,7 +25,7 @@ Vec3 random_vector(RandomStream& random, float least_z, float narrowest, float w
 MultivariateLobe random_lobe(RandomStream& random, bool texel) {
   MultivariateLobe lobe;
   const int kind = static_cast<int>(random.next() * 9);
-  // Highlights of texels stand about their normals.
+  // Highlights of texels are close to their normals.
   const float half_z = texel ? 0.97f : 0.2f;
   if (kind < 3) {
     lobe.light = random_vector(random, 0, 0.7f, 60);
@@ -46,7 +46,7 @@ MultivariateLobe random_lobe(RandomStream& random, bool texel) {
   return lobe;
 }
 
-/// The pursuits of three axes, which share their columns.
+/// The pursuits of the three axes, which share their columns.
 class OrderSearch {
  public:
   OrderSearch(const std::vector<RowMatrix>& columns, const std::vector<SurfacePoint>& points, int threads) {
@@ -57,7 +57,7 @@ class OrderSearch {
     rest_ = all_;
   }
 
-  /// One more coefficient; false where nothing is left to explain.
+  /// Adds a coefficient; false if nothing is left to explain.
   bool step(const Progress& progress) {
     double most = -1;
     size_t to = 3;
@@ -94,7 +94,7 @@ class OrderSearch {
     return pursuit_[a].choice().order.size() > share_[a] ||
            (share_[a] < SrbfBtf::kMaxLobes && pursuit_[a].step(progress));
   }
-  /// A model has a lobe.
+  /// A model needs at least one lobe.
   void need_one() {
     order_.candidate[0] = {0};
     order_.axis.insert(order_.axis.begin(), 0);

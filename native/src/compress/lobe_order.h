@@ -1,4 +1,4 @@
-// In which order lobes are worth their bytes.
+// The order in which lobes are worth their bytes.
 #pragma once
 
 #include <array>
@@ -8,41 +8,41 @@
 
 namespace velour {
 
-/// Lobes to choose from: random ones of light, view, half vector and their products, those of the tile's frame first.
-/// The first is the constant.
+/// Lobes to choose from: random lobes of light, view, half vector and their products, those in the tile's frame first.
+/// The first one is the constant.
 struct LobeCandidates {
   std::vector<MultivariateLobe> lobes;
   uint32_t tile_lobes = 0;
 };
 inline constexpr uint32_t kLobeCandidates = 2048;
-inline constexpr uint64_t kOrderPairs = 400;  // of a point that an order is chosen by
+inline constexpr uint64_t kOrderPairs = 400;  // per point, for choosing an order
 LobeCandidates random_candidates(uint64_t seed);
 
-/// Values of all candidates at the first points, pair x candidate each, and of the points along an axis.
+/// Values of all candidates at the first points, pair x candidate each; and values of the points along an axis.
 std::vector<RowMatrix> candidate_columns(const std::vector<SurfacePoint>& points, const LobeCandidates& candidates,
                                          size_t most_points, size_t most_pairs, int threads, const Progress& progress);
 std::vector<Eigen::VectorXf> point_values(const std::vector<SurfacePoint>& points,
                                           const std::vector<RowMatrix>& columns, size_t axis);
 
-/// Coefficients of a texel, one by one: each goes to the colour axis whose next candidate explains the most.
+/// The order of a texel's coefficients: each goes to the color axis whose next candidate explains the most.
 struct LobeOrder {
-  std::array<std::vector<size_t>, 3> candidate;  // of each axis, the most useful first; of axis 0 at least one
-  std::vector<uint8_t> axis;                     // of each coefficient
-  std::vector<double> left;                      // share of all squares that is left after each
+  std::array<std::vector<size_t>, 3> candidate;  // per axis, most useful first; axis 0 has at least one
+  std::vector<uint8_t> axis;                     // per coefficient
+  std::vector<double> left;                      // residual after each coefficient, as a share of all squares
 
-  /// How many of the first `count` coefficients go to each axis.
+  /// Number of the first `count` coefficients that go to each axis.
   std::array<size_t, 3> share(size_t count) const;
 };
 
 struct LobeOrderOptions {
-  size_t most = 0;       // coefficients
-  double least = 0;      // share of squares: it ends where no more are left
-  uint32_t points = 64;  // that they are chosen by
+  size_t most = 0;       // maximum number of coefficients
+  double least = 0;      // stops when the residual share of squares is no more than this
+  uint32_t points = 64;  // used for the choice
   uint64_t seed = 0;
   int threads = 0;
 };
 
-/// By greedy choice among random candidates. Nothing to explain, as in what is black, takes the constant.
+/// Greedy choice among random candidates. If there is nothing to explain (black), takes the constant.
 LobeOrder order_lobes(const std::vector<SurfacePoint>& points, const LobeOrderOptions& options, Progress& progress);
 
 }  // namespace velour

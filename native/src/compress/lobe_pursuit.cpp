@@ -7,7 +7,7 @@
 namespace velour {
 namespace {
 
-constexpr float kDependent = 1e-3f;  // a column whose part beyond the chosen ones is smaller adds nothing
+constexpr float kDependent = 1e-3f;  // columns whose relative part beyond the chosen ones is smaller add nothing
 constexpr Eigen::Index kFirstRoom = 16;
 
 }  // namespace
@@ -30,7 +30,7 @@ bool Pursuit::step(const Progress& progress) {
   std::vector<Eigen::VectorXf> gain(columns_.size());
   parallel_pieces(columns_.size(), threads_, progress, [&](size_t i) {
     const Eigen::VectorXf product = columns_[i].transpose() * rest_[i];
-    // Columns that are all but zero explain nothing, and rounding must not make them; nor do points that no view shows.
+    // Near-zero columns must not gain from rounding errors, nor points that no view shows.
     const float least = 1e-6f * static_cast<float>(std::max<Eigen::Index>(1, rest_[i].size()));
     gain[i] = product.array().square() / (norm_sq_[i].array() + least);
   });

@@ -1,4 +1,4 @@
-// Greedy choice of functions that many points share.
+// Greedy choice of functions shared by many points.
 #pragma once
 
 #include <Eigen/Core>
@@ -9,20 +9,20 @@
 namespace velour {
 
 struct PursuitChoice {
-  std::vector<size_t> order;  // candidates, the most useful first
-  std::vector<double> left;   // sum of squares that is left after each of them
+  std::vector<size_t> order;  // candidates, most useful first
+  std::vector<double> left;   // residual sum of squares after each of them
   double all = 0;             // before the first
 };
 
-/// Simultaneous orthogonal matching pursuit [TGS06], step by step: in each the candidate whose projections explain the
-/// most of all points' rests together, where every point has coefficients of its own.
+/// Simultaneous orthogonal matching pursuit [TGS06]. Each step chooses the candidate whose projections explain the most
+/// of all points' residuals together; every point has its own coefficients.
 class Pursuit {
  public:
-  /// `columns`: of each point, pair x candidate; they must outlive this, and several pursuits may share them. `values`:
-  /// of each point, by pair.
+  /// `columns`: per point, pair x candidate; must outlive this object and may be shared by several. `values`: per
+  /// point, by pair.
   Pursuit(const std::vector<RowMatrix>& columns, std::vector<Eigen::VectorXf> values, int threads);
 
-  /// Chooses one more; false where nothing is left to explain.
+  /// Chooses another candidate; false if nothing is left to explain.
   bool step(const Progress& progress);
   const PursuitChoice& choice() const { return choice_; }
 
@@ -31,14 +31,14 @@ class Pursuit {
   double energy() const;
 
   const std::vector<RowMatrix>& columns_;
-  std::vector<Eigen::VectorXf> rest_, norm_sq_;  // of points: of their values; of their candidates
-  std::vector<Eigen::MatrixXf> basis_;           // of points: orthonormal, of the columns chosen, and room for more
-  Eigen::VectorXf open_;                         // 0 for those that were chosen
+  std::vector<Eigen::VectorXf> rest_, norm_sq_;  // per point: residual of the values; squared norms of the candidates
+  std::vector<Eigen::MatrixXf> basis_;           // per point: orthonormal basis of the chosen columns, and room
+  Eigen::VectorXf open_;                         // 0 for chosen candidates, else 1
   int threads_;
   PursuitChoice choice_;
 };
 
-/// `count` of them, or fewer where nothing is left to explain.
+/// Chooses `count` candidates, or fewer if nothing is left to explain.
 PursuitChoice pursue(const std::vector<RowMatrix>& columns, std::vector<Eigen::VectorXf> values, size_t count,
                      int threads, const Progress& progress);
 

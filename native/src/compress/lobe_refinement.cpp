@@ -8,14 +8,14 @@
 namespace velour {
 namespace {
 
-/// The numbers of lobes as the parameters of a descent, those of each argument measured by their length at the start,
-/// so that broad and narrow lobes move alike.
+/// The numbers of lobes as parameters of a descent, each argument in units of its initial length, so that broad and
+/// narrow lobes move alike.
 class LobeVectors {
  public:
   explicit LobeVectors(std::vector<MultivariateLobe> lobes) : lobes_(std::move(lobes)) {
     for (MultivariateLobe& lobe : lobes_) {
       for (int a = 0; a < MultivariateLobe::kArguments; ++a) {
-        // What has no length has no slope to leave by.
+        // A zero vector has no slope.
         const int last = std::min(3 * a + 2, MultivariateLobe::kNumbers - 1);
         if (lobe.length(a) == 0) lobe[last] = kBroadest;
         for (int i = 3 * a; i <= last; ++i) unit_.push_back(1 + static_cast<double>(lobe.length(a)));
@@ -48,7 +48,7 @@ class LobeVectors {
   }
 
   std::vector<MultivariateLobe> lobes_;
-  std::vector<double> unit_;  // of each number
+  std::vector<double> unit_;  // per number
 };
 
 }  // namespace

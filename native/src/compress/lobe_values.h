@@ -7,13 +7,13 @@
 
 namespace velour {
 
-/// Lobes of both frames, ready to be evaluated. Columns of values: the tile's lobes, the texels', without padding.
+/// Lobes of both frames. Columns of values: those in the tile's frame, then those in the normal's, without padding.
 class LobeValues {
  public:
   LobeValues(std::span<const MultivariateLobe> lobes, uint32_t tile_lobes)
       : tile_(lobes.first(tile_lobes)), texel_(lobes.subspan(tile_lobes)) {}
 
-  /// pair x lobe, of `pairs` pairs of the point at most.
+  /// Values pair x lobe, for at most `pairs` pairs of the point.
   RowMatrix at(const SurfacePoint& point, size_t pairs) const;
 
  private:

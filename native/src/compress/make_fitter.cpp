@@ -12,9 +12,9 @@
 namespace velour {
 namespace {
 
-constexpr uint32_t kMostClusters = 64, kMostMembers = 4;  // that are tried
+constexpr uint32_t kMostClusters = 64, kMostMembers = 4;  // limits of the search
 
-/// Throws Error(invalid_argument) for numbers that the method has not.
+/// Throws Error(invalid_argument) for numbers that the method does not support.
 ShapeRange shapes_of(const CompressOptions& options) {
   ShapeRange range;
   if (options.method != CompressMethod::tucker) range.most_clusters = kMostClusters;

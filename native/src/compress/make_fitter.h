@@ -1,4 +1,4 @@
-// The fits of BTFs by method.
+// Creates BTF fitters by method.
 #pragma once
 
 #include <memory>
@@ -10,12 +10,12 @@
 
 namespace velour {
 
-/// All arguments must outlive it. Throws what the fitters do, and Error(invalid_argument) for clusters
-/// and members that the method has not.
+/// The arguments must outlive the fitter. Throws the errors of the fitters, and Error(invalid_argument) for clusters,
+/// members or no relief where the method does not support them.
 std::unique_ptr<BtfFitter> make_fitter(const BtfMeasurement& measurement, const CompressOptions& options,
                                        FitCheckpoint& checkpoint, Progress& progress);
 
-/// What such a fit is about to take; nothing is read. Throws Error(unsupported) for a layout that is not complete.
+/// Estimated requirements of such a fit; reads no data. Throws Error(unsupported) for an incomplete layout.
 FitSize fit_size(const BtfMeasurement& measurement, const CompressOptions& options);
 
 }  // namespace velour

@@ -1,4 +1,4 @@
-// Pictures of a BTF's model, whatever its kind.
+// Images of a BTF's model, for all methods.
 #pragma once
 
 #include "compress/btf_compare.h"
@@ -6,7 +6,7 @@
 
 namespace velour {
 
-/// f of every texel of the finest level for a pair of directions. `body`, a BTF's, must outlive it.
+/// Computes f of every texel of the finest level for a pair. `body` must be of a BTF and outlive the result.
 BtfImages images_of(const ModelBody& body);
 
 }  // namespace velour

@@ -9,7 +9,7 @@
 namespace velour {
 namespace {
 
-constexpr float kTileRidge = 1e-5f;  // of coefficients, relative to a lobe of value 1 everywhere
+constexpr float kTileRidge = 1e-5f;  // on coefficients, relative to a lobe of value 1 everywhere
 
 }  // namespace
 
@@ -64,7 +64,7 @@ ProjectedError::Part ProjectedError::of_point(size_t number, const std::vector<M
       gram.selfadjointView<Eigen::Lower>().ldlt().solve(column.transpose() * truth).eval();
   const Eigen::VectorXf rest = truth - column * coefficient;
   part.error = static_cast<double>(rest.squaredNorm() + ridge * coefficient.squaredNorm());
-  // At the best coefficients their own change costs nothing: what is left is the change of the lobes.
+  // At the best coefficients the error does not change with them: only the change of the lobes remains.
   const Eigen::MatrixXf weight = (column.array().colwise() * rest.array()).matrix();
   const auto tile = static_cast<Eigen::Index>(tile_lobes_);
   part.slope.leftCols(tile) = argument_[number][0] * weight.leftCols(tile);

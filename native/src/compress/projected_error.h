@@ -1,4 +1,4 @@
-// What shared lobes leave of the points that they are refined by.
+// Residual of shared lobes at the points by which they are refined.
 #pragma once
 
 #include <array>
@@ -11,15 +11,15 @@ namespace velour {
 
 class LobeValues;
 
-/// The squared error of colour axis 0 over all points, each with its best coefficients, as a function of the lobes'
+/// The squared error of color axis 0 over all points, each with its best coefficients, as a function of the lobes'
 /// vectors alone (variable projection [GP73]). A slight ridge on the coefficients counts as error.
 class ProjectedError {
  public:
-  /// Of lobes whose first `tile_lobes` are in the tile's frame. The points must outlive this.
+  /// The first `tile_lobes` lobes are in the tile's frame. The points must outlive this object.
   ProjectedError(const std::vector<SurfacePoint>& points, uint32_t tile_lobes, int threads, const Progress& progress);
 
-  /// Writes the slope by the components of light, view and half vector, a column of nine a lobe. A vector of no length
-  /// has the slope of its argument alone. The same bits for any number of threads.
+  /// Returns the error and writes its slope by the lobes' numbers, a column of MultivariateLobe::kNumbers per lobe. A
+  /// zero vector gets the slope of its argument alone, not of its length. The same bits for any number of threads.
   double operator()(const std::vector<MultivariateLobe>& lobes, Eigen::MatrixXd& slope) const;
 
  private:
@@ -31,7 +31,7 @@ class ProjectedError {
   int threads_;
   const Progress& progress_;
   std::vector<std::array<Eigen::Matrix<float, MultivariateLobe::kNumbers, Eigen::Dynamic>, 2>>
-      argument_;  // of each point, in both frames
+      argument_;  // per point, in both frames
 };
 
 }  // namespace velour

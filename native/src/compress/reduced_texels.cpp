@@ -10,9 +10,9 @@
 namespace velour {
 namespace {
 
-constexpr Index kViews = 9;  // that are added at once
+constexpr Index kViews = 9;  // added at once
 constexpr size_t kGapPixels = 1000;
-constexpr double kLeastNoise = 1e-3;  // of the mean energy of a view
+constexpr double kLeastNoise = 1e-3;  // relative to the mean energy of a view
 
 class Reduction {
  public:
@@ -70,7 +70,7 @@ class Reduction {
     return {reduced_.slices.data.data() + i * rank * row_, rank, row_};
   }
 
-  /// The views up to `last` that wait.
+  /// Adds the buffered views; `last` is the last of them.
   void add_held(Index last) {
     const RowMatrix turn = bases_.view.vector.middleRows(last + 1 - held_, held_).transpose();
     pieces([&](Index i) {
@@ -79,7 +79,7 @@ class Reduction {
     held_ = 0;
   }
 
-  /// What hidden views leave open.
+  /// Solves for a texel that is hidden from some views.
   void fill(Index i) {
     if (shown_.row(i).minCoeff() > 0) return;
     const DirectionBasis& view = bases_.view;
@@ -100,8 +100,8 @@ class Reduction {
   Index row_;  // entries of a view: [light basis][axis]
   ReliefGap gap_;
   RowMatrix shown_;    // texel x view: 1 or 0
-  RowMatrix waiting_;  // texel x [view][entry]
-  Index held_ = 0;     // views that wait
+  RowMatrix waiting_;  // buffered views: texel x [view][entry]
+  Index held_ = 0;     // number of buffered views
 };
 
 }  // namespace

@@ -23,7 +23,7 @@ void ReliefGap::add_view(Index view, const LevelImages& images) {
     const auto shown = shown_texels(relief, texels, wv, tile_aspect(source_.grid), 1, progress_);
     float weight = 0;
     for (size_t k = 0; k < 4; ++k) weight += shown[k].shown ? seen.weight[k] : 0.0f;
-    if (weight == 0) return;  // other views tell what is there
+    if (weight == 0) return;  // other views show what is there
     for (const RowMatrix& image : images.value) {
       Eigen::RowVectorXf rest = image.row(pixel_[i]);
       squares_[i].image += static_cast<double>(rest.squaredNorm());

@@ -1,4 +1,4 @@
-// What a relief leaves of the images, whatever its texels are made of.
+// Error of images reconstructed over a relief, whatever the texels' model.
 #pragma once
 
 #include <vector>
@@ -7,18 +7,18 @@
 
 namespace velour {
 
-/// Puts images together from what the texels of the relief show in them (shown_texels): where a view's ray meets the
-/// relief, the four texels there, of those the ones that the view shows. What that differs by from the images is lost
-/// by looking up twice between texels, and about edges, where some of the four hide. Pixels whose four all hide do not
-/// count.
+/// Reconstructs images from the values of the relief's texels in them (shown_texels): where a view ray hits the relief,
+/// from those of the four texels there that the view shows. The difference from the images is lost by interpolating
+/// twice between texels, and near edges, where some of the four are hidden. Pixels whose four texels are all hidden do
+/// not count.
 class ReliefGap {
  public:
-  /// Judges by `pixels` random ones, of each view.
+  /// Uses `pixels` random pixels of each view.
   ReliefGap(const TensorSource& source, size_t pixels, const Progress& progress);
 
-  /// The finest level of every view once.
+  /// Call once per view, with its finest level.
   void add_view(Index view, const LevelImages& images);
-  /// Squares of the difference over those of the images; 0 on the plane.
+  /// Squares of the difference relative to those of the images; 0 on the plane.
   double share() const;
 
  private:
@@ -28,7 +28,7 @@ class ReliefGap {
   const TensorSource& source_;
   const Progress& progress_;
   std::vector<uint32_t> pixel_;
-  std::vector<Squares> squares_;  // of each pixel
+  std::vector<Squares> squares_;  // per pixel
 };
 
 }  // namespace velour

@@ -8,7 +8,7 @@
 namespace velour {
 namespace {
 
-/// Over the reference plane, in widths of the tile, away from the plane on the viewer's side.
+/// Heights over the reference plane, in tile widths, positive on the viewer's side.
 std::vector<float> heights_of(const BtfMeasurement& measurement, const SideDirections& side) {
   std::vector<float> heights(measurement.grid().texels(), 0.0f);
   if (!measurement.has_structure() || !measurement.shell()) return heights;
@@ -28,7 +28,7 @@ std::vector<float> heights_of(const BtfMeasurement& measurement, const SideDirec
   return heights;
 }
 
-/// All levels of heights on the finest one.
+/// All levels of a relief with these heights on the finest one.
 std::vector<Relief> pyramid_of(const TexelGrid& grid, std::vector<float> heights) {
   std::vector<Relief> pyramid;
   uint32_t width = grid.width, height = grid.height;

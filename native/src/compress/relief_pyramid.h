@@ -1,4 +1,4 @@
-// The relief that a capture found.
+// The relief of a captured BTF.
 #pragma once
 
 #include <vector>
@@ -9,11 +9,11 @@
 
 namespace velour {
 
-/// Of every level, the finest first, with heights as half floats hold them: first hits of the view nearest to the
-/// normal, averaged over texels. Where it meets nothing, the lowest point of the shell. Flat, on the reference plane,
-/// for a BTF without structure.
+/// The relief of every level, finest first, with heights rounded to half floats: first hits of the view nearest to the
+/// normal, averaged over texels; the lowest point of the shell where it hits nothing. Flat, on the reference plane, for
+/// a BTF without structure.
 std::vector<Relief> relief_pyramid(const BtfMeasurement& measurement, const SideDirections& side);
-/// The reference plane, as large.
+/// The reference plane, with the same levels.
 std::vector<Relief> plane_pyramid(const TexelGrid& grid);
 
 std::vector<HalfBits> stored_heights(const Relief& relief);

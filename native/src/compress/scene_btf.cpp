@@ -9,7 +9,7 @@
 namespace velour {
 namespace {
 
-/// The largest angle, in radians, between a direction and the one nearest to it on its side.
+/// The largest angle, in radians, between a direction and its nearest neighbor on the same side.
 double widest_gap(const std::vector<Vec3>& directions) {
   double widest = 0;
   for (const Vec3& a : directions) {
@@ -32,7 +32,7 @@ bool any_below(const std::vector<PolarAngles>& set) {
   return std::ranges::any_of(set, [](const PolarAngles& angles) { return unit_direction(angles).z < 0; });
 }
 
-/// The number of the view nearest to the normal of a side.
+/// Index of the view nearest to the normal of a side.
 size_t most_upright(const std::vector<Vec3>& directions, bool below) {
   size_t best = 0;
   for (size_t v = 1; v < directions.size(); ++v) {
@@ -72,7 +72,7 @@ class SceneBtf final : public BtfMeasurement {
   }
 
   bool has_structure() const override { return fine_.has_structure(); }
-  /// Heights are those of what is there: holes count nothing.
+  /// Heights are averaged over the covered area only; holes do not count.
   std::optional<ViewStructure> read_structure(uint32_t view) const override {
     auto structure = fine_.read_structure(pairs_.views[view]);
     if (structure) coarsen(*structure);

@@ -1,4 +1,4 @@
-// A BTF as scenes see it that know some of its views alone, and never come close.
+// A BTF reduced to the views and the resolution of its scene usage.
 #pragma once
 
 #include <memory>
@@ -9,26 +9,26 @@
 
 namespace velour {
 
-/// Numbers of a layout's views and lights.
+/// Indices of a layout's views and lights.
 struct SeenPairs {
   std::vector<uint32_t> views, lights;
 };
 
-/// Of a complete layout: the views no farther from those that count (counted_views) than twice what views lie apart
-/// from their nearest neighbours at most: with those around them, which keep a fit from following single views; and the
-/// one nearest to the normal, whose heights make the relief. Of a side that nobody saw no views, but its lights, which
-/// may come through. What is seen of a BTF of one side from behind is its front.
+/// Selects from a complete layout the views no farther from a counted one (counted_views) than twice the largest
+/// distance between nearest neighbors, because the surrounding views keep a fit from following single views; and the
+/// view nearest to the normal, whose heights make the relief. A side that was not seen contributes no views, but its
+/// lights, which may be transmitted. A one-sided BTF shows its front from behind.
 SeenPairs pairs_around(const PairLayout& layout, const ViewWeights& seen);
 
-/// Whether it has views, and lights, from below.
+/// Whether the layout has both views and lights below the plane.
 bool has_lower_side(const PairLayout& layout);
 
-/// `pairs` of `fine` (complete), at the level of its pyramid that lies `halvings` below the finest: values and
-/// structure are means over the areas that its texels cover (half_image.h). Read from `fine`, image by image, whenever
-/// it is asked for; `fine` outlives it. The provenance is that of `fine`, values that are not finite stay so.
+/// The given pairs of `fine` (complete) at mip level `halvings`: values and structure are means over the areas that its
+/// texels cover (half_image.h). Reads from `fine` image by image on demand; `fine` must outlive the result. Keeps the
+/// provenance of `fine`; values that are not finite stay so.
 std::unique_ptr<const BtfMeasurement> scene_btf(const BtfMeasurement& fine, uint32_t halvings, SeenPairs pairs);
 
-/// An image of `grid`, [row][column][channel], at the level `halvings` below it.
+/// Reduces an image of `grid`, [row][column][channel], by `halvings` mip levels.
 std::vector<float> halved_image(std::vector<float> image, TexelGrid grid, uint32_t channels, uint32_t halvings);
 
 }  // namespace velour

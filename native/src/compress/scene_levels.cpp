@@ -6,7 +6,7 @@ namespace velour {
 namespace {
 
 const std::vector<TexelLevel>& levels_of(const FactoredBtf& btf) { return btf.levels; }
-/// Those of all sides have the same sizes.
+/// All sides have levels of the same sizes.
 template <typename Btf>
 const auto& levels_of(const Btf& btf) {
   return btf.sides.at(0).levels;

@@ -1,4 +1,4 @@
-// Which levels of a BTF's model scenes never resolve, and the model without them.
+// Removes the levels of a BTF's model that scenes never resolve.
 #pragma once
 
 #include <cstddef>
@@ -8,13 +8,13 @@
 
 namespace velour {
 
-/// How many of the finest levels may go: the next one still has kTexelsOfLookUp texels along every look-up that counts
-/// (finest_footprint). The last level stays, and so do levels without which the texels of a tile of unknown size would
-/// have another shape: their numbers are what tells the tile's.
+/// Number of finest levels that can be removed: the next one still has kTexelsOfLookUp texels along every lookup that
+/// counts (finest_footprint). The last level stays. For a tile of unknown size, so do levels whose removal would change
+/// the ratio of its texel counts, which defines its shape.
 size_t unresolved_levels(const ModelBody& body, const SurfaceDomain& seen);
 
-/// The body without its `count` finest levels. Its grid is that of the finest one left, so a footprint, counted in its
-/// texels, finds the same level as before; coefficients stay as they are, bit for bit.
+/// The body without its `count` finest levels. Its grid is that of the finest remaining level, so a footprint, counted
+/// in its texels, selects the same level as before; coefficients are unchanged bit for bit.
 ModelBody without_finest(const ModelBody& body, size_t count);
 
 }  // namespace velour

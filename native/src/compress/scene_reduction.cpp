@@ -8,7 +8,7 @@
 namespace velour {
 namespace {
 
-constexpr double kFullFit = 0.7;  // of the progress, where the full model is fitted first
+constexpr double kFullFit = 0.7;  // fraction of the progress, if the full model is fitted first
 
 const SceneObservation& checked(const CompressOptions& options) {
   if (options.for_scene->hits.empty()) {
@@ -44,7 +44,7 @@ Model full_model(const BtfMeasurement& measurement, const CompressOptions& optio
   return compress_btf(measurement, options, progress);
 }
 
-/// By a fit of its own where that serves the scenes, else by leaving out the `count` finest levels.
+/// Uses a refit if it is no larger than the model without its `count` finest levels, otherwise that model.
 void reduce(const BtfMeasurement& measurement, size_t count, const CompressOptions& options, Model& model,
             SceneRecord& record, Progress& progress) {
   if (count == 0) return;
@@ -62,7 +62,7 @@ void reduce(const BtfMeasurement& measurement, size_t count, const CompressOptio
   record.picture_error = refit->error;
   record.full_picture_error = refit->full_error;
   record.seen_views_alone = true;
-  if (!has_lower_side(measurement.layout())) {  // its front is what it shows from behind
+  if (!has_lower_side(measurement.layout())) {  // it shows its front from behind
     record.domain.surface.views = from_both_sides(record.domain.directions());
   }
   model.body = std::move(refit->body);

@@ -15,10 +15,10 @@
 namespace velour {
 namespace {
 
-constexpr uint64_t kMaxReduction = 64;  // parts of the full model's bytes
-constexpr double kRefitSetup = 0.3;     // of the progress
-constexpr size_t kJudgedSize = 15;      // the size that tells whether a relief helps
-constexpr int kMaxRefitTrials = 9;      // of least_size: doublings from kMaxReduction on, and two more
+constexpr uint64_t kMaxReduction = 64;  // smallest model tried: the full model's bytes over this
+constexpr double kRefitSetup = 0.3;     // fraction of the progress
+constexpr size_t kJudgedSize = 15;      // size at which the relief and the plane are compared
+constexpr int kMaxRefitTrials = 9;      // trials of least_size: doublings from the smallest model on, and two more
 
 CompressMethod method_of(const ModelBody& full) {
   const auto* factored = std::get_if<FactoredBtf>(&full);
@@ -49,11 +49,11 @@ class Refit {
     options_.method = method_of(full);
   }
 
-  /// Better than `levels`, or nothing.
+  /// A refit that is better than `levels`, if there is one.
   std::optional<SceneRefit> best(const ModelBody& levels) {
     if (pictures_.empty()) return std::nullopt;
     full_error_ = error(full_);
-    if (!std::isfinite(full_error_)) return std::nullopt;  // the BTF has entries that are not
+    if (!std::isfinite(full_error_)) return std::nullopt;  // the BTF has entries that are not finite
     auto fitter = fitter_within(parameter_bytes(levels));
     if (!fitter) return std::nullopt;
     if (options_.method == CompressMethod::srbf && seen_.has_structure()) fitter = better_of(std::move(fitter));
@@ -67,8 +67,8 @@ class Refit {
     return arena_.execute([&] { return pictures_.error(body, progress_); });
   }
 
-  /// With the relief or without: its heights are as coarse as the texels, and of views that lie close together some
-  /// tiles are shown better as a plane. A fit of a size that does not depend on what is asked for tells.
+  /// Chooses between the relief and the plane by a fit of a fixed size, whatever size is requested. The relief's
+  /// heights are as coarse as the texels, and for views that lie close together some tiles look better as a plane.
   std::unique_ptr<BtfFitter> better_of(std::unique_ptr<BtfFitter> over_relief) {
     const double begin = done_;
     done_ = kRefitSetup;
@@ -82,7 +82,7 @@ class Refit {
     return over_relief;
   }
 
-  /// Nothing where so few bytes hold no model.
+  /// Null if so few bytes do not hold a model.
   std::unique_ptr<BtfFitter> fitter_within(uint64_t bytes) {
     options_.bytes = bytes;
     const Progress::Span setup(progress_, 0, kRefitSetup / 3);
@@ -94,7 +94,7 @@ class Refit {
     }
   }
 
-  /// Fits it, unless it is smaller than any that is tried. The smallest good one is kept, else the largest.
+  /// Fits this size unless it is below the smallest one tried. Keeps the smallest good fit, otherwise the largest.
   bool is_good(BtfFitter& fitter, size_t size) {
     if (fitter.curve().points[size].parameter_bytes < parameter_bytes(full_) / kMaxReduction) return false;
     const double begin = done_;
@@ -112,7 +112,7 @@ class Refit {
   CompressOptions options_;
   Progress& progress_;
   FitCheckpoint none_;
-  double done_ = kRefitSetup / 3;  // of the progress
+  double done_ = kRefitSetup / 3;  // fraction of the progress
   double full_error_ = 0;
   std::optional<SceneRefit> good_, last_;
   tbb::task_arena arena_;

@@ -13,14 +13,14 @@
 namespace velour {
 namespace {
 
-/// How often `grid` must be halved to have `width` texels.
+/// Number of times `grid` must be halved to have `width` texels.
 uint32_t halvings_to(const TexelGrid& grid, uint32_t width) {
   uint32_t halvings = 0;
   for (uint32_t w = grid.width; w > width; w /= 2) ++halvings;
   return halvings;
 }
 
-/// Of the errors a - b of two independent halves, the square that their product stands for.
+/// The squared relative error, from the product of the errors a - b of two independent halves.
 double relmse(const std::array<std::vector<float>, 2>& a, const std::array<const std::vector<float>*, 2>& b) {
   const size_t count = a[0].size();
   double error = 0;
@@ -66,7 +66,7 @@ SeenPictures::Half SeenPictures::half_of_hit(const ObservedHit& hit, bool second
 }
 
 std::vector<float> SeenPictures::true_radiance(const Vec3& wv, const Half& half, const Progress& progress) const {
-  std::map<uint64_t, float> pairs;  // how much each counts
+  std::map<uint64_t, float> pairs;  // weight of each pair
   const auto views = between_.view(wv);
   for (const Light& light : half.light) {
     const auto lights = between_.light(light.wl);

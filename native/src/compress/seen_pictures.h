@@ -1,4 +1,4 @@
-// How wrong pictures are with a model in place of its BTF, as scenes showed the material.
+// Image error of a model relative to its BTF, under the scene usage.
 #pragma once
 
 #include <array>
@@ -12,22 +12,21 @@
 
 namespace velour {
 
-/// Pictures of the whole tile, one a hit: seen as the hit was, under its light. The first kPictures hits that tell
-/// their light (hits come in random order). Each has two, under either half of the hit's terms: the product of a
-/// model's errors in both has the square of its error under all of the light as its expectation, however few terms
-/// stand for that.
+/// Images of the whole tile, one per hit, with its view and light; for the first kPictures hits that have light (hits
+/// come in random order). Each hit has two images, one for either half of its terms: the expected product of a model's
+/// errors in both is the square of its error under all of the light, however few terms represent it.
 ///
-/// The truth is the BTF, interpolated between its views and lights: directions lie between those that a model was
-/// fitted to, so that a model that follows them alone is found out.
+/// The truth is the BTF, interpolated between its views and lights. Directions lie between those to which a model was
+/// fitted, so a model that follows only those is detected.
 class SeenPictures {
  public:
-  /// `truth`: a BTF at the resolution of the scene (scene_btf.h); it must outlive this. A pixel is 2 x 2 of its texels
-  /// (kTexelsOfLookUp).
+  /// `truth`: the BTF at the resolution of the scene (scene_btf.h); must outlive this object. A pixel is 2 x 2 of its
+  /// texels (kTexelsOfLookUp).
   SeenPictures(const BtfMeasurement& truth, const SceneObservation& observation, const Progress& progress);
 
   bool empty() const { return pictures_.empty(); }
-  /// relmse of the pictures of a BTF's model: mean over hits, pixels and channels of (a - b)^2 / (b^2 + 0.01 m^2), b
-  /// the truth, m the mean of its picture; at least 0. A model with more texels is averaged to pixels as well.
+  /// relmse of the images of a BTF's model: mean over hits, pixels and channels of (a - b)^2 / (b^2 + 0.01 m^2), where
+  /// b is the truth and m the mean of its image; at least 0. A model with more texels is averaged to the same pixels.
   double error(const ModelBody& body, const Progress& progress) const;
 
   static constexpr size_t kPictures = 16;
@@ -45,7 +44,8 @@ class SeenPictures {
     Vec3 wv;
     std::array<Half, 2> half;
   };
-  /// Of the light that the truth knows. `mirrored`: seen from below, so light above the horizon comes from below, too.
+  /// Uses only light that the truth covers. `mirrored`: seen from below, so light above the horizon comes from below,
+  /// too.
   Half half_of_hit(const ObservedHit& hit, bool second, const SceneObservation& observation, bool mirrored) const;
   std::vector<float> true_radiance(const Vec3& wv, const Half& half, const Progress& progress) const;
   std::vector<float> picture_of(const BtfImages& images, const TexelGrid& grid, const Vec3& wv, const Half& half,

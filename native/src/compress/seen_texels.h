@@ -1,4 +1,4 @@
-// What views see of the texels of a level, and sums of coefficients there.
+// The texels of a level seen by views, and interpolation of coefficients there.
 #pragma once
 
 #include <vector>
@@ -17,7 +17,7 @@ struct TensorTexelValues {
   Index rank() const { return value.cols() / members(); }
 };
 
-/// Where the views' rays through the centres of a level's texels meet its relief.
+/// Points where the view rays through the centers of a level's texels hit its relief.
 class SeenTexels {
  public:
   SeenTexels(const TensorSource& source, size_t level, const Progress& progress);
@@ -25,24 +25,24 @@ class SeenTexels {
   const Relief& relief() const { return relief_; }
   bool plane() const { return plane_; }
   size_t texels() const { return size_t{relief_.width()} * relief_.height(); }
-  /// Each is its own on the plane.
+  /// The texel itself on the plane.
   BilinearTexels at(Index view, size_t texel) const;
 
-  /// Texels of a view by those that they see, so that threads do not meet and sums have one order.
+  /// Texels of a view grouped by the texels they see, so that threads do not conflict and sums have a fixed order.
   struct Sources {
-    std::vector<uint32_t> first;   // of each texel
+    std::vector<uint32_t> first;   // start of each texel's sources, and the end
     std::vector<uint32_t> source;  // texels of the view
     std::vector<float> weight;
   };
   Sources sources(Index view) const;
 
-  /// Coefficients that texels first ... end - 1 of a view see: texel x function, of `functions` in all.
+  /// Coefficients seen by texels [first, end) of a view: texel x function, with `functions` columns.
   RowMatrix spread(Index view, size_t first, size_t end, const TensorTexelValues& values, Index functions) const;
 
  private:
   const Relief& relief_;
   bool plane_;
-  std::vector<Vec2> seen_;  // [view][texel]: in texels; none on the plane
+  std::vector<Vec2> seen_;  // [view][texel], in texels; empty on the plane
 };
 
 }  // namespace velour

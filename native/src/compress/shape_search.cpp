@@ -16,19 +16,19 @@
 namespace velour {
 namespace {
 
-constexpr Index kFittedSlices = 1000, kJudgedSlices = 500;  // slices
-constexpr int kShapeIterations = 3;                         // of a fit that a shape is judged by
+constexpr Index kFittedSlices = 1000, kJudgedSlices = 500;
+constexpr int kShapeIterations = 3;  // iterations of the fit by which a shape is judged
 constexpr double kShapeTolerance = 2e-3;
 constexpr size_t kMaxShapeTrials = 36;
 constexpr double kShareStep = 0.12, kLeastShare = 0.12, kMostShare = 0.96;
-// Of ReliefGap: texels are solved for on the images, which mends the rest. By trial: weave 0.26, corduroy 0.25, gravel
-// 0.30.
+// Remaining fraction of ReliefGap::share(): texels are solved for on the images, which repairs the rest. By experiment:
+// weave 0.26, corduroy 0.25, gravel 0.30.
 constexpr double kLeftOfRelief = 0.27;
-constexpr uint32_t kStarts[] = {1, 2, 8};  // clusters
+constexpr uint32_t kStarts[] = {1, 2, 8};  // numbers of clusters
 constexpr uint32_t kUsualMembers = 2;
-constexpr double kUsualShare = 0.6;  // of texels
+constexpr double kUsualShare = 0.6;  // the texels' share of the bytes
 constexpr double kWorthClusters = 0.99;
-constexpr double kMostOff = 0.08, kOff = 2;  // of an error; the second over the coefficients of a texel
+constexpr double kMostOff = 0.08, kOff = 2;  // relative error of estimates; kOff over the coefficients per texel
 
 class ShapeSearch {
  public:
@@ -69,14 +69,14 @@ class ShapeSearch {
     return {choice, *largest_shape(choice, options_.extent, options_.bytes), error(choice)};
   }
 
-  /// To the best that is found in so many trials.
+  /// Walks to the best choice found within a number of trials.
   ShapeChoice walk(ShapeChoice best) {
     const size_t most = found_.trials.size() + kMaxShapeTrials / std::size(kStarts);
     double least = error(best);
     for (bool better = true; better;) {
       better = false;
       for (const ShapeChoice& next : neighbours(best)) {
-        if (best.clusters == 1 && next.clusters > 1) continue;  // more of them have a walk of their own
+        if (best.clusters == 1 && next.clusters > 1) continue;  // larger numbers have their own walks
         if (found_.trials.size() >= most) return best;
         if (!(error(next) < least)) continue;
         best = next;
@@ -92,7 +92,7 @@ class ShapeSearch {
                                               " bytes; ask for more bytes, or for fewer clusters and members.");
   }
 
-  /// Of so many clusters, or of fewer where these are not within the bytes; of `share` or else of another one.
+  /// A choice of `clusters` clusters, or fewer if those exceed the bytes, with `share` or else another share.
   std::optional<ShapeChoice> start_of(uint32_t clusters, double share) const {
     const ShapeRange& range = options_.range;
     for (;; clusters = std::max(clusters / 2, range.least_clusters)) {
@@ -131,7 +131,7 @@ class ShapeSearch {
     return next;
   }
 
-  /// The next share in steps of `step` that is another rank of texels, which has limits; out of bounds if none is.
+  /// The next share in steps of `step` that gives another texel rank; out of bounds if there is none.
   double next_share(ShapeChoice of, double step) const {
     const auto rank = [&] {
       const auto shape = largest_shape(of, options_.extent, options_.bytes);
@@ -143,7 +143,7 @@ class ShapeSearch {
     return of.texel_share;
   }
 
-  /// Of a choice, tried once; more than all where it is not within the bytes.
+  /// Error of a choice, which is tried once; larger than any other if it exceeds the bytes.
   double error(const ShapeChoice& choice) {
     const auto key = std::tuple(choice.clusters, choice.members, choice.colors, std::lround(100 * choice.texel_share));
     const auto known = errors_.find(key);
@@ -180,7 +180,7 @@ class ShapeSearch {
     return std::sqrt(of_slices * of_slices + found_.relief_error);
   }
 
-  /// Of the fitted slices, for a start of clusters.
+  /// Coordinates of the fitted slices, from which clusters are initialized.
   const RowMatrix& coordinates_for(const TensorShape& shape, const TensorOptions& options) {
     const Index entries = fitted_.size() / fitted_.extent(0);
     const Index rank = std::min<Index>({2 * Index{shape.rank.texel}, fitted_.extent(0), entries});
@@ -190,7 +190,7 @@ class ShapeSearch {
     return coordinates_;
   }
 
-  /// Of the judged slices.
+  /// Relative error on the judged slices.
   double relative_error(ClusteredTensor& tensor, const TensorOptions& options) const {
     std::vector<RowMatrix> basis;
     for (const TensorCluster& cluster : tensor.cluster) basis.push_back(cluster.basis(options, progress_));
@@ -207,7 +207,7 @@ class ShapeSearch {
   TensorView fitted_, judged_;
   FoundShape found_;
   RowMatrix coordinates_;
-  std::set<uint32_t> started_;  // clusters that a walk began with
+  std::set<uint32_t> started_;  // numbers of clusters from which a walk started
   std::map<std::tuple<uint32_t, uint32_t, uint32_t, long>, double> errors_;
 };
 

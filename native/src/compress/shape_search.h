@@ -1,4 +1,4 @@
-// Which shape of clustered tensors leaves least within a number of bytes.
+// Search for the shape of clustered tensors with the smallest error within a number of bytes.
 #pragma once
 
 #include <optional>
@@ -11,7 +11,7 @@
 
 namespace velour {
 
-/// What may be tried.
+/// Range of the search.
 struct ShapeRange {
   uint32_t least_clusters = 1, most_clusters = 1;
   uint32_t least_members = 1, most_members = 1;
@@ -20,7 +20,7 @@ struct ShapeRange {
 struct ShapeSearchOptions {
   ShapeRange range;
   TensorExtent extent;
-  uint64_t bytes = 0;       // at most
+  uint64_t bytes = 0;       // maximum size
   double relief_share = 0;  // ReliefGap::share()
   uint64_t seed = 0;
   int threads = 0;
@@ -28,36 +28,36 @@ struct ShapeSearchOptions {
 
 struct JudgedShape {
   ShapeChoice choice;
-  TensorShape shape;  // of the bytes
-  double error = 0;   // relative L2 that is expected of the images
+  TensorShape shape;  // the largest one within the bytes
+  double error = 0;   // expected relative L2 error of the images
 };
 
 struct FoundShape {
   JudgedShape best;
-  std::optional<JudgedShape> rival;        // of another number of clusters, about as good: only models of both can tell
-  uint32_t view_rank = 0, light_rank = 0;  // at most: of the extent
-  double relief_error = 0;                 // part of the errors, squared, that is the same for all shapes
-  std::vector<ShapeTrial> trials;          // in their order
+  std::optional<JudgedShape> rival;        // with other clusters and about as good: only fits of both can decide
+  uint32_t view_rank = 0, light_rank = 0;  // maximum ranks, from the extent
+  double relief_error = 0;                 // squared error that all shapes have in common
+  std::vector<ShapeTrial> trials;          // in order
 };
 
-/// Whether a shape of `clusters` that leaves `error` is to be taken in place of one of `others` that leaves `least`.
-/// More clusters have to be better by a hundredth: the texels that shapes are judged by flatter them. (On the net four
-/// clusters were to leave .2879 and one .2881; of the images they left .2883 and .2823.)
+/// Whether a shape of `clusters` clusters with error `error` is preferred to one of `others` clusters with error
+/// `least`. More clusters have to be better by one percent, because the texels by which shapes are judged flatter them.
+/// (On the net, four clusters were expected to leave .2879 and one .2881; on the images they left .2883 and .2823.)
 bool is_better_shape(uint32_t clusters, double error, uint32_t others, double least);
 
-/// Whether `other`, of another number of clusters than `best`, may make the better model. What slices tell is off by up
-/// to 8 %, and by less where texels have many coefficients. (Finished models of the net, of one cluster and of four,
-/// were 6 % apart from what was expected of them in 20 KB, 2 % in 50, and 0.5 % in 780; of the weave in 80 KB two
-/// members were 4 % better than expected and one cluster 1 % worse.)
+/// Whether `other`, with another number of clusters than `best`, may make the better model. Errors estimated from
+/// slices are off by up to 8 %, and by less if texels have many coefficients. (Finished models of the net, with one
+/// cluster and with four, deviated from the estimate by 6 % at 20 KB, 2 % at 50 KB and 0.5 % at 780 KB; on the weave at
+/// 80 KB, two members were 4 % better than estimated and one cluster 1 % worse.)
 bool is_rival(const JudgedShape& other, const JudgedShape& best);
 
-/// Walks from one cluster, and with the share of texels that ended with from two and from eight, to better neighbours -
-/// twice or half the clusters, a member more or fewer, another share of texels, another rank of colours - until none
-/// is. A shape is judged by short fits to some slices, [slice][view] [light][colour], and by what it leaves of others,
-/// which the fit has not seen; few slices are all fitted and judged. To that comes what the relief leaves of the
-/// images, which is the same for all shapes. Where more clusters are hardly better fewer are taken: CTA and K-CTA are
-/// Tucker decompositions then. The rival is the end of fewest clusters that is close. Throws Error(invalid_argument)
-/// when no shape is within the bytes.
+/// Local search from one cluster, and from two and eight clusters with the texel share that the first walk found. A
+/// walk moves to better neighbors (twice or half the clusters, a member more or fewer, another texel share, another
+/// color rank) until there are none. A shape is judged by a short fit to some slices, [slice][view][light][color], and
+/// its residual on others that the fit has not seen; if there are few slices, all are fitted and judged. The residual
+/// of the relief in the images, which all shapes share, is added. If more clusters are hardly better, fewer are taken:
+/// CTA and K-CTA then become Tucker decompositions. The rival is the walk's end with the fewest clusters that is close
+/// to the best. Throws Error(invalid_argument) if no shape is within the bytes.
 FoundShape search_shape(const TensorView& slices, const ShapeSearchOptions& options, Progress& progress);
 
 }  // namespace velour

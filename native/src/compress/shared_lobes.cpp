@@ -8,7 +8,7 @@
 namespace velour {
 namespace {
 
-constexpr size_t kColorPoints = 128, kColorPairs = 500;  // that the weaker colour axes choose by
+constexpr size_t kColorPoints = 128, kColorPairs = 500;  // used by the weaker color axes to choose
 
 }  // namespace
 
@@ -16,7 +16,7 @@ SharedLobes chosen_lobes(const LobeOrder& order, size_t coefficients, uint64_t s
   const LobeCandidates candidates = random_candidates(seed);
   const size_t count = order.share(coefficients)[0];
   std::vector<size_t> chosen(order.candidate[0].begin(), order.candidate[0].begin() + static_cast<ptrdiff_t>(count));
-  std::sort(chosen.begin(), chosen.end());  // those of the tile's frame first
+  std::sort(chosen.begin(), chosen.end());  // lobes in the tile's frame first
   SharedLobes shared;
   for (const size_t i : chosen) {
     shared.lobes.push_back(candidates.lobes[i]);

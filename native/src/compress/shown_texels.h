@@ -1,4 +1,4 @@
-// What the images of a view show of a relief's texels.
+// Visibility of a relief's texels in the images of a view.
 #pragma once
 
 #include <vector>
@@ -11,16 +11,15 @@
 namespace velour {
 
 struct ShownTexel {
-  BilinearTexels at;  // of the image
-  bool shown;         // or hidden by the relief
+  BilinearTexels at;  // in the image
+  bool shown;         // false: hidden by the relief
 };
 
-/// Of the given texels, where the view shows the points of the relief at their centres (shown_at). Without a relief
-/// each is where it is.
+/// Where the view shows the relief points at the centers of the given texels (shown_at); on the plane, at the texels.
 std::vector<ShownTexel> shown_texels(const Relief& relief, const std::vector<uint32_t>& texels, const Vec3& wv,
                                      float aspect, int threads, const Progress& progress);
 
-/// Rows of four texels, [texel][any], blended.
+/// Interpolates rows of four texels, [texel][any].
 inline Eigen::RowVectorXf blended(const RowMatrix& rows, const BilinearTexels& at) {
   if (at.weight[0] == 1.0f) return rows.row(at.index[0]);
   return at.weight[0] * rows.row(at.index[0]) + at.weight[1] * rows.row(at.index[1]) +

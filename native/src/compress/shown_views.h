@@ -1,4 +1,4 @@
-// Which views show the texels of a level, and which ones stand in for those that do not.
+// Visibility of a level's texels in the views, and stand-ins for the views that hide them.
 #pragma once
 
 #include <array>
@@ -9,23 +9,23 @@
 
 namespace velour {
 
-/// Of every direction all of them, the nearest first.
+/// For every direction, the indices of all directions, nearest first.
 std::vector<std::vector<Index>> nearest_first(const std::vector<Vec3>& directions);
 
-/// Views of the points of a relief at the centres of a level's texels. A point that a view hides is taken to look there
-/// as from the nearest view that shows it. Views between two captured ones are interpolated, and one of the two may
-/// hide a point that is seen from between them: what it is there has to be within reason, though no image tells.
+/// Visibility of the relief points at the centers of a level's texels. A point hidden from a view is assumed to look as
+/// from the nearest view that shows it. Views between two captured ones are interpolated, and one of the two may hide a
+/// point that is visible from between them: its value there must be plausible, although no image determines it.
 class ShownViews {
  public:
-  /// What a hidden point weighs in a fit, against 1 of one that is shown.
+  /// Weight of a hidden point in a fit, relative to a visible one.
   static constexpr float kHidden = 0.002f;
 
-  /// Keeps a reference.
+  /// Keeps a reference to `source`.
   ShownViews(const TensorSource& source, size_t level, const Progress& progress);
 
   size_t texels() const { return texels_; }
   Index views() const { return static_cast<Index>(source_.side.view.size()); }
-  /// The view itself where it shows the texel; -1 where none does.
+  /// The view whose values are used: `view` itself if it shows the texel, -1 if no view does.
   Index stand_in(size_t texel, Index view) const {
     return stand_in_[texel * source_.side.view.size() + static_cast<size_t>(view)];
   }
@@ -33,7 +33,7 @@ class ShownViews {
   /// Whether every view shows every texel.
   bool all() const { return all_; }
 
-  /// Of each axis texel x light: what a view shows of the texels, 0 where it hides them.
+  /// Values of the texels in a view, texel x light per axis; 0 where it hides them.
   using Values = std::array<RowMatrix, 3>;
   Values values(Index view, const LevelImages& images, const Progress& progress) const;
 

@@ -8,7 +8,7 @@
 namespace velour {
 namespace {
 
-/// Squares that are left of a side after `count` coefficients.
+/// Residual sum of squares of a side after `count` coefficients.
 double left(const SideDemand& side, size_t count) { return side.energy * side.order.left[count - 1]; }
 
 }  // namespace

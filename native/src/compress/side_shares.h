@@ -1,4 +1,4 @@
-// How the sides of a BTF share its bytes.
+// Distribution of a BTF's bytes over its sides.
 #pragma once
 
 #include "compress/lobe_order.h"
@@ -6,19 +6,19 @@
 
 namespace velour {
 
-/// What a side asks for.
+/// Demand of one side.
 struct SideDemand {
   LobeOrder order;
-  double energy = 0;  // sum of squares of all its companded values: what its share of errors is of
+  double energy = 0;  // sum of squares of all its companded values, the reference of LobeOrder::left
 };
 
-/// Every side has one coefficient; each further one goes where it leaves the least error of the whole.
+/// Every side gets one coefficient; each further one goes to the side where it reduces the total error most.
 class SideShares {
  public:
-  /// `texels`: of all levels of a side.
+  /// `texels`: in all levels of a side.
   SideShares(const std::vector<SideDemand>& sides, uint64_t texels);
 
-  /// By coefficients: relative L2 error that the orders leave, bytes, coefficients of the side that has most.
+  /// By coefficients: relative L2 error that the orders leave, bytes, and coefficients of the largest side.
   const OrderCurve& curve() const { return curve_; }
   /// Coefficients of each side at a point of the curve.
   std::vector<size_t> at(size_t point) const;
@@ -31,7 +31,7 @@ class SideShares {
   OrderCurve curve_;
 };
 
-/// Of a side of SRBFs, as they are stored: a byte a coefficient and a height a texel, scales and lobes.
+/// Stored size of a side of SRBFs: a byte per coefficient and a height for every texel, scales and lobes.
 uint64_t srbf_side_bytes(uint64_t texels, size_t coefficients, size_t lobes);
 
 }  // namespace velour

@@ -15,7 +15,7 @@ void take_side(const std::vector<PolarAngles>& set, bool below, std::vector<uint
   }
 }
 
-/// The rows of the side's lights, texel by texel.
+/// Values of the side's lights as texel x light.
 RowMatrix by_texel(const RowMatrix& plane, const SideDirections& side) {
   RowMatrix values(plane.cols(), static_cast<Eigen::Index>(side.light.size()));
   for (size_t l = 0; l < side.light.size(); ++l) {

@@ -14,20 +14,20 @@ struct SideDirections {
   std::vector<Vec3> view, light;
 };
 
-/// The sides that a complete layout has directions on: reflection from above first.
+/// The sides for which a complete layout has directions; reflection from above comes first.
 std::vector<SideDirections> sides_of(const PairLayout& layout);
 
-/// One level of the images of a view: companded, along the three colour axes.
+/// One level of the images of a view, companded, along the three color axes.
 struct LevelImages {
   uint32_t width, height;
   std::array<RowMatrix, 3> value;  // texel x light
 };
 
-/// Reads a view of a side: all of its levels, or the finest `levels`.
+/// Reads the finest `levels` levels of a view of a side.
 void read_side_view(CompandedViews& views, const TexelGrid& grid, const SideDirections& side, size_t view,
                     size_t levels, std::vector<LevelImages>& images);
 
-/// [image][row][column][channel] at the next level of the pyramid.
+/// Reduces images, [image][row][column][channel], to the next mip level.
 std::vector<float> halved_images(const std::vector<float>& f, uint32_t width, uint32_t height);
 
 }  // namespace velour

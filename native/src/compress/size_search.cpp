@@ -10,11 +10,11 @@ namespace velour {
 namespace {
 
 constexpr size_t kMostFits = 6;
-constexpr double kClose = 0.03;      // of the tolerance, or of the size: a smaller model would not be much smaller
-constexpr double kLeastSlope = 0.1;  // of errors against sizes, in logarithms
-constexpr double kFarthest = 2;      // times the size of a fit that failed, when lines are followed
+constexpr double kClose = 0.03;      // relative to the tolerance or the size: close enough to stop
+constexpr double kLeastSlope = 0.1;  // slope of error over size, in logarithms
+constexpr double kFarthest = 2;      // maximum step of an extrapolation, relative to the size of the fit that failed
 
-/// Keeps logarithms finite where a model is exact.
+/// Keeps logarithms finite for exact models.
 double positive(double error) { return std::max(error, 1e-12); }
 
 std::string text(const char* format, double value) {
@@ -62,7 +62,7 @@ std::optional<SizeSearch::Fit> SizeSearch::smallest_holding() const {
   return found;
 }
 
-/// Of those smaller than what holds: more bytes are not always better.
+/// Considers only fits smaller than the smallest that holds: more bytes are not always better.
 std::optional<SizeSearch::Fit> SizeSearch::largest_failing() const {
   const auto holding = smallest_holding();
   std::optional<Fit> found;
@@ -87,8 +87,8 @@ size_t SizeSearch::between(const Fit& failing, const Fit& holding) const {
   return std::clamp(smallest_within(error), failing.point + 1, holding.point - 1);
 }
 
-/// By the height of the last fit that fails; where two do, also by the line through them, in logarithms: noise and
-/// what no model describes make errors fall slower than expected.
+/// Extrapolates from the height of the largest failing fit and, if two fail, also along the line through them in
+/// logarithms: noise and effects that the model cannot represent make errors fall more slowly than expected.
 size_t SizeSearch::beyond(const Fit& failing) const {
   const size_t by_height = smallest_within(tolerance_ / height(failing.point));
   std::optional<Fit> before;
@@ -115,7 +115,7 @@ size_t SizeSearch::best() const { return best_fit().point; }
 
 bool SizeSearch::met() const { return tolerance_ == 0 || holds(best_fit()); }
 
-/// Measured over expected error: of the nearest fit beyond the first and the last.
+/// Ratio of measured to expected error, interpolated between fits and constant beyond the first and the last.
 double SizeSearch::height(size_t point) const {
   const Fit *before = nullptr, *after = nullptr;
   for (const Fit& fit : fits_) {

@@ -1,4 +1,4 @@
-// Which size of a model has an error that is asked for.
+// Search for the model size that has a requested error.
 #pragma once
 
 #include <optional>
@@ -8,28 +8,28 @@
 
 namespace velour {
 
-/// Looks for the smallest model within a tolerance by few fits. A curve that was known before any fit gives the shape
-/// of errors against size; each fit that was measured gives its height there. Where fits lie on both sides of the
-/// tolerance the height between them is interpolated, in logarithms.
+/// Finds the smallest model within a tolerance with few fits. A curve known in advance gives the shape of error over
+/// size; each measured fit gives its height at that size. Between fits on both sides of the tolerance, the height is
+/// interpolated in logarithms.
 class SizeSearch {
  public:
-  /// `curve`: errors expected; no point beyond `largest` is asked for. `tolerance` 0: the largest alone.
+  /// `curve`: expected errors; points beyond `largest` are never requested. `tolerance` 0: only the largest.
   SizeSearch(const OrderCurve& curve, size_t largest, double tolerance);
 
-  /// The point to fit next; nothing when the search is over.
+  /// The point to fit next; empty when the search is over.
   std::optional<size_t> next() const;
   void add(size_t point, double error);
 
-  /// The point that the search ends with, of those fitted: the smallest within the tolerance, else the closest.
+  /// The result among the points fitted: the smallest within the tolerance, otherwise the one with the smallest error.
   size_t best() const;
   bool met() const;
   /// In the order of the fits.
   std::vector<SizeTrial> trials() const;
 
-  /// The curve at the heights that were measured, with best() as the chosen point: at most `most` of its points, evenly
-  /// spread by logarithm, and all that were fitted.
+  /// The curve scaled to the measured heights, with best() as the chosen point: at most `most` points, evenly spaced by
+  /// logarithm, and all points fitted.
   OrderCurve measured_curve(size_t most) const;
-  /// One sentence: by how much the tolerance is missed, and what would do.
+  /// One sentence: by how much the tolerance is missed, and what would suffice.
   std::string shortfall() const;
 
  private:
@@ -43,7 +43,7 @@ class SizeSearch {
   std::optional<Fit> largest_failing() const;
   std::optional<Fit> smallest_holding() const;
   double expected(size_t point) const { return curve_.points[point].relative_l2; }
-  /// The smallest point that the curve expects to be within `error`, at most largest_.
+  /// The smallest point with an expected error within `error`, at most largest_.
   size_t smallest_within(double error) const;
   size_t beyond(const Fit& failing) const;
   size_t between(const Fit& failing, const Fit& holding) const;

@@ -7,8 +7,8 @@
 namespace velour {
 namespace {
 
-constexpr size_t kCurvePoints = 40;  // stored of a curve
-constexpr double kTrialFit = 0.85;   // of a trial's progress; the rest measures it
+constexpr size_t kCurvePoints = 40;  // stored per curve
+constexpr double kTrialFit = 0.85;   // fraction of a trial's progress; the rest is for measuring
 
 std::string stage_of(size_t point) { return "fit." + std::to_string(point) + ".errors"; }
 
@@ -25,7 +25,7 @@ void keep_errors(FitCheckpoint& checkpoint, size_t point, const BtfErrors& error
   checkpoint.write();
 }
 
-/// The fits of a search, of which the best one's model is held.
+/// Runs the fits of a search and holds the model of the best one.
 class Trials {
  public:
   Trials(BtfFitter& fitter, const ErrorsOf& errors_of, const SizedFitOptions& options, Progress& progress)
@@ -36,14 +36,14 @@ class Trials {
         search_(fitter.curve(), fitter.largest(), options.tolerance) {}
 
   SizedFit run() {
-    // How many trials there will be is not known: each has half of what is left.
+    // The number of trials is unknown: each gets half of the remaining progress.
     for (double begin = 0; const auto point = search_.next();) {
       const double end = options_.tolerance > 0 ? (begin + 1) / 2 : 1;
       const Progress::Span trial(progress_, begin, end);
       try_point(*point);
       begin = end;
     }
-    if (held_ != search_.best()) best_.body = fit(search_.best());  // all of it was kept
+    if (held_ != search_.best()) best_.body = fit(search_.best());  // its errors came from the checkpoint
     best_.order = search_.measured_curve(kCurvePoints);
     best_.trials = search_.trials();
     if (!search_.met()) best_.shortfall = search_.shortfall();

@@ -1,4 +1,4 @@
-// A fit of a BTF at the size that its options ask for.
+// A BTF fit at the requested size.
 #pragma once
 
 #include <functional>
@@ -12,22 +12,22 @@ namespace velour {
 struct SizedFit {
   ModelBody body;
   BtfErrors errors;
-  OrderCurve order;               // measured at the trials' heights; the chosen point is the body's
-  std::vector<SizeTrial> trials;  // of which the last need not be the body
-  std::string shortfall;          // a sentence where a tolerance is not met
-  double seconds = 0;             // of all fits, without measuring
+  OrderCurve order;               // scaled to the measured errors; the chosen point is the body's
+  std::vector<SizeTrial> trials;  // the last one need not be the body
+  std::string shortfall;          // one sentence if the tolerance is not met
+  double seconds = 0;             // time of all fits, without measuring errors
 };
 
-/// Errors of a model against what it was fitted to.
+/// Computes the errors of a model against the data to which it was fitted.
 using ErrorsOf = std::function<BtfErrors(const ModelBody&, Progress&)>;
 
-/// What is asked of the size, and where finished fits are kept.
+/// Requested tolerance, and where the errors of finished fits are stored.
 struct SizedFitOptions {
   double tolerance = 0;
   FitCheckpoint& checkpoint;
 };
 
-/// Without a tolerance the largest model; with one the smallest that is within it (size_search.h).
+/// Fits the largest model without a tolerance, otherwise the smallest one within it (size_search.h).
 SizedFit fit_at_size(BtfFitter& fitter, const ErrorsOf& errors_of, const SizedFitOptions& options, Progress& progress);
 
 }  // namespace velour

@@ -14,15 +14,15 @@
 namespace velour {
 namespace {
 
-constexpr uint32_t kMaxLobePoints = 400, kMinLobePoints = 24, kPairs = 900;  // that lobes are refined by
-constexpr uint64_t kTexelsOfAPoint = 4;  // few texels have little to say: their lobes take less time
+constexpr uint32_t kMaxLobePoints = 400, kMinLobePoints = 24, kPairs = 900;  // for refining lobes
+constexpr uint64_t kTexelsOfAPoint = 4;  // small BTFs need fewer points, which saves time
 constexpr int kRefinements = 100;
 constexpr uint64_t kDefaultSrbfRatio = 400, kDefaultMinLobes = 16;
 constexpr size_t kMostCoefficients = 2 * SrbfBtf::kMaxLobes;
-// Errors over all texels and pairs are larger than those that the points' order leaves: 1.3 to 1.9 times of captured
+// Errors over all texels and pairs exceed those of the order at the points: by a factor of 1.3 to 1.9 for captured
 // weaves and gravels. Fits correct this guess.
 constexpr double kHeight = 1.4;
-// The curve goes on to models of twice the size, or to a third of the error that is looked for.
+// The curve extends to models of twice the size, or to a third of the requested error.
 constexpr size_t kBeyond = 2;
 constexpr double kBelow = 0.3;
 constexpr double kSrbfColors = 0.2, kPoints = 0.1, kLobes = 0.45;  // where parts of the progress end
@@ -36,19 +36,19 @@ uint64_t usual_bytes(const BtfMeasurement& measurement, size_t sides) {
   return std::max(measurement.raw_bytes() / kDefaultSrbfRatio, sides * least);
 }
 
-/// Of one side that has all bytes, at most.
+/// Upper bound on coefficients if one side gets the whole budget.
 size_t most_coefficients(uint64_t bytes, uint64_t texels) {
   const uint64_t one = srbf_side_bytes(texels, 1, 0) - srbf_side_bytes(texels, 0, 0);
   return static_cast<size_t>(std::clamp<uint64_t>(bytes / one, 1, kMostCoefficients));
 }
 
-/// That are looked at.
+/// Maximum number of coefficients to consider.
 size_t most_coefficients(const BtfMeasurement& measurement, const BtfFitOptions& options, uint64_t bytes) {
   if (options.bytes == 0 && options.tolerance > 0) return kMostCoefficients;
   return std::min(kBeyond * most_coefficients(bytes, pyramid_texels(measurement.grid())), kMostCoefficients);
 }
 
-/// `side`: one of so many.
+/// `side`: one of `sides` sides.
 FitExtent extent_of(const BtfMeasurement& measurement, const BtfFitOptions& options, const SideDirections& side,
                     size_t sides, size_t most) {
   const PairLayout& layout = measurement.layout();
@@ -133,7 +133,7 @@ void SrbfFitter::find_orders(uint64_t bytes) {
   }
 }
 
-/// Fewer than usual make another model, and say so.
+/// Warns if memory allows fewer points than usual, because that changes the model.
 uint32_t SrbfFitter::search_points(size_t most) {
   const uint32_t usual = LobeOrderOptions().points;
   if (options_.memory == 0) return usual;
@@ -148,7 +148,7 @@ uint32_t SrbfFitter::search_points(size_t most) {
   return points;
 }
 
-/// Read when they are asked for first.
+/// Reads the points on first use.
 const std::vector<SurfacePoint>& SrbfFitter::points_of(size_t number) {
   Side& side = sides_[number];
   if (!side.points.empty()) return side.points;

@@ -1,4 +1,4 @@
-// A BTF fitted by sums of multivariate SRBFs over a relief.
+// Fit of a BTF by sums of multivariate SRBFs over a relief.
 #pragma once
 
 #include "btf/relief.h"
@@ -12,16 +12,16 @@
 
 namespace velour {
 
-/// Of all sides of the layout: which ones are dark or alike is found by reading them.
+/// Requirements for all sides of the layout: dark or equal sides are found only by reading them.
 FitSize srbf_fit_size(const BtfMeasurement& measurement, const BtfFitOptions& options);
 
-/// Lobes that all texels share are chosen and refined by what random points of the surface show, then the texels of
-/// every level are solved for, each level from the coarser one. The sides of the surface share the bytes by need; light
-/// that goes through has sides of its own where anything comes through.
+/// Chooses and refines lobes that all texels share by the values of random surface points, then solves for the texels
+/// of every level, each starting from the coarser one. The sides of the surface share the bytes by need; transmission
+/// has sides of its own if there is any.
 class SrbfFitter final : public BtfFitter {
  public:
-  /// Both must outlive this. What the checkpoint has kept is not done again. Throws Error(invalid_argument) when the
-  /// bytes hold not one coefficient, Error(unsupported) for a layout that is not complete and for too little memory.
+  /// The arguments must outlive the fitter. Stages in the checkpoint are reused. Throws Error(invalid_argument) if the
+  /// bytes do not hold a single coefficient, Error(unsupported) for an incomplete layout or too little memory.
   SrbfFitter(const BtfMeasurement& measurement, const BtfFitOptions& options, FitCheckpoint& checkpoint,
              Progress& progress);
 
@@ -31,7 +31,7 @@ class SrbfFitter final : public BtfFitter {
   struct Side {
     SideDirections directions;
     std::vector<Relief> relief;
-    std::vector<SurfacePoint> points;  // none while all that is made of them was kept
+    std::vector<SurfacePoint> points;  // empty while all that is derived from them comes from the checkpoint
   };
   void find_sides(const ColourAxes& colours);
   void find_orders(uint64_t bytes);
@@ -46,7 +46,7 @@ class SrbfFitter final : public BtfFitter {
   CompandedViews views_;
   Mat3 axes_{1.0f};
   std::vector<Side> sides_;
-  std::vector<SideDemand> demand_;  // of each side
+  std::vector<SideDemand> demand_;  // per side
   std::vector<SharedSide> shared_;
   std::optional<SideShares> shares_;
 };

@@ -16,7 +16,7 @@ float interpolated_height(const Relief& relief, const BilinearTexels& texels) {
   return height;
 }
 
-/// Points on their way through the views.
+/// Collects the values of points view by view.
 class PointSampler {
  public:
   PointSampler(const TexelGrid& grid, const SideDirections& side, const Relief& relief,

@@ -11,8 +11,8 @@ namespace velour {
 namespace {
 
 constexpr int kPowerIterations = 2;
-constexpr int kOversampling = 8;     // columns beyond those asked for
-constexpr uint64_t kFirstLook = 32;  // components that are looked at first where an error is asked for
+constexpr int kOversampling = 8;     // columns beyond the requested ones
+constexpr uint64_t kFirstLook = 32;  // components to start with if a tolerance is given
 
 /// Turns the response into orthonormal functions of the pair, the strongest first.
 void rotate(RowMatrix& response, Eigen::VectorXd& energy) {
@@ -36,7 +36,7 @@ SvdFitter::SvdFitter(const BtfMeasurement& measurement, const BtfFitOptions& opt
   find_axes();
   const uint64_t most = most_components();
   uint64_t count = options.tolerance > 0 ? std::min(most, kFirstLook) : most;
-  // Half of what is left of the progress for each look.
+  // Each sketch gets half of the remaining progress.
   for (double begin = 0.1;; begin = (begin + 1) / 2, count = std::min(most, 2 * count)) {
     sketch(count, begin, count == most ? 1.0 : (begin + 1) / 2);
     if (count == most || reaches(options.tolerance)) break;
@@ -44,14 +44,14 @@ SvdFitter::SvdFitter(const BtfMeasurement& measurement, const BtfFitOptions& opt
   bound(bytes(), "One component");
 }
 
-/// Of so many components at least.
+/// Finds at least `components` components.
 void SvdFitter::sketch(uint64_t components, double begin, double end) {
   const auto columns = static_cast<Eigen::Index>(
       std::min({components + kOversampling, measurement_.layout().pairs(), measurement_.grid().texels()}));
   const auto name = [&](int passes) {
     return "sketch." + std::to_string(columns) + "." + std::to_string(passes) + ".";
   };
-  int done = kPowerIterations;  // passes onward whose bases were kept
+  int done = kPowerIterations;  // passes whose bases were restored
   while (done > 0 && !take_kept_bases(name(done), columns)) --done;
   for (size_t a = 0; a < 3; ++a) {
     if (done == 0) start(sketch_[a], columns, a);
@@ -75,7 +75,7 @@ void SvdFitter::start(Sketch& sketch, Eigen::Index columns, size_t axis) const {
   sketch.basis.resize(texels, columns);
   for (Eigen::Index t = 0; t < texels; ++t) {
     RandomStream random(options_.seed, static_cast<uint64_t>(t), axis);
-    // Sums of three uniform numbers are close enough to normal ones.
+    // The sum of three uniform numbers is close enough to normal.
     for (Eigen::Index c = 0; c < columns; ++c) {
       const float u = random.next(), v = random.next();
       sketch.basis(t, c) = u + v + random.next() - 1.5f;
@@ -94,7 +94,7 @@ bool SvdFitter::take_kept_bases(const std::string& stage, Eigen::Index columns) 
   return true;
 }
 
-/// The response of every view to the basis; when `onward`, also the image of it, which becomes the next basis.
+/// Computes the response of every view to the basis; if `onward`, also its image, which becomes the next basis.
 void SvdFitter::pass(bool onward) {
   for (Sketch& s : sketch_) s.image.setZero(s.basis.rows(), onward ? s.basis.cols() : 0);
   for (uint32_t v = 0; v < views_.views(); ++v) {

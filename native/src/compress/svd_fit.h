@@ -1,4 +1,4 @@
-// A BTF's truncated singular value decomposition.
+// Truncated singular value decomposition of a BTF.
 #pragma once
 
 #include <array>
@@ -7,22 +7,22 @@
 
 namespace velour {
 
-/// One matrix of direction pairs times texels a decorrelated colour axis, found at random with power iterations [HMT11]
-/// and cut to its strongest components; those of all axes compete for the bytes.
+/// One matrix of direction pairs times texels per decorrelated color axis, decomposed by randomized power iterations
+/// [HMT11] and truncated to its strongest components; those of all axes compete for the bytes.
 class SvdFitter final : public FactoredFitter {
  public:
-  /// Both must outlive this. What the checkpoint has kept is not done again. Throws Error(invalid_argument) when the
-  /// bytes hold not one component, Error(unsupported) for a layout that is not complete and for too little memory.
+  /// The arguments must outlive the fitter. Stages in the checkpoint are reused. Throws Error(invalid_argument) if the
+  /// bytes do not hold a single component, Error(unsupported) for an incomplete layout or too little memory.
   SvdFitter(const BtfMeasurement& measurement, const BtfFitOptions& options, FitCheckpoint& checkpoint,
             Progress& progress);
 
  private:
-  /// One colour axis on its way to its components.
+  /// State of the decomposition of one color axis.
   struct Sketch {
     RowMatrix basis;         // texel x column, orthonormal
     RowMatrix response;      // pair x column: the matrix times the basis
     RowMatrix image;         // texel x column: the transposed matrix times the response
-    Eigen::VectorXd energy;  // of each component, falling
+    Eigen::VectorXd energy;  // per component, descending
   };
 
   void copy_function(const Component& component, Eigen::Ref<Eigen::VectorXf> values) const override;

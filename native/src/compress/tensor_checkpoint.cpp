@@ -16,7 +16,7 @@ void append(const TensorShape& shape, std::vector<double>& numbers) {
   }
 }
 
-/// Of one that could be stored; clusters of 0 otherwise.
+/// A shape that can be stored, otherwise one of 0 clusters.
 TensorShape shape_at(const double* numbers) {
   uint32_t whole[6];
   for (size_t i = 0; i < 6; ++i) {
@@ -31,7 +31,7 @@ void append(const JudgedShape& judged, std::vector<double>& numbers) {
   numbers.insert(numbers.end(), {judged.choice.texel_share, judged.error});
 }
 
-/// Clusters of 0 where there is none.
+/// A shape of 0 clusters if there is none.
 JudgedShape judged_at(const double* numbers) {
   const TensorShape shape = shape_at(numbers);
   return {{shape.clusters, shape.members, shape.rank.color, numbers[6]}, shape, numbers[7]};
@@ -117,7 +117,7 @@ void keep_clusters(FitCheckpoint& checkpoint, const std::string& stage, const Te
   checkpoint.write();
 }
 
-/// Members and values, as one matrix: [texel][members, values].
+/// Members and values are stored as one matrix: [texel][members, values].
 std::optional<SolvedLevel> kept_level(const FitCheckpoint& checkpoint, const std::string& stage, const Relief& relief,
                                       const TensorSide& side) {
   const Index members = side.members, values = members * side.rank.texel;

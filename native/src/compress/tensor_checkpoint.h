@@ -1,4 +1,4 @@
-// Shapes, clusters and texels of tensors in a fit's checkpoint, checked as they are read.
+// Shapes, clusters and texels of tensors in a fit's checkpoint, validated when read.
 #pragma once
 
 #include "btf/tensor_btf.h"
@@ -12,12 +12,12 @@ namespace velour {
 std::optional<FoundShape> kept_shape(const FitCheckpoint& checkpoint, const std::string& stage);
 void keep_shape(FitCheckpoint& checkpoint, const std::string& stage, const FoundShape& found);
 
-/// Puts what was kept into the clusters of `side`, whose number and ranks are set; false where not all were.
+/// Restores the clusters of `side`, whose number and ranks are set; returns false if any is missing.
 bool take_kept_clusters(const FitCheckpoint& checkpoint, const std::string& stage, const SideDirections& directions,
                         TensorSide& side);
 void keep_clusters(FitCheckpoint& checkpoint, const std::string& stage, const TensorSide& side);
 
-/// Texels of a level, solved for, and TensorTexels::measured().
+/// Solved texels of a level, and TensorTexels::measured().
 struct SolvedLevel {
   TensorTexelValues values;
   double measured;

@@ -15,15 +15,15 @@
 namespace velour {
 namespace {
 
-constexpr Index kDirections = 64;                              // of views, of lights: what clusters are sought in
-constexpr size_t kMinBasisPoints = 64, kMaxBasisPoints = 700;  // that bases are found by
+constexpr Index kDirections = 64;                              // maximum ranks of the bases of views and lights
+constexpr size_t kMinBasisPoints = 64, kMaxBasisPoints = 700;  // for computing bases
 constexpr int kTensorIterations = 30;
 constexpr double kTensorTolerance = 1e-4;
 constexpr uint64_t kDefaultTensorRatio = 400, kUsualTexel = 16, kUsualCluster = 20000;
-constexpr double kFinest = 20;    // of the measurement: the largest model that a tolerance is looked for with
-constexpr double kStep = 1.2;     // from a size to the next
-constexpr double kFall = 0.3;     // errors fall as the bytes to this power, about
-constexpr double kShare = 0.625;  // sides share the bytes by this power of their energies: then 2 kFall is best
+constexpr double kFinest = 20;    // with a tolerance: size of the measurement over that of the largest model
+constexpr double kStep = 1.2;     // ratio of one size to the next
+constexpr double kFall = 0.3;     // errors fall roughly as the bytes to this power
+constexpr double kShare = 0.625;  // sides share the bytes by this power of their energies; 1 / (1 + 2 kFall) is optimal
 constexpr double kTensorColors = 0.15, kBases = 0.1, kReduced = 0.25, kShapes = 0.6, kFitted = 0.9,
                  kClusters = 0.5;  // where parts of the progress end
 
@@ -34,7 +34,7 @@ FitExtent extent_of(const BtfMeasurement& measurement) {
           .lights = measurement.layout().lights().size()};
 }
 
-/// Of a slice that clusters are sought in.
+/// Entries of a slice to be clustered.
 uint64_t entries_of(const PairLayout& layout) {
   const auto rank = [](size_t directions) { return std::min<uint64_t>(directions, kDirections); };
   return rank(layout.views().size()) * rank(layout.lights().size()) * 3;
@@ -127,7 +127,7 @@ TensorExtent TensorFitter::extent(size_t side) const {
   return extent;
 }
 
-/// The least that a side takes, and of the rest its share.
+/// The minimum of a side, and its share of the remaining bytes.
 uint64_t TensorFitter::side_bytes(size_t side, uint64_t bytes) const {
   double all = 0;
   uint64_t least = 0;
@@ -140,7 +140,7 @@ uint64_t TensorFitter::side_bytes(size_t side, uint64_t bytes) const {
   return tensor_bytes({}, extent(side)) + static_cast<uint64_t>(share * rest);
 }
 
-/// What clusters are sought in.
+/// Computes the bases and the texels to be clustered.
 void TensorFitter::reduce(size_t side) {
   Side& of = sides_[side];
   if (of.reduced) return;
@@ -169,7 +169,7 @@ void TensorFitter::find_shape(size_t side, uint64_t bytes, const ShapeRange& ran
   keep_shape(checkpoint_, side_stage(side) + ".shape", of.found);
 }
 
-/// The images decide which of two shapes is the side's.
+/// Decides between two shapes by their errors on the images.
 void TensorFitter::settle_rival(size_t side) {
   Side& of = sides_[side];
   if (!of.found.rival) return;
@@ -194,7 +194,7 @@ void TensorFitter::settle_rival(size_t side) {
   if (options_.tolerance == 0) of.reduced.reset();
 }
 
-/// Of a model with no other side.
+/// Error of a model with this side alone.
 double TensorFitter::error_of(const TensorSide& side) {
   const ModelBody alone = TensorBtf{measurement_.layout(), measurement_.grid(), options_.companding, axes_, {side}, {}};
   progress_.stage("errors", kFitted, 1);
@@ -202,7 +202,7 @@ double TensorFitter::error_of(const TensorSide& side) {
       .relative_l2;
 }
 
-/// Of other sizes the found shape, with twice the clusters for four times the bytes.
+/// For smaller sizes, the shape found with half the clusters per fourth of the bytes, unless their number is given.
 std::optional<TensorShape> TensorFitter::shape_of(size_t side, uint64_t bytes) const {
   const Side& of = sides_[side];
   if (bytes == of.found_bytes) return of.found.best.shape;
@@ -213,7 +213,7 @@ std::optional<TensorShape> TensorFitter::shape_of(size_t side, uint64_t bytes) c
   return largest_shape(choice, extent(side), bytes);
 }
 
-/// One size where none is looked for; otherwise a ladder of them.
+/// A single size without a tolerance, otherwise a ladder of sizes.
 void TensorFitter::set_curve(uint64_t bytes) {
   double left = 0, relief = 0, all = 0;
   for (const Side& of : sides_) {

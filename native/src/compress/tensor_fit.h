@@ -1,4 +1,4 @@
-// A BTF fitted by clustered tensors.
+// Fit of a BTF by clustered tensors.
 #pragma once
 
 #include "compress/btf_fitter.h"
@@ -11,17 +11,17 @@
 
 namespace velour {
 
-/// Of all sides of the layout: which ones are dark or alike is found by reading them.
+/// Requirements for all sides of the layout: dark or equal sides are found only by reading them.
 FitSize tensor_fit_size(const BtfMeasurement& measurement, const BtfFitOptions& options);
 
-/// Tucker, CTA and K-CTA, by the clusters and members that they may have. What some texels show, in bases of the views
-/// and lights, is clustered (tensor/cluster_fit.h); how many clusters of which ranks are worth their bytes is tried
-/// first; where that leaves two shapes close to each other, models of both are. Clusters are stored as half floats, and
-/// the texels of every level are then solved for by what was stored.
+/// Tucker, CTA and K-CTA, depending on the clusters and members allowed. Some texels, in bases of the views and lights,
+/// are clustered (tensor/cluster_fit.h). The number of clusters and the ranks that are worth their bytes are searched
+/// for first; if two shapes are close, both models are fitted. Clusters are stored as half floats, and the texels of
+/// every level are then solved for with the stored clusters.
 class TensorFitter final : public BtfFitter {
  public:
-  /// Both must outlive this. What the checkpoint has kept is not done again. Throws Error(invalid_argument) when the
-  /// bytes hold no model, Error(unsupported) for a layout that is not complete and for too little memory.
+  /// The arguments must outlive the fitter. Stages in the checkpoint are reused. Throws Error(invalid_argument) if the
+  /// bytes do not hold a model, Error(unsupported) for an incomplete layout or too little memory.
   TensorFitter(const BtfMeasurement& measurement, const BtfFitOptions& options, const ShapeRange& range,
                FitCheckpoint& checkpoint, Progress& progress);
 
@@ -33,10 +33,10 @@ class TensorFitter final : public BtfFitter {
     double energy;
     std::vector<Relief> relief;
     FoundShape found;
-    uint64_t found_bytes = 0;  // that it was sought for
+    uint64_t found_bytes = 0;  // budget of the search
     std::optional<DirectionBases> bases;
-    std::optional<ReducedTexels> reduced;  // both only while something is fitted to them
-    std::optional<TensorSide> fitted;      // of the best shape, where it had a rival
+    std::optional<ReducedTexels> reduced;  // like `bases`, held only while something is fitted to it
+    std::optional<TensorSide> fitted;      // with the best shape, if it had a rival
   };
   TensorSource source(size_t side) const;
   TensorExtent extent(size_t side) const;
@@ -60,7 +60,7 @@ class TensorFitter final : public BtfFitter {
   Mat3 axes_{1.0f};
   std::vector<Side> sides_;
   std::vector<SharedSide> shared_;
-  std::vector<uint64_t> bytes_;  // of each point of the curve
+  std::vector<uint64_t> bytes_;  // budget per point of the curve
 };
 
 }  // namespace velour

@@ -1,4 +1,4 @@
-// The functions of the directions that a model of clustered tensors is made of.
+// The directional functions of a model of clustered tensors.
 #pragma once
 
 #include <array>
@@ -9,29 +9,29 @@
 
 namespace velour {
 
-/// What was found in bases of the views and lights, as it is stored.
+/// Converts clusters found in bases of the views and lights to their stored form.
 std::vector<TensorBtfCluster> stored_clusters(const ClusteredTensor& tensor, const DirectionBases& bases);
 
-/// The part of a cluster that depends on directions and colours, as floats.
+/// The part of a cluster that depends on directions and colors, as floats.
 struct DirectionCluster {
   RowMatrix view, light, color;  // direction or axis x rank
-  RowMatrix core;                // [rank of the texels, of the views] x [of the lights, of the colours]
+  RowMatrix core;                // [texel rank, view rank] x [light rank, color rank]
 
   Index rank() const { return core.rows() / view.cols(); }
 };
 
-/// As they are stored.
+/// Conversion from and to the stored form.
 std::vector<DirectionCluster> direction_clusters(const TensorSide& side);
 void store(const DirectionCluster& cluster, TensorBtfCluster& to);
 
-/// Functions [cluster, rank][light] of each colour axis, for a view.
+/// Functions of a view, [cluster, rank][light] per color axis.
 using FunctionsOfView = std::array<RowMatrix, 3>;
 FunctionsOfView functions_of_view(const std::vector<DirectionCluster>& clusters, Index view);
 
-/// basis_{c,r}(v, l, a) of btf/tensor_btf.h by what is stored, and their products.
+/// basis_{c,r}(v, l, a) of btf/tensor_btf.h for the stored clusters, and their products.
 class TensorFunctions {
  public:
-  /// Of `side`, whose clusters are set.
+  /// The clusters of `side` must be set.
   TensorFunctions(const TensorSide& side, int threads, const Progress& progress);
 
   Index clusters() const { return static_cast<Index>(cluster_.size()); }
@@ -40,14 +40,14 @@ class TensorFunctions {
   Index views() const { return static_cast<Index>(products_.size()); }
 
   FunctionsOfView of_view(Index view) const { return functions_of_view(cluster_, view); }
-  /// Any two functions over the lights and axes of a view: [cluster, rank][cluster, rank].
+  /// Products of any two functions over the lights and axes of a view: [cluster, rank][cluster, rank].
   const RowMatrix& products(Index view) const { return products_[static_cast<size_t>(view)]; }
-  /// Over all views.
+  /// Sum over all views.
   const RowMatrix& products() const { return all_; }
-  /// The same with each light weighed.
+  /// products() of a view with a weight for each light.
   RowMatrix weighed_products(Index view, const Eigen::VectorXf& weight) const;
 
-  /// Rows and columns of some clusters, with a ridge on the diagonal.
+  /// Rows and columns of the given clusters, with a ridge on the diagonal.
   static Eigen::MatrixXf of_members(const RowMatrix& products, Index rank, const std::vector<uint32_t>& members,
                                     float ridge);
 

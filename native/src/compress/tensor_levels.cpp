@@ -14,11 +14,11 @@
 namespace velour {
 namespace {
 
-constexpr double kTensorReading = 0.4, kMoments = 0.7;  // of a stage's progress
+constexpr double kTensorReading = 0.4, kMoments = 0.7;  // fractions of a stage's progress
 constexpr double kFirst = 0.35, kRefitted = 0.5, kSecond = 0.85;
 constexpr int kRounds = 2;
 
-/// What bytes stand for.
+/// The values that the bytes of a level represent.
 TensorTexelValues stored_values(const TensorSide& side, const TensorLevel& level) {
   const size_t rank = side.rank.texel;
   TensorTexelValues values{
@@ -30,7 +30,7 @@ TensorTexelValues stored_values(const TensorSide& side, const TensorLevel& level
   return values;
 }
 
-/// A side's levels on their way.
+/// Fits the levels of a side.
 class LevelFit {
  public:
   LevelFit(CompandedViews& views, const TensorSource& source, Companding companding, FitCheckpoint& checkpoint,
@@ -48,14 +48,14 @@ class LevelFit {
     }
   }
 
-  /// Texels of every level, for the clusters as they are, under `stage`.
+  /// Solves for the texels of every level with the current clusters; checkpoints under `stage`.
   void solve(const TensorFunctions& functions, const std::string& stage);
-  /// Scaled so that the levels are as bright as their images.
+  /// Scales the levels to the brightness of their images.
   void brighten(const TensorFunctions& functions);
   void round(const TensorFunctions& functions);
-  /// The clusters, for the texels as they are.
+  /// Refits the clusters to the current texels.
   void refit();
-  /// The finest level of what is stored as bright as its images.
+  /// Scales the cores so that the stored finest level is as bright as its images.
   void mend_brightness();
 
  private:
@@ -73,8 +73,8 @@ class LevelFit {
   std::vector<SeenTexels> seen_;
   std::vector<ShownViews> shown_;
   std::vector<TensorTexelValues> values_;
-  std::vector<double> measured_;  // of each level
-  std::vector<float> bright_;     // of each level
+  std::vector<double> measured_;  // per level
+  std::vector<float> bright_;     // per level
 };
 
 void LevelFit::solve(const TensorFunctions& functions, const std::string& stage) {
@@ -99,7 +99,7 @@ void LevelFit::solve(const TensorFunctions& functions, const std::string& stage)
   }
 }
 
-/// Of the levels that were not kept, all images.
+/// Reads all images of the levels that were not restored.
 LevelFit::Solvers LevelFit::read_images(const TensorFunctions& functions, const std::vector<bool>& kept) {
   Solvers solver(kept.size());
   size_t most = 0;
@@ -124,7 +124,7 @@ LevelFit::Solvers LevelFit::read_images(const TensorFunctions& functions, const 
 }
 
 TensorTexelValues LevelFit::solved(const TensorTexels& solver, size_t level) {
-  // A level costs four times the one after it: the finest takes three quarters of the time.
+  // A level costs four times the next coarser one: the finest takes three quarters of the time.
   const double from = kTensorReading + (1 - kTensorReading) * std::pow(0.25, static_cast<double>(level + 1));
   const double to = kTensorReading + (1 - kTensorReading) * std::pow(0.25, static_cast<double>(level));
   return solver.solve(side_.members, [&](double part) { progress_.update(from + (to - from) * part); });

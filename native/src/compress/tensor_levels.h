@@ -1,4 +1,4 @@
-// The texels of a side of clustered tensors, on all levels.
+// Solves for the texels of a side of clustered tensors on all levels.
 #pragma once
 
 #include "btf/tensor_btf.h"
@@ -7,9 +7,9 @@
 
 namespace velour {
 
-/// Sets the levels and scales of `side`, whose clusters are set: each level is solved for on its own, made as bright as
-/// its images and rounded. Reads every view once, unless the checkpoint has kept all levels under `stage`. Progress
-/// covers the stage.
+/// Sets the levels and scales of `side`, whose clusters are set, and refits its clusters: each level is solved for on
+/// its own, scaled to the brightness of its images and rounded. Reads every view up to four times; steps in the
+/// checkpoint under `stage` are reused. Progress covers the stage.
 void solve_tensor_levels(CompandedViews& views, const TensorSource& source, Companding companding,
                          FitCheckpoint& checkpoint, const std::string& stage, Progress& progress, TensorSide& side);
 

@@ -9,7 +9,7 @@
 namespace velour {
 namespace {
 
-/// rounding_moves() of sets of members, each found once.
+/// rounding_moves() of sets of members, each computed once.
 class MemberMoves {
  public:
   explicit MemberMoves(const TensorFunctions& functions) : functions_(functions) {}
@@ -54,7 +54,7 @@ void set_scales(const std::vector<TensorTexelValues>& levels, TensorSide& side) 
   }
 }
 
-/// A texel's coefficients, one after the other.
+/// Rounds a texel's coefficients one after the other.
 void round_texel(const TensorSide& side, const uint32_t* member, const Eigen::MatrixXf& moves, float* value,
                  std::vector<uint8_t>& bytes) {
   const size_t rank = side.rank.texel, count = side.members * rank;

@@ -6,13 +6,13 @@
 namespace velour {
 namespace {
 
-constexpr double kViewsOfLights = 0.85;  // shadows have sharper edges than masking: ranks of views over those of lights
+constexpr double kViewsOfLights = 0.85;  // ratio of view to light ranks: shadows have sharper edges than masking
 
 uint64_t texel_bytes(const TensorShape& shape, const TensorExtent& extent) {
   return uint64_t{shape.members} * (1 + shape.rank.texel) + (extent.relief ? sizeof(HalfBits) : 0);
 }
 
-/// Of all clusters.
+/// Bytes of all clusters.
 uint64_t cluster_bytes(const TensorShape& shape, const TensorExtent& extent) {
   const TensorSide::Ranks& r = shape.rank;
   const uint64_t core = uint64_t{r.texel} * r.view * r.light * r.color;
@@ -20,7 +20,7 @@ uint64_t cluster_bytes(const TensorShape& shape, const TensorExtent& extent) {
   return shape.clusters * ((core + factors) * sizeof(HalfBits) + r.texel * sizeof(ByteScale));
 }
 
-/// With `lights` as the rank of the lights.
+/// Sets the light rank to `lights`, and the view and texel ranks to match.
 TensorShape with_lights(TensorShape shape, uint32_t lights, const TensorExtent& extent) {
   const auto views = static_cast<uint32_t>(std::lround(kViewsOfLights * lights));
   shape.rank.light = std::min(lights, extent.light_rank);

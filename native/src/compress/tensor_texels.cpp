@@ -12,11 +12,11 @@
 namespace velour {
 namespace {
 
-constexpr float kMemberRidge = 1e-3f;        // of coefficients; functions are of length 1 where all views show them
-constexpr int kMaxSteps = 12;                // of the conjugate gradients
-constexpr double kMembersConverged = 1e-10;  // of the rest's square
+constexpr float kMemberRidge = 1e-3f;        // on coefficients; functions have length 1 if all views show them
+constexpr int kMaxSteps = 12;                // maximum number of conjugate-gradient iterations
+constexpr double kMembersConverged = 1e-10;  // relative to the initial squared residual
 
-/// Inverses of what the members of a texel are to each other, over all views: one for each set of members.
+/// Inverses of the products of a texel's members over all views, one for each set of members.
 class MemberInverses {
  public:
   MemberInverses(const TensorFunctions& functions, const TensorTexelValues& values, size_t texels) {
@@ -55,7 +55,7 @@ double dot(const RowMatrix& a, const RowMatrix& b) {
 
 }  // namespace
 
-/// Products of functions over the views, as one texel is shown or hidden.
+/// Products of functions over the views, weighted by the visibility of one texel.
 class TensorTexels::OfTexel {
  public:
   OfTexel(const TensorFunctions& functions, const ShownViews& shown, size_t texel) : functions_(functions) {
@@ -135,7 +135,7 @@ void TensorTexels::add_view(Index view, const LevelImages& images, const std::ve
   });
 }
 
-/// What the view shows, for those that it stands in for.
+/// Adds the values of the view for the views that it stands in for.
 void TensorTexels::add_hidden(Index view, const LevelImages& images, const std::vector<FunctionsOfView>& functions) {
   const ShownViews::Values values = shown_.values(view, images, progress_);
   pieces([&](size_t t) {
@@ -158,7 +158,7 @@ TensorTexelValues TensorTexels::solve(Index members, const std::function<void(do
   return values;
 }
 
-/// Cluster after cluster the one that explains most of what is left, all coefficients solved for anew with each.
+/// Repeatedly adds the cluster that explains most of the residual and solves for all coefficients again.
 void TensorTexels::choose(size_t texel, TensorTexelValues& values) const {
   const Index rank = functions_.rank();
   const auto members = values.value.cols() / rank;

@@ -1,4 +1,4 @@
-// The texels of one level of a model of clustered tensors, for clusters that are given.
+// Solver for the texels of one level of a clustered-tensor model with given clusters.
 #pragma once
 
 #include <functional>
@@ -9,24 +9,24 @@
 
 namespace velour {
 
-/// Least squares over every pair and texel of a level. Members are chosen by what the views show of the points of the
-/// relief, greedily ([TGS06] block orthogonal matching pursuit), and their coefficients with them. Over a relief all
-/// texels are then solved for together, by conjugate gradients ([HS52]) on the images themselves: a value is the sum of
-/// functions with coefficients interpolated where the view's ray meets the relief. Without one that is the same. What
-/// views hide is fitted to what stands in for it (ShownViews), with little weight.
+/// Least squares over every pair and texel of a level. Members and their coefficients are first chosen greedily
+/// ([TGS06] block orthogonal matching pursuit) from the values of the relief points in the views. Over a relief, all
+/// texels are then solved for together by conjugate gradients ([HS52]) on the images themselves: a value is the sum of
+/// functions with coefficients interpolated where the view ray hits the relief. Without a relief both are the same.
+/// Hidden points are fitted to their stand-ins (ShownViews) with little weight.
 class TensorTexels {
  public:
-  /// Keeps references.
+  /// Keeps references to all arguments.
   TensorTexels(const TensorSource& source, const SeenTexels& seen, const ShownViews& shown,
                const TensorFunctions& functions, const Progress& progress);
 
-  /// Of every view once. `functions`: of all views.
+  /// Call once per view. `functions`: of all views.
   void add_view(Index view, const LevelImages& images, const std::vector<FunctionsOfView>& functions);
 
-  /// After all views. `after_step` is told the part that is done.
+  /// Call after all views. `after_step` receives the fraction done.
   TensorTexelValues solve(Index members, const std::function<void(double)>& after_step) const;
 
-  /// Of the images, as modelled_squares().
+  /// modelled_squares() of the images themselves.
   double measured() const { return measured_; }
 
  private:
@@ -45,13 +45,13 @@ class TensorTexels {
   const ShownViews& shown_;
   const TensorFunctions& functions_;
   const Progress& progress_;
-  RowMatrix shows_;   // texel x function: moments of what views show of its point
-  RowMatrix hidden_;  // texel x function: of what stands in for it; empty where nothing is hidden
-  RowMatrix data_;    // texel x function: moments of the images with what they are made of; empty on the plane
+  RowMatrix shows_;   // texel x function: moments of its point's values in the views
+  RowMatrix hidden_;  // texel x function: moments of its stand-ins; empty if nothing is hidden
+  RowMatrix data_;    // texel x function: moments of the images with the functions; empty on the plane
   double measured_ = 0;
 };
 
-/// The sum over texels, views and lights of the squares that `values` make, times both cosines.
+/// The sum over texels, views and lights of the squares of the modeled values, times both cosines.
 double modelled_squares(const TensorSource& source, const SeenTexels& seen, const TensorFunctions& functions,
                         const TensorTexelValues& values, const Progress& progress);
 

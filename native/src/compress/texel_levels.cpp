@@ -14,10 +14,10 @@
 namespace velour {
 namespace {
 
-constexpr int kFinestSteps = 20, kCoarseSteps = 12;  // of the finest level, of coarser ones
-constexpr double kTexelReading = 0.1;                // of the progress
+constexpr int kFinestSteps = 20, kCoarseSteps = 12;  // on the finest level, on coarser ones
+constexpr double kTexelReading = 0.1;                // fraction of the progress
 
-/// Coefficients of a finer level, interpolated.
+/// Interpolates coefficients to a finer level.
 RowMatrix refined(const RowMatrix& coarse, uint32_t width, uint32_t height, const Relief& fine) {
   RowMatrix out(Eigen::Index{fine.width()} * fine.height(), coarse.cols());
   for (uint32_t y = 0; y < fine.height(); ++y) {
@@ -37,13 +37,13 @@ size_t coefficients_of(const SharedLobes& lobes) {
   return lobes.lobe[0].size() + lobes.lobe[1].size() + lobes.lobe[2].size();
 }
 
-/// Coefficients of a level as they were solved for, and what makes them as bright as the data.
+/// Solved coefficients of a level, and the factor that makes them as bright as the data.
 struct Solution {
   RowMatrix value;
   double brightening = 1;
 };
 
-/// Of each level, the finest first; those of the coarser ones may have been kept.
+/// Per level, finest first; coarser ones may have been restored.
 using Solutions = std::vector<std::optional<Solution>>;
 
 constexpr char kBrightening[] = ".brightening";
@@ -61,7 +61,7 @@ Solutions kept_levels(const TexelLevelsInput& input, const FitCheckpoint& checkp
   Solutions levels(input.relief.size());
   for (size_t l = levels.size(); l-- > 0;) {
     levels[l] = kept_level(input, checkpoint, stage + std::to_string(l), input.relief[l]);
-    if (!levels[l]) break;  // finer ones were solved from it
+    if (!levels[l]) break;  // finer levels start from it
   }
   return levels;
 }
@@ -74,7 +74,7 @@ void keep_level(const Solution& level, const std::string& stage, FitCheckpoint& 
 
 using Solvers = std::vector<std::unique_ptr<TexelSolver>>;
 
-/// Of the finest `levels`.
+/// Reads the data of the finest `levels` levels.
 Solvers read_data(CompandedViews& views, const TexelLevelsInput& input, size_t levels, Progress& progress) {
   Solvers solver;
   if (levels == 0) return solver;
@@ -95,17 +95,17 @@ Solvers read_data(CompandedViews& views, const TexelLevelsInput& input, size_t l
 Solution solved(const TexelLevelsInput& input, TexelSolver& solver, const RowMatrix& start, size_t level,
                 Progress& progress) {
   const int steps = level == 0 ? kFinestSteps : kCoarseSteps;
-  // A level costs four times the one before: the finest takes three quarters of the time.
+  // A level costs four times the next coarser one: the finest takes three quarters of the time.
   const double from = kTexelReading + (1 - kTexelReading) * std::pow(0.25, static_cast<double>(level + 1));
   const double to = kTexelReading + (1 - kTexelReading) * std::pow(0.25, static_cast<double>(level));
   const auto after_step = [&](int step) { progress.update(from + (to - from) * (step + 1) / steps); };
   RowMatrix value = solver.solve(start, steps, after_step);
-  progress.update(to);  // it may have settled early
+  progress.update(to);  // it may have converged early
   const float factor = brightening(input.companding, solver.measured(), solver.modelled(value));
   return {std::move(value), static_cast<double>(factor)};
 }
 
-/// As many as there are texels times coefficients, as bright as the data.
+/// Coefficients of all texels, as bright as the data.
 std::vector<float> bright_values(const Solution& level) {
   const RowMatrix bright = level.value * static_cast<float>(level.brightening);
   return {bright.data(), bright.data() + bright.size()};
@@ -134,7 +134,7 @@ void solve_levels(CompandedViews& views, const TexelLevelsInput& input, FitCheck
     if (l > 0) start = refined(solution[l]->value, relief.width(), relief.height(), input.relief[l - 1]);
     solution[l].reset();
   }
-  // Of the finest level, whether its solver was needed or not.
+  // Products on the finest level, whether its solver was needed or not.
   const TexelSolver finest(input.side, input.lobes, input.relief[0], input.threads, progress);
   set_rounded(finest.products(), std::move(values), side);
 }

@@ -1,4 +1,4 @@
-// The texels of a side, solved for level by level.
+// Solves for the texels of a side level by level.
 #pragma once
 
 #include "btf/srbf_btf.h"
@@ -11,14 +11,14 @@ namespace velour {
 struct TexelLevelsInput {
   const TexelGrid& grid;
   const SideDirections& side;
-  const std::vector<Relief>& relief;  // of each level, the finest first
+  const std::vector<Relief>& relief;  // per level, finest first
   const SharedLobes& lobes;
   Companding companding;
   int threads;
 };
 
-/// The levels of `side`, whose lobes are the input's: from one texel to the finest level, each from the one before.
-/// Reads every view once, unless the checkpoint has kept all levels under `stage`. Progress covers the stage.
+/// Sets the levels of `side`, which has the input's lobes, from one texel to the finest level, each from the coarser
+/// one. Reads every view once, unless the checkpoint has all levels under `stage`. Progress covers the stage.
 void solve_levels(CompandedViews& views, const TexelLevelsInput& input, FitCheckpoint& checkpoint,
                   const std::string& stage, Progress& progress, SrbfSide& side);
 

@@ -1,11 +1,11 @@
-// How loops over texels are cut for threads.
+// Partition of loops over texels for threads.
 #pragma once
 
 #include <cstddef>
 
 namespace velour {
 
-/// Texels of a piece of work: fixed, so that sums do not depend on the number of threads.
+/// Texels per piece of work. Fixed, so that sums do not depend on the number of threads.
 inline constexpr size_t kTexelsPerPiece = 64;
 
 }  // namespace velour

@@ -12,11 +12,11 @@
 namespace velour {
 namespace {
 
-constexpr double kLobeRidge = 1e-4;         // of coefficients, relative to a lobe of value 1 everywhere
-constexpr double kTexelsConverged = 1e-12;  // of the rest's square: floats hold no better, and less would become 0 / 0
-constexpr size_t kSampled = 170;            // texels of a view that means are taken over, about
+constexpr double kLobeRidge = 1e-4;         // on coefficients, relative to a lobe of value 1 everywhere
+constexpr double kTexelsConverged = 1e-12;  // relative squared residual; below float precision steps become 0 / 0
+constexpr size_t kSampled = 170;            // approximate number of texels per view for means
 constexpr size_t kTogether = 8;             // texels whose lobes are multiplied at once
-constexpr size_t kSums = 16;                // partial sums: fixed as well
+constexpr size_t kSums = 16;                // number of partial sums; fixed as well
 
 }  // namespace
 
@@ -59,7 +59,7 @@ std::vector<TexelSolver::Place> TexelSolver::places(size_t view) const {
   return places;
 }
 
-/// Texels of a view that stand for all.
+/// A sample of a view's texels.
 std::vector<size_t> TexelSolver::sample(size_t view) const {
   const size_t texels = size_t{relief_.width()} * relief_.height(), step = std::max<size_t>(1, texels / kSampled);
   std::vector<size_t> sample;
@@ -67,14 +67,14 @@ std::vector<size_t> TexelSolver::sample(size_t view) const {
   return sample;
 }
 
-/// The coefficients of a place.
+/// Interpolates the coefficients at a place.
 Eigen::RowVectorXf TexelSolver::blended(const RowMatrix& coefficient, const Place& place) {
   Eigen::RowVectorXf sum = Eigen::RowVectorXf::Zero(coefficient.cols());
   for (size_t i = 0; i < 4; ++i) sum += place.texels.weight[i] * coefficient.row(place.texels.index[i]);
   return sum;
 }
 
-/// Of every light a row of lobes.
+/// Writes a row of lobe values for every light.
 void TexelSolver::write_rows(size_t view, const Place& place, float* rows) const {
   for (const Vec3& wl : side_.light) {
     const LobeArguments at({wl, side_.view[view]});
@@ -84,8 +84,8 @@ void TexelSolver::write_rows(size_t view, const Place& place, float* rows) const
   }
 }
 
-/// `sums` += for every texel of the view, its lobes' moments with values_of(texel, place, rows, values), at the texels
-/// where it is seen.
+/// Adds to `sums`, for every texel of the view, the moments of its lobes with the output of values_of(texel, place,
+/// rows, values), at the texels that it sees.
 template <class Values>
 void TexelSolver::accumulate(size_t view, const Values& values_of, RowMatrix& sums) const {
   const std::vector<Place> place = places(view);
@@ -109,7 +109,7 @@ void TexelSolver::accumulate(size_t view, const Values& values_of, RowMatrix& su
       gather(sum.data(), moment.row(static_cast<Eigen::Index>(t)).data());
     }
   });
-  // From the texels of the view to those that they see: by target, so that threads do not meet and sums have one order.
+  // From the view's texels to those they see: by target, so that threads do not conflict and sums have a fixed order.
   std::vector<uint32_t> first(place.size() + 1);
   for (const Place& p : place) {
     for (const uint32_t i : p.texels.index) ++first[i + 1];
@@ -190,7 +190,7 @@ void TexelSolver::gather(const float* padded, float* compact) const {
   for (size_t k = 0; k < column_.size(); ++k) compact[k] = padded[column_[k]];
 }
 
-/// Adds the products of any two lobes over sampled texels of a view and all lights, on and below the diagonal; gives
+/// Adds the products of any two lobes over sampled texels of a view and all lights, on and below the diagonal; returns
 /// the number of summands.
 size_t TexelSolver::add_products(size_t view, Eigen::MatrixXd& sum) const {
   const std::vector<Place> place = places(view);
@@ -211,7 +211,7 @@ size_t TexelSolver::add_products(size_t view, Eigen::MatrixXd& sum) const {
   return texels.size() * lights;
 }
 
-/// From the mean of the products of any two lobes over sampled texels and pairs.
+/// Computes the whitening from the mean products of any two lobes over sampled texels and pairs.
 void TexelSolver::set_coordinates() {
   std::vector<Eigen::MatrixXd> part(kSums, Eigen::MatrixXd::Zero(stride_, stride_));
   std::vector<size_t> count(kSums);
@@ -250,7 +250,7 @@ RowMatrix TexelSolver::whitened(const RowMatrix& m) const {
 }
 
 RowMatrix TexelSolver::solve(const RowMatrix& start, int steps, const std::function<void(int)>& after_step) {
-  // A texel counts as if it were seen by this many views.
+  // Ridge for a texel that a quarter of all pairs show.
   const auto ridge = static_cast<float>(kLobeRidge * static_cast<double>(side_.light.size() * side_.view.size()) / 4);
   RowMatrix x = RowMatrix::Zero(start.rows(), start.cols());
   RowMatrix rest = whitened(data_ - normal_product(start));

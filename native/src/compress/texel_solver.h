@@ -1,4 +1,4 @@
-// The coefficients of all texels of a level, for lobes that are given.
+// Solver for the coefficients of all texels of a level with given lobes.
 #pragma once
 
 #include <functional>
@@ -10,31 +10,31 @@
 
 namespace velour {
 
-/// Least squares over every pair and texel of a level: a value is the sum of lobes with coefficients interpolated
-/// where the view's ray meets the relief, so neighbours share it and all are solved for together, by conjugate
+/// Least squares over every pair and texel of a level: a value is the sum of lobes with coefficients interpolated where
+/// the view ray hits the relief. Neighbors are therefore coupled, and all texels are solved for together, by conjugate
 /// gradients ([HS52]) in coordinates in which lobes are orthonormal on average. The normal matrix is never stored; its
-/// products need the directions alone, so data are read once.
+/// products need only the directions, so data are read once.
 class TexelSolver {
  public:
   TexelSolver(const SideDirections& side, const SharedLobes& lobes, const Relief& relief, int threads,
               const Progress& progress);
 
-  /// Of every view once.
+  /// Call once per view.
   void add_view(size_t view, const LevelImages& images);
 
-  /// [texel][coefficient], from a start of the same shape.
+  /// Returns [texel][coefficient]; `start` has the same shape.
   RowMatrix solve(const RowMatrix& start, int steps, const std::function<void(int)>& after_step);
 
-  /// Of this level's places.
+  /// Mean products of lobes on this level.
   const LobeProductMeans& products() const { return products_; }
 
-  /// Sums of squares over sampled texels of every view and all lights, times both cosines: of the data, and of what
-  /// a solution makes of them.
+  /// Sums of squares over sampled texels of every view and all lights, times both cosines: of the data, and of a
+  /// solution.
   double measured() const { return measured_; }
   double modelled(const RowMatrix& solution) const;
 
  private:
-  struct Place;  // where texels of a view are seen
+  struct Place;  // where a view ray hits the relief
   std::vector<Place> places(size_t view) const;
   std::vector<size_t> sample(size_t view) const;
   static Eigen::RowVectorXf blended(const RowMatrix& coefficient, const Place& place);
@@ -54,8 +54,8 @@ class TexelSolver {
   int threads_;
   const Progress& progress_;
   MultivariateLobes tile_, texel_;
-  uint32_t stride_;                        // of a row of lobes, padded
-  std::vector<uint32_t> column_;           // of each coefficient in [axis][padded lobe]
+  uint32_t stride_;                        // padded length of a row of lobes
+  std::vector<uint32_t> column_;           // place of each coefficient in [axis][padded lobe]
   LobeProductMeans products_;              // with a ridge
   std::array<Eigen::MatrixXf, 3> whiten_;  // symmetric: inverse roots of the axes' Gram matrices
   RowMatrix data_;                         // moments of the data with each coefficient's function

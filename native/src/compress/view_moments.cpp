@@ -8,7 +8,7 @@
 namespace velour {
 namespace {
 
-constexpr size_t kFunctions = 16;  // of a piece of work: fixed, as sums depend on it
+constexpr size_t kFunctions = 16;  // per piece of work; fixed, because sums depend on it
 
 size_t pieces(size_t count, size_t of_piece) { return (count + of_piece - 1) / of_piece; }
 

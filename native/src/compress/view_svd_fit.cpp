@@ -8,9 +8,9 @@
 namespace velour {
 namespace {
 
-constexpr double kViewColors = 0.3;  // where they end, of the progress
+constexpr double kViewColors = 0.3;  // fraction of the progress at which they end
 
-/// How many components of a view are kept.
+/// Number of components kept per view and axis.
 uint64_t columns_of(const BtfMeasurement& measurement) {
   return std::min<uint64_t>(
       {measurement.layout().lights().size(), measurement.grid().texels(), FactoredBtf::kMaxOfView / 3});

@@ -1,18 +1,18 @@
-// A truncated singular value decomposition of every view for itself.
+// Truncated singular value decomposition of every view on its own.
 #pragma once
 
 #include "compress/factored_fit.h"
 
 namespace velour {
 
-/// A matrix of lights times texels for each view and decorrelated colour axis, decomposed exactly by the products of
-/// its rows, and cut to its strongest components; those of all views and axes compete for the bytes. A view that gets
+/// One matrix of lights times texels per view and decorrelated color axis, decomposed exactly from the products of its
+/// rows and truncated to its strongest components; those of all views and axes compete for the bytes. A view that gets
 /// none is black.
 class ViewSvdFitter final : public FactoredFitter {
  public:
-  /// Both must outlive this. Of the checkpoint the colours are taken; the decompositions are one reading of the views.
-  /// Throws Error(invalid_argument) when the bytes hold not one component, Error(unsupported) for a layout that is not
-  /// complete and for too little memory.
+  /// The arguments must outlive the fitter. Only the colors are checkpointed; the decompositions take one pass over the
+  /// views. Throws Error(invalid_argument) if the bytes do not hold a single component, Error(unsupported) for an
+  /// incomplete layout or too little memory.
   ViewSvdFitter(const BtfMeasurement& measurement, const BtfFitOptions& options, FitCheckpoint& checkpoint,
                 Progress& progress);
 

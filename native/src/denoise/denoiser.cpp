@@ -11,7 +11,7 @@ namespace {
 constexpr int kCpu = 1, kFloat3 = 3, kFast = 4, kBalanced = 5, kNoError = 0, kCancelled = 6;
 constexpr int kFirstWithFast = 20300;  // 2.3
 
-/// Many versions do not know how far they are; all of them ask whether to go on.
+/// Many versions of oidn do not report a meaningful fraction, but all ask whether to continue.
 bool goes_on(void* progress, double /*fraction*/) { return !static_cast<const Progress*>(progress)->cancelled(); }
 
 }  // namespace
@@ -20,7 +20,7 @@ class Denoiser::Filter {
  public:
   Filter(const Denoiser& denoiser, const NoisyPicture& picture)
       : oidn_(denoiser.oidn_), picture_(picture), filter_(oidn_.NewFilter(denoiser.device_, "RT")) {
-    // High quality takes twice the time for 5 % less error: more samples are worth more.
+    // High quality takes twice the time for 5 % less error; more samples are a better use of that time.
     const bool fast = denoiser.effort_ == Effort::least && denoiser.number() >= kFirstWithFast;
     oidn_.SetFilterInt(filter_, "quality", fast ? kFast : kBalanced);
   }
@@ -29,7 +29,7 @@ class Denoiser::Filter {
   Filter& operator=(const Filter&) = delete;
 
   void input(const char* name, std::span<const float> pixels) {
-    output(name, {const_cast<float*>(pixels.data()), pixels.size()});  // which it does not write to
+    output(name, {const_cast<float*>(pixels.data()), pixels.size()});  // inputs are only read
   }
   void output(const char* name, std::span<float> pixels) {
     const auto width = static_cast<size_t>(picture_.width), height = static_cast<size_t>(picture_.height);
@@ -57,7 +57,7 @@ Denoiser::Denoiser(int threads, Effort effort)
     : oidn_(open_image_denoise()), effort_(effort), device_(oidn_.NewDevice(kCpu)) {
   if (device_ == nullptr) throw Error(Status::unsupported, path() + " does not run on this processor.");
   oidn_.SetDeviceInt(device_, "numThreads", threads > 0 ? threads : tbb::info::default_concurrency());
-  oidn_.SetDeviceBool(device_, "setAffinity", false);  // the threads are not ours alone
+  oidn_.SetDeviceBool(device_, "setAffinity", false);  // the host shares these threads
   oidn_.CommitDevice(device_);
   try {
     check(Progress{});

@@ -1,4 +1,4 @@
-// Pictures without noise, by Intel's Open Image Denoise.
+// Denoises pictures with Intel's Open Image Denoise.
 #pragma once
 
 #include <span>
@@ -9,27 +9,27 @@
 
 namespace velour {
 
-/// Pixels row by row, 3 floats each: linear light that may be above 1, and what guides the filter.
+/// Row-major pixels of 3 floats each: linear HDR color, and the albedo and normals that guide the filter.
 struct NoisyPicture {
   int width, height;
   std::span<const float> color, albedo, normal;
 };
 
-/// One a thread.
+/// Not thread-safe: each thread needs its own.
 class Denoiser {
  public:
   enum class Effort {
     usual,
-    least,  // a quarter of the time, for somebody who watches: a smaller net, and guides as they are
+    least,  // a quarter of the time, for interactive use: a smaller network and unfiltered guides
   };
-  /// Throws Error(unsupported) where Open Image Denoise is missing, or refuses the processor. `threads` 0: all.
+  /// Throws Error(unsupported) if Open Image Denoise is missing or does not support the processor. `threads` 0: all.
   explicit Denoiser(int threads, Effort effort = Effort::usual);
   ~Denoiser();
   Denoiser(const Denoiser&) = delete;
   Denoiser& operator=(const Denoiser&) = delete;
 
-  /// Albedo and normal are filtered first, each by itself, so that the noise of depth of field or of fine structure in
-  /// them does not reach the picture. Colors of `denoised`; `picture` has at least one pixel. Throws Error(cancelled).
+  /// Writes the colors to `denoised`. Albedo and normals are first filtered separately, so that their noise from depth
+  /// of field or fine structure does not reach the picture, which has at least one pixel. Throws Error(cancelled).
   void run(const NoisyPicture& picture, std::span<float> denoised, const Progress& progress);
 
   /// "2.5.1"

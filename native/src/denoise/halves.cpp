@@ -8,7 +8,7 @@ namespace {
 
 double sq(double x) { return x * x; }
 
-/// The terms of the estimate for one channel of a pixel.
+/// Terms of the estimate for one channel of a pixel.
 struct Terms {
   double denoised, noisy;  // P, M
   double s, v, q;

@@ -23,7 +23,7 @@ void set_open_image_denoise_file(const std::string& name) {
 }
 
 const OpenImageDenoise& open_image_denoise() {
-  // Never closed: its threads may outlive whatever would close it.
+  // Never closed, because its threads may outlive any owner.
   static OpenImageDenoise* opened = nullptr;
   const std::lock_guard lock(mutex);
   if (opened == nullptr) opened = new OpenImageDenoise(file);

@@ -1,4 +1,4 @@
-// Intel's Open Image Denoise 2: its C interface, bound at run time. Neither building nor running needs it.
+// C interface of Intel's Open Image Denoise 2, bound at run time. Velour builds and runs without the library.
 #pragma once
 
 #include <cstddef>
@@ -8,14 +8,13 @@
 
 namespace velour {
 
-/// Table of the functions that are used, as oidn.h 2.0 declares them. Values of its enumerations stand where they are
-/// used.
+/// Table of the functions in use, declared as in oidn.h 2.0. Enumerator values are defined where they are used.
 struct OpenImageDenoise {
   using Device = struct OpaqueDevice*;
   using Filter = struct OpaqueFilter*;
   using Monitor = bool(void* user, double fraction);  // false: cancel
 
-  /// `file`: looked at before all else; empty: none.
+  /// `file`: library file to try first; empty: none.
   explicit OpenImageDenoise(const std::string& file);
 
   PrivateLibrary library;
@@ -39,11 +38,11 @@ struct OpenImageDenoise {
 #undef VELOUR_OIDN
 };
 
-/// Names the file that open_image_denoise() opens; empty: libOpenImageDenoise.so.2 beside our own library or on the
-/// system's path. Once it is open, nothing changes any more. Thread-safe.
+/// Sets the file that open_image_denoise() tries first. Empty: only libOpenImageDenoise.so.2 beside our own library and
+/// on the system's library path. Has no effect once the library is open. Thread-safe.
 void set_open_image_denoise_file(const std::string& file);
 
-/// Opened with the first call, and kept. Throws Error(unsupported) with what was tried and what to do.
+/// Opened by the first call and never closed. Throws Error(unsupported) that says what was tried and what to do.
 const OpenImageDenoise& open_image_denoise();
 
 }  // namespace velour

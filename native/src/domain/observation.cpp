@@ -5,7 +5,7 @@
 namespace velour {
 namespace {
 
-/// Of the terms of `hit` those that `wanted` says.
+/// Appends `hit` with those of its terms whose direction satisfies `wanted`.
 template <typename Wanted>
 void append(SceneObservation& into, const SceneObservation& from, const ObservedHit& hit, const Wanted& wanted) {
   ObservedHit same = hit;

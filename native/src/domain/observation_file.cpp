@@ -20,10 +20,10 @@ static_assert(std::endian::native == std::endian::little, "arrays are written as
 
 constexpr const char* kFormat = "velour-observation";
 constexpr uint64_t kVersion = 1;
-/// Fifty times what an observation takes.
+/// Fifty times the size of an observation.
 constexpr uint64_t kMostBytes = uint64_t{128} << 20;
 constexpr uint64_t kMostTerms = kMostBytes / sizeof(Vec3);
-constexpr uint64_t kMostRays = uint64_t{1} << 62;  // so that sums of a few stay whole numbers
+constexpr uint64_t kMostRays = uint64_t{1} << 62;  // so that sums of a few do not overflow
 
 template <typename T>
 std::string base64_of(const T& values) {
@@ -92,7 +92,7 @@ SceneDomain read_domain(const JsonFields& fields) {
 bool is_unit(const Vec3& w) { return std::abs(glm::length(w) - 1.0f) < 1e-3f; }
 bool is_above_horizon(const Vec3& w) { return w.z > 0.0f && is_unit(w); }
 
-/// Gives each hit the terms that follow those of the hit before.
+/// Assigns each hit the terms that follow those of the previous hit.
 void read_term_counts(const JsonFields& fields, uint64_t total, std::vector<ObservedHit>& hits) {
   const auto counts = fields.values<uint32_t>("terms", 2 * hits.size());
   uint64_t next = 0;
@@ -130,7 +130,7 @@ std::vector<ObservedHit> read_hits(const JsonFields& fields, uint64_t terms) {
   return hits;
 }
 
-/// A channel may be negative: a colour outside the working space.
+/// Channels may be negative: colors outside the working space.
 bool is_finite(const Rgb& c) { return std::isfinite(c.r) && std::isfinite(c.g) && std::isfinite(c.b); }
 
 void read_terms(const JsonFields& fields, uint64_t count, SceneObservation& observation) {

@@ -15,7 +15,7 @@ void append(std::vector<uint8_t>& bytes, std::span<const T> values) {
   bytes.insert(bytes.end(), first, first + raw.size());
 }
 
-/// A hit without padding, whose bytes mean nothing.
+/// ObservedHit without padding, whose bytes are undefined.
 struct PackedHit {
   uint64_t key;
   float wv[3], light_density;
@@ -35,7 +35,7 @@ std::array<uint64_t, 4> content_hash(const SceneObservation& observation) {
   std::vector<uint8_t> bytes;
   append(bytes, std::span<const double>(observation.domain.view));
   append(bytes, std::span<const double>(&observation.domain.light_density, 1));
-  if (observation.domain.surface.weight() > 0) {  // of uniform materials hashes are what they were without it
+  if (observation.domain.surface.weight() > 0) {  // keeps the older hashes of uniform materials
     append(bytes, std::span<const double>(observation.domain.surface.footprint));
     append(bytes, std::span<const double>(observation.domain.surface.tile));
     append(bytes, std::span<const double>(observation.domain.surface.views.weight));

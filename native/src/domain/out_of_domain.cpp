@@ -5,7 +5,7 @@
 namespace velour {
 namespace {
 
-/// Whether bin `i` lies within `range`: both are of whole degrees.
+/// Whether bin `i` lies within `range`; both are in whole degrees.
 bool holds(const ViewRange& range, size_t i) {
   const int degree = static_cast<int>(i);
   return degree >= range.begin && degree < range.end;

@@ -10,7 +10,7 @@
 namespace velour {
 namespace {
 
-/// Where bin `i` ends, as a share of the tile's side.
+/// Upper end of bin `i`, as a share of the tile side.
 double end_of_bin(size_t i) {
   const double octave = static_cast<double>(i + 1) / SurfaceDomain::kBinsOfOctave;
   return std::exp2(octave) / static_cast<double>(kFinestTexels);
@@ -19,7 +19,7 @@ double end_of_bin(size_t i) {
 size_t cell_of(float coordinate) {
   const float inside = std::isfinite(coordinate) ? coordinate - std::floor(coordinate) : 0.0f;
   const int cell = static_cast<int>(inside * SurfaceDomain::kTileCells);
-  return static_cast<size_t>(std::min(cell, SurfaceDomain::kTileCells - 1));  // rounding may give the whole tile
+  return static_cast<size_t>(std::min(cell, SurfaceDomain::kTileCells - 1));  // rounding may give kTileCells
 }
 
 }  // namespace
@@ -27,7 +27,7 @@ size_t cell_of(float coordinate) {
 double SurfaceDomain::weight() const { return std::accumulate(footprint.begin(), footprint.end(), 0.0); }
 
 void add_seen(SurfaceDomain& domain, float level, const Vec2& uv, double weight) {
-  // Written so that a NaN becomes 0: the finest, which leaves nothing out.
+  // A NaN becomes 0: the finest level, which leaves nothing out.
   const float place = level > 0 ? level * SurfaceDomain::kBinsOfOctave : 0.0f;
   domain.footprint[static_cast<size_t>(std::min(place, SurfaceDomain::kBins - 1.0f))] += weight;
   domain.tile[cell_of(uv.y) * SurfaceDomain::kTileCells + cell_of(uv.x)] += weight;

@@ -1,4 +1,4 @@
-// How finely, and where on its tile, scenes show a material that varies over the surface.
+// Scene usage of a material that varies over the surface: how finely, and where on its tile, scenes show it.
 #pragma once
 
 #include <array>
@@ -9,46 +9,46 @@
 
 namespace velour {
 
-/// Weights as in SceneDomain; all zero of a uniform material, of which nothing of this is looked up.
+/// Weights as in SceneDomain; all zero for a uniform material, which has no texture look-ups.
 struct SurfaceDomain {
   static constexpr int kBins = 128, kBinsOfOctave = 8;
   static constexpr int kTileCells = 16;
 
-  /// By the width of one look-up (FootprintTaps): bin i holds those of 2^(i/8 - 16) to 2^((i + 1)/8 - 16) of the tile's
-  /// side that has more texels; the first and the last bin also hold what is beyond.
+  /// Weights by the width of a look-up (FootprintTaps): bin i holds widths of 2^(i/8 - 16) to 2^((i + 1)/8 - 16) of the
+  /// tile side with more texels; the first and last bins also hold everything beyond.
   std::array<double, kBins> footprint{};
-  /// By place on the tile: kTileCells x kTileCells cells, row by row from the bottom.
+  /// Weights by position on the tile: kTileCells x kTileCells cells, row by row from the bottom.
   std::array<double, kTileCells * kTileCells> tile{};
-  /// By direction; all zero where nobody knows (SceneDomain::directions).
+  /// Weights by direction; all zero if unknown (SceneDomain::directions).
   ViewWeights views;
 
   double weight() const;
 };
 
-/// The number of texels along that side at which bin 0 begins with one texel.
+/// Number of texels along that side for which bin 0 begins at the width of one texel.
 inline constexpr float kFinestTexels = 65536;
 
-/// `level`: log2 of the width of a look-up where the tile has kFinestTexels texels.
+/// `level`: log2 of the width of a look-up, in texels of a tile with kFinestTexels texels.
 void add_seen(SurfaceDomain& domain, float level, const Vec2& uv, double weight);
 void merge(SurfaceDomain& into, const SurfaceDomain& other);
 
-/// The width of the finest bin that counts, as a share of the tile's side: its upper end. Finer bins, of at most
-/// kOutside of the weight together, do not. Infinite where nothing was seen.
+/// Upper end of the finest bin that counts, as a share of the tile side. Finer bins, with at most kOutside of the
+/// weight together, are ignored. Infinite if nothing was seen.
 double finest_footprint(const SurfaceDomain& domain);
 
-/// Texels of the finest level along a look-up that it is fine enough for. A look-up stands for a whole pixel, while a
-/// render sends several rays through it, which see within it: with one texel a look-up their interpolation would blur
-/// what the rays' mean keeps.
+/// Minimum number of texels of the finest level across the width of a look-up. A look-up covers a whole pixel, but a
+/// render sends several rays through it that resolve detail within it: with one texel per look-up, interpolation would
+/// blur what the mean of the rays preserves.
 inline constexpr double kTexelsOfLookUp = 2;
 
-/// Whether `texels` along the tile's side are enough for look-ups of this width.
+/// Whether `texels` along the tile's side suffice for look-ups of this width.
 inline bool resolves(uint32_t texels, double footprint) { return footprint * texels >= kTexelsOfLookUp; }
 
-/// The share of the weight for which `texels` along the tile's side are too few, 0..1; bins count by their upper ends.
-/// 1 where nothing was seen.
+/// Share of the weight for which `texels` along the tile's side are too few, 0..1; bins count by their upper ends. 1 if
+/// nothing was seen.
 double share_finer_than(const SurfaceDomain& domain, uint32_t texels);
 
-/// The share of the tile's cells that were seen at all.
+/// Share of the tile's cells that were seen at all.
 double seen_share_of_tile(const SurfaceDomain& domain);
 
 }  // namespace velour

@@ -1,4 +1,4 @@
-// From which directions a tile is seen.
+// Distribution of the directions from which a tile is seen.
 #pragma once
 
 #include <array>
@@ -9,34 +9,34 @@
 
 namespace velour {
 
-/// Weights (SceneDomain) of views by direction in the tile's frame: +x along the first texture coordinate, +y to the
-/// side that the second grows to, z < 0 from behind.
+/// Weights (SceneDomain) of views by direction in the tile's frame: +x along the first texture coordinate, +y
+/// perpendicular to it on the side where the second increases, z < 0 behind.
 struct ViewWeights {
-  static constexpr int kRings = 18, kSectors = 72;  // of 5 degrees each: theta, phi
+  static constexpr int kRings = 18, kSectors = 72;  // 5 degrees each: theta, phi
   static constexpr size_t kSide = size_t{kRings} * kSectors;
 
-  /// [side][ring][sector], the front first.
+  /// [side][ring][sector], front first.
   std::array<double, 2 * kSide> weight{};
 
   double sum() const;
 };
 
-/// `w`: unit, towards the viewer.
+/// `w`: unit, toward the viewer.
 void add_view(ViewWeights& views, const Vec3& w, double weight);
 void merge(ViewWeights& into, const ViewWeights& other);
 
-/// What weights by polar angle alone, a degree each, leave open: all azimuths, both sides.
+/// Spreads weights by polar angle, one degree each, evenly over all azimuths and both sides.
 ViewWeights all_around(const std::array<double, 90>& by_degree);
-/// Of a tile that is the same from both sides.
+/// Weights for a tile that looks the same from both sides: each bin also gets the weight of its counterpart behind.
 ViewWeights from_both_sides(const ViewWeights& views);
 
-/// Middles of the bins that count: all but the lightest, of kOutside of the weight together.
+/// Centers of the bins that count: all but the lightest ones, which hold at most kOutside of the weight together.
 std::vector<Vec3> counted_views(const ViewWeights& views);
-/// No direction of a bin is farther from its middle, radians.
+/// Largest angle between a direction in a bin and the center of the bin, radians.
 inline constexpr double kBinRadius = 3.55 * (kPiD / 180);
 
-/// The share of `frame` that is seen from elsewhere: farther than one and a half bins from the middles of those that
-/// count in `known`. 0..1; 0 where nothing was seen.
+/// Share of `frame` that is seen from elsewhere: farther than one and a half bins from the centers of the bins that
+/// count in `known`. 0..1; 0 if nothing was seen.
 double share_from_elsewhere(const ViewWeights& known, const ViewWeights& frame);
 
 }  // namespace velour

@@ -19,7 +19,7 @@ namespace {
 
 constexpr size_t kBuffer = size_t{1} << 20;
 
-/// Where the bytes go: a link's target, so that the link survives. Devices and folders are refused, because the rename
+/// The file to replace: a link's target, so that the link survives. Devices and folders are refused, because the rename
 /// would replace a device by a file.
 std::filesystem::path write_target(const std::string& path) {
   std::error_code ignored;
@@ -30,10 +30,10 @@ std::filesystem::path write_target(const std::string& path) {
   return target;
 }
 
-/// What the names of temporary files have behind the target's.
+/// Infix of a temporary file's name, between the target's name and the random part.
 constexpr std::string_view kMark = ".velour-partial-";
 
-/// Whether nobody writes it: it is not locked, and not so new that its writer may be about to lock it.
+/// Whether a temporary file has no writer: it is not locked, and not so new that its writer may be about to lock it.
 bool is_left_over(const std::filesystem::path& file) {
   constexpr time_t kNew = 10;  // seconds
   const Descriptor fd(::open(file.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK | O_NOFOLLOW));
@@ -42,8 +42,8 @@ bool is_left_over(const std::filesystem::path& file) {
          ::time(nullptr) - info.st_mtime > kNew && ::flock(fd.get(), LOCK_EX | LOCK_NB) == 0;
 }
 
-/// Removes what killed writers have left in a folder, when this process first writes there: some folders hold ten
-/// thousands of files. Where the file system has no locks, everything stays.
+/// Removes the temporary files of killed writers from a folder. Only when this process first writes there, because some
+/// folders hold tens of thousands of files. On file systems without locks, everything stays.
 void remove_left_over(const std::filesystem::path& folder) {
   static std::mutex mutex;
   static std::set<std::filesystem::path> seen;
@@ -61,9 +61,9 @@ std::filesystem::path folder_of(const std::filesystem::path& target) {
   return target.has_parent_path() ? target.parent_path() : std::filesystem::path(".");
 }
 
-/// A new file beside the target, because renames are atomic within one folder only, and its name. The name is random:
-/// processes of other machines and containers, whose ids may be equal, write to the same folder. Over a network a new
-/// file may be said to exist already: then another name.
+/// Creates a new file beside the target, because renames are atomic only within a folder, and returns its descriptor
+/// and `name`. The name is random: processes on other machines and in containers, whose ids may be equal, write to the
+/// same folder. A network file system may report that a new file exists already; then another name is tried.
 int create_beside(const std::filesystem::path& target, const std::string& path, std::string& name) {
   constexpr int kAttempts = 16;
   remove_left_over(folder_of(target));
@@ -72,14 +72,14 @@ int create_beside(const std::filesystem::path& target, const std::string& path, 
     name = target.string() + std::string(kMark) + std::to_string(random()) + "-" + std::to_string(random());
     const int fd = ::open(name.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
     if (fd >= 0) {
-      ::flock(fd, LOCK_EX | LOCK_NB);  // where there are locks: else nobody removes it
+      ::flock(fd, LOCK_EX | LOCK_NB);  // may fail without support for locks; then nobody removes the file
       return fd;
     }
     if (errno != EEXIST || attempt == kAttempts) fail_with_code(path, "write", errno);
   }
 }
 
-/// Makes the rename itself survive a power cut; a file system that cannot is no reason to fail.
+/// Makes the rename itself survive a power cut. Ignores errors: some file systems do not support it.
 void sync_folder(const std::filesystem::path& target) {
   const Descriptor fd(::open(folder_of(target).c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
   if (fd.get() >= 0) ::fsync(fd.get());

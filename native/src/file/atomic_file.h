@@ -1,4 +1,4 @@
-// A file that appears whole or not at all.
+// A file that appears complete or not at all.
 #pragma once
 
 #include <cstdint>
@@ -11,10 +11,10 @@
 
 namespace velour {
 
-/// Written beside its path under a temporary name, flushed and renamed by commit(): a killed process leaves the old
-/// file or the new one. Without a commit nothing remains, and what a killed process has left is removed by the next
-/// that writes the same file: a temporary file is locked as long as its writer lives. A failed write stays failed, so
-/// that commit() throws its reason even where a caller in between has swallowed it.
+/// Written beside its path under a temporary name, then flushed and renamed by commit(): a killed process leaves the
+/// old file or the new one. Without a commit nothing remains. The next process that writes to the same folder removes
+/// the temporary files of killed processes, which are those that nobody locks. A failed write is remembered, so that
+/// commit() throws its reason even if a caller has swallowed the exception.
 class AtomicFile {
  public:
   /// Throws Error(io).
@@ -37,7 +37,7 @@ class AtomicFile {
   std::string temporary_;
   Descriptor fd_;
   std::vector<uint8_t> buffer_;
-  uint64_t start_ = 0;  // where the buffer belongs
+  uint64_t start_ = 0;  // file position of the buffer
   int failure_ = 0;     // errno of the first write that failed
   bool committed_ = false;
 };

@@ -16,14 +16,14 @@ constexpr std::array<uint8_t, 256> kValues = [] {
   return values;
 }();
 
-/// Up to three bytes as four characters.
+/// Appends up to three bytes as four characters.
 void append_group(std::string& text, std::span<const uint8_t> bytes) {
   uint32_t bits = 0;
   for (size_t i = 0; i < 3; ++i) bits = bits << 8 | (i < bytes.size() ? bytes[i] : 0u);
   for (size_t i = 0; i < 4; ++i) text += i <= bytes.size() ? kDigits[bits >> (18 - 6 * i) & 63] : '=';
 }
 
-/// Four characters, of which `digits` are no padding.
+/// Decodes four characters, the first `digits` of which are not padding. Returns false if they are invalid.
 bool append_bytes(std::vector<uint8_t>& bytes, std::string_view group, size_t digits) {
   uint32_t bits = 0;
   for (size_t i = 0; i < 4; ++i) {

@@ -1,4 +1,4 @@
-// Bytes as text [RFC 4648, section 4], for binary arrays within JSON.
+// Base64 [RFC 4648, section 4], for binary arrays in JSON.
 #pragma once
 
 #include <cstdint>
@@ -12,7 +12,7 @@ namespace velour {
 
 std::string base64(std::span<const uint8_t> bytes);
 
-/// Nothing unless `text` is what base64() makes of some bytes: no blanks, no line breaks, padded, spare bits zero.
+/// Empty unless `text` is an exact result of base64(): no blanks or line breaks, padded, spare bits zero.
 std::optional<std::vector<uint8_t>> parse_base64(std::string_view text);
 
 }  // namespace velour

@@ -1,4 +1,4 @@
-// A cursor over bytes in memory that cannot leave them: every read is checked and fails with the field's name.
+// A bounds-checked cursor over bytes in memory. Errors name the field that was read.
 #pragma once
 
 #include <bit>
@@ -15,7 +15,7 @@ static_assert(std::endian::native == std::endian::little, "files are little-endi
 
 class ByteReader {
  public:
-  /// `name` is the file's name for sentences; `bytes` are borrowed.
+  /// `name` is the file's name in error messages; `bytes` are borrowed.
   ByteReader(std::span<const uint8_t> bytes, std::string name) : bytes_(bytes), name_(std::move(name)) {}
 
   uint64_t position() const { return position_; }
@@ -35,7 +35,7 @@ class ByteReader {
     return part;
   }
 
-  /// A little-endian number.
+  /// Reads a little-endian number.
   template <typename T>
   T number(const std::string& field) {
     T value;
@@ -43,7 +43,7 @@ class ByteReader {
     return value;
   }
 
-  /// Text up to a zero byte, which is consumed; at most `limit` characters.
+  /// Reads text up to a zero byte, which is consumed; at most `limit` characters.
   std::string text(uint64_t limit, const std::string& field) {
     const auto rest = bytes_.subspan(position_);
     for (uint64_t i = 0; i <= limit && i < rest.size(); ++i) {

@@ -15,7 +15,7 @@ void fail_with_code(const std::string& path, const char* action, int code) {
 }
 
 int open_for_reading(const std::string& path) {
-  // Not blocking, or opening a pipe would wait for its writer before anything can be said of it.
+  // Non-blocking: opening a pipe would otherwise wait for its writer.
   const int fd = ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
   if (fd < 0) fail_with_code(path, "read", errno);
   return fd;

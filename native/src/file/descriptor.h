@@ -1,4 +1,4 @@
-// Descriptors of open files. Internal to file/.
+// File descriptors. Internal to file/.
 #pragma once
 
 #include <unistd.h>
@@ -9,7 +9,7 @@
 
 namespace velour {
 
-/// Owns a descriptor; closing is the one thing that a destructor may do to it.
+/// Owns a file descriptor.
 class Descriptor {
  public:
   explicit Descriptor(int fd) : fd_(fd) {}
@@ -19,20 +19,21 @@ class Descriptor {
   Descriptor(const Descriptor&) = delete;
   Descriptor& operator=(const Descriptor&) = delete;
   int get() const { return fd_; }
-  /// Explicit close, because a full disk may be reported only here.
+  /// Closes explicitly, because a full disk may be reported only here. Returns the result of close(2).
   int close() { return ::close(std::exchange(fd_, -1)); }
 
  private:
   int fd_;
 };
 
-/// Throws Error(io): "PATH: cannot ACTION: what errno `code` means."
+/// Throws Error(io) with the message "PATH: cannot ACTION: MEANING OF ERRNO `code`."
 [[noreturn]] void fail_with_code(const std::string& path, const char* action, int code);
 
-/// A descriptor of `path` for reading; throws Error(io).
+/// Opens `path` for reading and returns its descriptor. Throws Error(io).
 int open_for_reading(const std::string& path);
 
-/// Size of the open regular file. A pipe or a device has no size to check claims against, so it is refused.
+/// Size of an open regular file in bytes. Throws Error(io) for pipes and devices, which have no size to check claims
+/// against.
 uint64_t regular_size(int fd, const std::string& path);
 
 }  // namespace velour

@@ -10,7 +10,7 @@
 namespace velour {
 namespace {
 
-/// Reads up to `bytes.size()` bytes and shrinks to what the file held.
+/// Reads up to `bytes.size()` bytes and shrinks `bytes` to the number that was read.
 void read_all(int fd, const std::string& path, std::vector<uint8_t>& bytes) {
   size_t done = 0;
   while (done < bytes.size()) {

@@ -1,4 +1,4 @@
-// Fields of a JSON file, each checked as it is read.
+// Reads and checks the fields of a JSON file.
 #pragma once
 
 #include <cstring>
@@ -9,18 +9,18 @@
 
 namespace velour {
 
-/// Where fields come from and what to do about a bad one: "the file is damaged, observe the scene anew."
+/// Parts of error messages: the source of the fields, and the remedy ("the file is damaged; write it again.").
 struct JsonSource {
-  std::string name;  // the file's
+  std::string name;  // of the file
   std::string remedy;
 };
 
-/// Reads the members of one JSON object. What is not as it should be throws Error(bad_data) with file and field.
+/// Reads the members of one JSON object. Throws Error(bad_data) with file and field for missing or invalid members.
 class JsonFields {
  public:
   using Json = nlohmann::ordered_json;
 
-  /// `path`: the object's place within the file, "" or "hits.". Both arguments must outlive this.
+  /// `path`: prefix of the object's fields in messages, "" or "hits.". `json` and `source` must outlive this object.
   JsonFields(const Json& json, const JsonSource& source, std::string path = {});
 
   const Json& at(const char* key) const;
@@ -29,13 +29,13 @@ class JsonFields {
   std::string text(const char* key) const;
   bool flag(const char* key) const;
   uint64_t whole(const char* key, uint64_t most) const;
-  /// At least 0, finite.
+  /// A finite number of at least 0.
   double number(const char* key) const;
-  /// The same; null is infinite.
+  /// Like number(), but null is infinity.
   double number_or_infinite(const char* key) const;
-  /// `count` numbers of at least 0, finite.
+  /// Exactly `count` finite numbers of at least 0.
   std::vector<double> numbers(const char* key, size_t count) const;
-  /// Base64 of exactly `count` values of T, little-endian.
+  /// Exactly `count` little-endian values of T, stored as base64.
   template <typename T>
   std::vector<T> values(const char* key, uint64_t count) const {
     const std::vector<uint8_t> bytes = this->bytes(key, count * sizeof(T));
@@ -55,12 +55,12 @@ class JsonFields {
   std::string path_;
 };
 
-/// What all files are parsed with: discarded where `text` is no JSON, or nested more than 32 deep. nlohmann copies and
-/// writes what is nested by recursion, so a file must not choose how deep that goes.
+/// Parses any JSON file. The result is discarded (is_discarded()) if `text` is not JSON or is nested more than 32
+/// levels deep: nlohmann copies and writes nested values recursively, so a file must not choose the depth.
 JsonFields::Json parse_json(std::span<const uint8_t> text);
 JsonFields::Json parse_json(const std::string& text);
 
-/// Whether `json` is an object that says it is of this format.
+/// Whether `json` is an object whose "format" is `format`.
 bool is_of_format(const JsonFields::Json& json, const char* format);
 
 }  // namespace velour

@@ -9,7 +9,7 @@
 namespace velour {
 namespace {
 
-/// Folder of the shared object (or program) that holds this code; empty when unknown.
+/// Folder of the shared object (or program) that contains this code; empty if unknown.
 std::filesystem::path own_folder() {
   Dl_info info{};
   if (dladdr(reinterpret_cast<const void*>(&own_folder), &info) == 0 || info.dli_fname == nullptr) return {};

@@ -1,4 +1,4 @@
-// A file that is read in parts.
+// Reads parts of a file.
 #pragma once
 
 #include <cstdint>
@@ -9,17 +9,17 @@
 
 namespace velour {
 
-/// Holds the file open. Calls are thread-safe.
+/// Keeps the file open. Calls are thread-safe.
 class RandomAccessFile {
  public:
-  /// Throws Error(io) when `path` cannot be read or is not a regular file.
+  /// Throws Error(io) if `path` cannot be read or is not a regular file.
   explicit RandomAccessFile(std::string path);
 
   const std::string& path() const { return path_; }
-  /// Bytes when it was opened.
+  /// Size in bytes when the file was opened.
   uint64_t size() const { return size_; }
 
-  /// Fills `bytes` from `offset` on; throws Error(bad_data) when the file ends before.
+  /// Fills `bytes` with the file's content from `offset` on. Throws Error(bad_data) if the file ends early.
   void read(uint64_t offset, std::span<uint8_t> bytes) const;
 
  private:

@@ -14,12 +14,12 @@
 namespace velour {
 namespace {
 
-/// A descriptor of a file that has no name any more.
+/// Descriptor of a temporary file whose name has been unlinked.
 int nameless_file(const std::string& folder, uint64_t bytes) {
   std::string name = folder + "/.velour-scratch-XXXXXX";
   const int file = mkstemp(name.data());
   if (file >= 0) unlink(name.c_str());
-  // Allocated now: a full disk is a sentence here, and would be a signal when a page is touched.
+  // Allocated now: a full disk is an error message here, but would be a signal when a page is touched.
   const int problem = file < 0 ? errno : posix_fallocate(file, 0, static_cast<off_t>(bytes));
   if (problem == 0) return file;
   if (file >= 0) close(file);
@@ -33,7 +33,7 @@ ScratchPages::ScratchPages(uint64_t bytes, uint64_t limit, const std::string& fo
     : bytes_(bytes), in_file_(bytes > limit) {
   if (bytes == 0) return;
   const int file = in_file_ ? nameless_file(folder, bytes) : -1;
-  // Memory comes from the kernel, too: it is zeroed page by page when it is used, by whoever uses it.
+  // Without a file, memory also comes from mmap: the kernel zeroes each page on first use, in the thread that uses it.
   data_ = mmap(nullptr, bytes, PROT_READ | PROT_WRITE, in_file_ ? MAP_SHARED : MAP_PRIVATE | MAP_ANONYMOUS, file, 0);
   const int problem = errno;
   if (file >= 0) close(file);

@@ -1,4 +1,4 @@
-// Memory that may be larger than the machine's.
+// Temporary memory that may exceed the machine's.
 #pragma once
 
 #include <cstdint>
@@ -6,20 +6,20 @@
 
 namespace velour {
 
-/// Zeroed pages. Above `limit` bytes they are those of a mapped temporary file in `folder` that has no name, so that a
-/// killed process leaves nothing, and leave memory whenever release() is called.
+/// Zeroed pages. Above `limit` bytes they are backed by an unnamed temporary file in `folder`, so that a killed process
+/// leaves nothing behind, and release() can evict them from memory.
 class ScratchPages {
  public:
-  /// Throws Error(io) when the file cannot be made, std::bad_alloc when there is no memory.
+  /// Throws Error(io) if the file cannot be created, std::bad_alloc if there is no memory.
   ScratchPages(uint64_t bytes, uint64_t limit, const std::string& folder);
   ~ScratchPages();
   ScratchPages(const ScratchPages&) = delete;
   ScratchPages& operator=(const ScratchPages&) = delete;
 
-  /// Null where there are no bytes.
+  /// Null for 0 bytes.
   void* data() const { return data_; }
   bool in_file() const { return in_file_; }
-  /// Takes those of a file out of the process's memory; they are read again when used. Thread-safe.
+  /// Evicts file-backed pages from the process's memory; they are read back when used. Thread-safe.
   void release() const;
 
  private:

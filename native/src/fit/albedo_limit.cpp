@@ -14,9 +14,9 @@
 namespace velour {
 namespace {
 
-// What is aimed at: rounding to half floats and views in between stay below 1.
+// Target albedo. The margin below 1 covers rounding to half floats and views between the evaluated ones.
 constexpr double kGoal = 0.997;
-// Rounds of measuring the albedo; each ends with every measured view at the goal, to first order.
+// Maximum number of rounds. Each evaluates the albedo and brings every view to the target, to first order.
 constexpr int kLimitRounds = 20;
 constexpr int kSweeps = 400;
 
@@ -34,13 +34,13 @@ std::vector<Vec3> limited_views(const ParametricBrdf& brdf) {
   return out;
 }
 
-/// One view's claim on the logarithms of a channel's coefficients: their change there must be at most -`excess`.
+/// Constraint of one view on the log coefficients of a channel: their change at the view must be at most -`excess`.
 struct Claim {
   ViewTaps taps;
   double excess;
 };
 
-/// Changes of the nodes that meet all claims, by projections onto the claims in turn: near the least change of all.
+/// Changes of the node values that satisfy all constraints, by cyclic projection: close to the smallest such change.
 std::vector<double> change_of(const std::vector<Claim>& claims, size_t nodes) {
   std::vector<double> change(nodes, 0.0);
   for (int sweep = 0; sweep < kSweeps; ++sweep) {

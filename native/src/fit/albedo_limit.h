@@ -1,4 +1,4 @@
-// No more light out of a model than goes in.
+// Limits the directional albedo of a parametric model to 1.
 #pragma once
 
 #include "brdf/parametric_brdf.h"
@@ -6,9 +6,9 @@
 
 namespace velour {
 
-/// Lowers the coefficients of `brdf` until no channel of its directional albedo is above 1 at any view, views of half a
-/// degree apart, and no further than that: where the albedo is below 1 by more than the reach of the splines, f stays
-/// as it was. Control values stay half floats. True when anything was changed.
+/// Lowers the coefficients of `brdf` until no channel of its directional albedo exceeds 1, tested at views half a
+/// degree apart. f does not change at views beyond the spline support of those that exceed 1. Control values stay half
+/// floats. Returns whether anything changed.
 bool limit_albedo(ParametricBrdf& brdf, int threads, const Progress& progress);
 
 }  // namespace velour

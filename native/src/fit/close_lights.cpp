@@ -12,13 +12,13 @@ namespace velour {
 namespace {
 
 constexpr int kEvenLights = 4096, kCloseRings = 72, kCloseSpokes = 40;
-constexpr double kInnerRadius = 1e-4;  // radians; a Gaussian of bandwidth 1e8 is as wide
+constexpr double kInnerRadius = 1e-4;  // radians; the width of a Gaussian of bandwidth 1e8
 
 CloseRings rings_about(const Vec3& axis) { return {axis, kInnerRadius, 0.5 * kPiD, kCloseRings, kCloseSpokes}; }
 
 constexpr int kOwnLights = 2048;
 
-/// What the sampler draws from a rank-1 lattice.
+/// Appends directions that the material's own sampler generates from a rank-1 lattice.
 void append_own(const Material& material, const PreparedBrdf& point, std::vector<Vec3>& out) {
   for (int i = 0; i < kOwnLights; ++i) {
     const double u = (i + 0.5) / kOwnLights, v = 0.6180339887498949 * i;

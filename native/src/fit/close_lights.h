@@ -1,4 +1,4 @@
-// Light directions between which no highlight hides.
+// Light directions dense enough to resolve any highlight.
 #pragma once
 
 #include <vector>
@@ -7,17 +7,17 @@
 
 namespace velour {
 
-/// Directions above the horizon and the solid angles (sr) that they stand for.
+/// Directions above the horizon and the solid angles (sr) that they represent.
 struct WeightedLights {
   std::vector<Vec3> wl;
   std::vector<double> weight;
 };
 
-/// Directions for the error of `material` at the view `wv`: equal-area directions joined with rings about the mirror
-/// direction of `wv` and about `wv` itself, whose radii grow geometrically from a ten-thousandth of a radian: the two
-/// places where measured materials are sharp are seen at every scale. So are narrow lobes of the material itself,
-/// wherever they are, by directions that its own sampler draws. Weights are one over the summed densities of the four
-/// sets, the balance heuristic [VG95] as a quadrature.
+/// Directions for the error of `material` at the view `wv`: equal-area directions, rings about the mirror direction of
+/// `wv` and about `wv` itself, and directions from the material's own sampler. The radii of the rings grow
+/// geometrically from 1e-4 radians, so the two places where measured materials are sharp are resolved at every scale.
+/// The sampled directions resolve narrow lobes of the material anywhere. Each weight is one over the summed densities
+/// of the four sets: the balance heuristic [VG95] as a quadrature.
 WeightedLights close_lights(const Material& material, const Vec3& wv);
 
 }  // namespace velour

@@ -8,7 +8,7 @@ namespace velour {
 void CloseRings::append(std::vector<Vec3>& out) const {
   for (int i = 0; i < rings_; ++i) {
     const double angle = i == 0 ? inner_ / std::sqrt(2.0) : std::sqrt(edge(i) * edge(i + 1));
-    const double turn = 0.6180339887498949 * i;  // golden ratio: neighbouring rings do not line up
+    const double turn = 0.6180339887498949 * i;  // golden ratio: neighboring rings do not line up
     for (int k = 0; k < spokes_; ++k) {
       const double phi = 2 * kPiD * (k + turn) / spokes_;
       const Vec3d local(std::sin(angle) * std::cos(phi), std::sin(angle) * std::sin(phi), std::cos(angle));

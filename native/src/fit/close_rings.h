@@ -1,4 +1,4 @@
-// Directions ever closer to an axis.
+// Directions that become denser towards an axis.
 #pragma once
 
 #include <vector>
@@ -15,7 +15,7 @@ class CloseRings {
 
   size_t spokes() const { return static_cast<size_t>(spokes_); }
 
-  /// One direction a cell, ring by ring from the inside.
+  /// Appends one direction per cell, ring by ring from the inside.
   void append(std::vector<Vec3>& out) const;
   /// Directions per steradian at `w`; 0 beyond the last ring.
   double density(const Vec3& w) const;

@@ -15,20 +15,20 @@ namespace velour {
 namespace {
 
 constexpr int kComparedLights = 4096;
-constexpr uint64_t kLeastLights = 64;  // fewer tell nothing of a view
-// Lights that see less than a half or more than twice the energy miss a highlight or take one direction for all of it;
-// where fewer than two carry what is seen, the error is that of one direction.
+constexpr uint64_t kLeastLights = 64;  // minimum number of covered lights; fewer say nothing about a view
+// Lights that capture less than half or more than twice the energy miss a highlight or take one direction for all of
+// it. If fewer than two lights carry the captured energy, the error is that of a single direction.
 constexpr double kEnergyFactor = 2, kLeastCarriers = 2;
-// Of measured materials the error on close lights is 0.7 to 1.1 times that on even ones; beyond this a narrow lobe of
-// the model falls between the even ones.
+// For measured materials the error on close lights is 0.7 to 1.1 times that on even lights. Beyond these bounds a
+// narrow lobe of the model falls between the even lights.
 constexpr double kErrorFactor = 1.5, kErrorSum = 0.01;
 
 std::string key_of(int degrees) { return std::to_string(degrees); }
 
-/// Errors of one reported view, one entry an azimuth.
+/// Errors of one reported view, one entry per azimuth.
 using AzimuthErrors = std::vector<ViewError>;
 
-/// Mean over the azimuths that hold at least `least` directions; nothing when none does.
+/// Mean over the azimuths with at least `least` directions; nothing if there are none.
 std::optional<double> mean_error(const AzimuthErrors& errors, uint64_t least) {
   double sum = 0;
   int covered = 0;
@@ -55,8 +55,8 @@ ViewError error_of_view(const Measurement& measurement, const Material& material
   return error;
 }
 
-/// Errors of one reported view on the even lights, or on close ones where those see another energy. `out` takes the
-/// shares of lights and of energy.
+/// Errors of one reported view on even lights, or on close_lights() if the even ones misjudge energy or error. Writes
+/// covered_share and narrow_views of `out`.
 AzimuthErrors table_errors(const Measurement& measurement, const Material& material, int degrees, Progress& progress,
                            Comparison& out) {
   const WeightedLights even{hemisphere_fibonacci(kComparedLights),
@@ -121,7 +121,7 @@ Comparison compare(const Measurement& measurement, const Material& material, Pro
     out.noise_by_view_angle[key_of(degrees)] = entry ? noise_of_view(measurement, degrees, progress) : std::nullopt;
     progress.update(++done / static_cast<double>(kHeldOutViews.size()));
   }
-  // Where nothing can be judged, nothing good may be claimed.
+  // If no view can be judged, an error of 1 is reported rather than a good one.
   out.relative_l2 = weights > 0 ? weighted / weights : 1.0;
   if (out.samples > 0) out.log_rms = std::sqrt(log_sq / static_cast<double>(out.samples));
   return out;

@@ -1,4 +1,4 @@
-// How much of the light that arrives from all sides is reflected to one view.
+// Directional albedo: the radiance reflected to a view under uniform light of radiance 1.
 #pragma once
 
 #include "brdf/measurement.h"
@@ -6,12 +6,12 @@
 
 namespace velour {
 
-/// The integral of f cos over the lights, of each channel.
+/// Integral of f cos over the light directions, per channel.
 Vec3d directional_albedo(const Material& material, const Vec3& wv);
 
 struct MeasuredAlbedo {
-  Vec3d albedo{0};     // of the lights that the measurement covers
-  double covered = 0;  // the share of the integral of the cosine that these have
+  Vec3d albedo{0};     // over the light directions that the measurement covers
+  double covered = 0;  // their share of the integral of the cosine
 };
 MeasuredAlbedo directional_albedo(const Measurement& measurement, const Vec3& wv);
 

@@ -20,7 +20,7 @@ uint64_t size_of_parametric(const Model& model, const FitOptions& options) {
                                             ".");
 }
 
-/// It is as small as it may be already.
+/// A scene model is already as small as its error allows, so the bound is only checked.
 Model bounded_for_scene(const Measurement& measurement, const FitOptions& options, Progress& progress) {
   Model model = fit_for_scene(measurement, options, progress);
   const uint64_t size = size_of_parametric(model, options);
@@ -28,7 +28,7 @@ Model bounded_for_scene(const Measurement& measurement, const FitOptions& option
   return model;
 }
 
-/// Fewer lobes until the model is within options.max_bytes: a file's size is known only when it is made.
+/// Refits with fewer lobes until the model is within options.max_bytes: its size is known only once it is encoded.
 Model bounded_parametric(const Measurement& measurement, FitOptions options, Progress& progress) {
   while (true) {
     Model model = fit_parametric(measurement, options, progress);

@@ -1,4 +1,4 @@
-// Which model a measurement is fitted with: the one place that knows all fits.
+// Fits a measurement with any kind of model. The only place that knows all fits.
 #pragma once
 
 #include "fit/fit_options.h"
@@ -6,12 +6,12 @@
 
 namespace velour {
 
-/// In the order of Model's bodies; the numbers are those of VLR_MODEL_*.
+/// In the order of Model's bodies; the values are those of VLR_MODEL_*.
 enum class ModelKind { scattered = 0, parametric = 1 };
 
 constexpr ModelKind kDefaultModelKind = ModelKind::parametric;
 
-/// options.max_bytes bounds models of either kind; a parametric one is fitted again with fewer lobes until it holds.
+/// options.max_bytes bounds models of either kind; a parametric one is refitted with fewer lobes until it is met.
 Model fit_model(ModelKind kind, const Measurement& measurement, const FitOptions& options, Progress& progress);
 
 }  // namespace velour

@@ -14,7 +14,7 @@
 namespace velour {
 namespace {
 
-// No error of a real measurement doubles what a perfect reflector sends back.
+// Albedo above which the scale must be wrong: no measurement error doubles the light of a perfect reflector.
 constexpr double kWrongScale = 2;
 
 std::string number(double x, const char* format = "%.4g") {
@@ -44,7 +44,7 @@ void warn_of_errors(const FitRecord& record, std::vector<std::string>& warnings)
   }
 }
 
-/// One sentence for all fitted views beyond the tolerance, so that a hard material does not bury the rest.
+/// One warning for all fitted views beyond the tolerance, so that a difficult material does not bury other warnings.
 void warn_of_fitted_views(const std::vector<FittedView>& fitted, const FitOptions& options, bool isotropic,
                           std::vector<std::string>& warnings) {
   constexpr size_t kMostNamed = 12;
@@ -67,7 +67,7 @@ void warn_of_fitted_views(const std::vector<FittedView>& fitted, const FitOption
 void warn_of_albedo(const Measurement& measurement, const Vec3& wv, FitRecord& record) {
   const std::string where =
       "albedo " + number(record.albedo_max) + " at view " + view_name(wv, measurement.isotropic()) + " degrees: ";
-  const double measured = largest(directional_albedo(measurement, wv).albedo);  // of what it covers
+  const double measured = largest(directional_albedo(measurement, wv).albedo);  // over the lights that it covers
   if (measured > kWrongScale) {
     record.warnings.push_back(where +
                               "the measurement reflects more light there than arrives, far more than errors "
@@ -100,7 +100,7 @@ void add_albedos(const Measurement& measurement, const Material& material, const
   if (record.albedo_max > 1) warn_of_albedo(measurement, brightest, record);
 }
 
-/// Leaves the errors inside `views`, and those of the fitted views in place of their mean.
+/// Removes the errors outside `views` and replaces the mean by that of the fitted views.
 void forget_errors_outside(const ViewRange& views, const std::vector<FittedView>& fitted, FitRecord& record) {
   for (auto& [degrees, error] : record.by_view_angle) {
     if (!views.holds(radians_from(std::stod(degrees)))) error = std::nullopt;

@@ -1,4 +1,4 @@
-// What a fit says of itself: errors, albedo, warnings.
+// The record of a fit: errors, albedos, warnings.
 #pragma once
 
 #include <string>
@@ -11,18 +11,18 @@
 
 namespace velour {
 
-/// Error of one view that was fitted.
+/// Error of one fitted view.
 struct FittedView {
   Vec3 wv;
   double relative_l2;
 };
 
-/// The tolerance that holds at polar angle `theta_v` (radians): twice as much beyond 75 degrees.
+/// The tolerance at polar angle `theta_v` (radians): doubled beyond 75 degrees.
 double tolerance_at(double tolerance, double theta_v);
 
-/// Errors by compare(), albedos, and a sentence for each thing a user should know. `fitted` are the views of the model,
-/// `views` the range that it is for: errors elsewhere are nobody's, and those of a part of the views are no promise of
-/// a tolerance.
+/// Errors from compare(), albedos, and warnings for the user. `fitted` are the views of the model, `views` the range
+/// that it is valid for. Errors outside the range are not reported; a model for part of the views is not checked
+/// against the tolerance.
 FitRecord report_fit(const Measurement& measurement, const Material& material, const FitOptions& options,
                      const std::vector<FittedView>& fitted, const ViewRange& views, Progress& progress);
 

@@ -29,7 +29,7 @@ double relative_l2(const Material& material, const MeasuredSlice& slice) {
   return error > 0 ? 1 : 0;  // a black slice
 }
 
-/// Numbers of views worth a try: each two thirds of the one before.
+/// Numbers of views to try, each two thirds of the previous one.
 std::vector<size_t> view_counts(size_t views, uint64_t max_bytes) {
   std::vector<size_t> counts;
   for (size_t n = views; n >= 1; n = std::min(n - 1, n * 2 / 3)) {

@@ -1,4 +1,4 @@
-// The fitted slices of all views: from greedy paths to a model, whole or within a bound in bytes.
+// The fitted slices of all views, and the per-view model made of them, optionally within a bound in bytes.
 #pragma once
 
 #include <memory>
@@ -11,7 +11,7 @@
 
 namespace velour {
 
-/// Slice i was fitted by path i; only the last fit of a path is in the model.
+/// Path i is the fit of slice i; only its last entry is in the model.
 struct FittedSlices {
   std::vector<MeasuredSlice> slices;
   std::vector<ViewPath> paths;
@@ -22,13 +22,13 @@ uint64_t parameter_bytes(const FittedSlices& fitted);
 
 std::shared_ptr<ScatteredBrdf> assemble(const FittedSlices& fitted, bool isotropic, const FitOptions& options);
 
-/// Relative L2 of `brdf` at the samples of `slices`, as a mean over the views weighted by cos(theta_v). The model need
-/// not have these views: then its interpolation is what is judged.
+/// Relative L2 error of `brdf` at the samples of `slices`, as a mean over the views weighted by cos(theta_v). At views
+/// that the model does not have, this judges its interpolation.
 double error_over_slices(std::shared_ptr<const ScatteredBrdf> brdf, const std::vector<MeasuredSlice>& slices);
 
-/// The part of `all` whose parameters take at most `max_bytes` (at least those of one view without lobes) and whose
-/// model comes closest to the samples of all views: several numbers of views are tried, evenly spread, each with the
-/// lobes that matter most.
+/// The subset of `all` whose parameters take at most `max_bytes` (at least those of one view without lobes) and whose
+/// model is closest to the samples of all views. Several numbers of evenly spread views are tried, each with the lobes
+/// that matter most.
 FittedSlices within(uint64_t max_bytes, const FittedSlices& all, bool isotropic, const FitOptions& options);
 
 }  // namespace velour

@@ -9,7 +9,7 @@
 namespace velour {
 namespace {
 
-/// The unknowns of one colour, in the order of Basis.
+/// The unknowns of one channel, in the order of Basis.
 Vec3 unknowns(const GgxParameters& p, int c) { return {p.diffuse[c], p.f0[c], p.f90[c]}; }
 
 void set_unknowns(GgxParameters& p, int c, const Vec3& value) {
@@ -53,7 +53,7 @@ GgxParameters GgxProblem::completed(const GgxParameters& start) const {
     const Basis b = basis(i, start.alpha);
     const Eigen::Vector3d row(b.base, b.normal, b.grazing);
     for (int c = 0; c < 3; ++c) {
-      const double y = samples_[i].f_cos[c], weight = samples_[i].weight / (y + floor_);  // g'(y)^2 but for a factor
+      const double y = samples_[i].f_cos[c], weight = samples_[i].weight / (y + floor_);  // g'(y)^2 up to a factor
       gram[c].noalias() += weight * row * row.transpose();
       moment[c].noalias() += weight * y * row;
     }
@@ -95,7 +95,7 @@ GgxProblem::Normal GgxProblem::normal(const GgxParameters& p) const {
   return n;
 }
 
-/// A reflectance of 0 that would become negative stays out of this step.
+/// Excludes reflectances of 0 that would become negative from this step.
 void GgxProblem::freeze_at_zero(const GgxParameters& p, Normal& n) const {
   for (int c = 0; c < 3; ++c) {
     const Vec3 now = unknowns(p, c);
@@ -110,7 +110,7 @@ void GgxProblem::freeze_at_zero(const GgxParameters& p, Normal& n) const {
 GgxParameters GgxProblem::moved(const GgxParameters& p, const decltype(Normal::slope)& step) const {
   GgxParameters to = p;
   for (int k = 0; k < 2; ++k) {
-    const double by = std::clamp(step[isotropic_ ? 0 : k], -1.0, 1.0);  // the linear model reaches no further
+    const double by = std::clamp(step[isotropic_ ? 0 : k], -1.0, 1.0);  // the linear model holds no further
     to.alpha[k] = std::clamp(p.alpha[k] * static_cast<float>(std::exp(by)), kMinGgxAlpha, kLargestAlpha);
   }
   for (int c = 0; c < 3; ++c) {

@@ -9,10 +9,10 @@
 
 namespace velour {
 
-/// Minimises sum_i weight_i |g(model_i) - g(f_cos_i)|^2 over colours, g(y) = sqrt(y + floor).
+/// Minimizes sum_i weight_i |g(model_i) - g(f_cos_i)|^2, the norm over channels, with g(y) = sqrt(y + floor).
 class GgxProblem {
  public:
-  /// Unknowns: log alpha (one when isotropic, else two), then three a colour.
+  /// Unknowns: log alpha (one if isotropic, otherwise two), then three per channel.
   using Normal = NormalEquations<11>;
   static constexpr float kLargestAlpha = 2;
 
@@ -20,9 +20,9 @@ class GgxProblem {
 
   double cost(const GgxParameters& p) const;
   Normal normal(const GgxParameters& p) const;
-  /// log alpha moves by at most 1; reflectances stay non-negative.
+  /// Changes log alpha by at most 1 and keeps reflectances non-negative.
   GgxParameters moved(const GgxParameters& p, const decltype(Normal::slope)& step) const;
-  /// With the reflectances that suit its alpha: non-negative least squares of the problem linearised at the data.
+  /// `start` with the best reflectances for its alpha: non-negative least squares, linearized at the data.
   GgxParameters completed(const GgxParameters& start) const;
 
  private:

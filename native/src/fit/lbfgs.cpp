@@ -7,11 +7,11 @@ namespace velour {
 namespace {
 
 struct Move {
-  Eigen::VectorXd step, change;  // of the parameters, of the slope
+  Eigen::VectorXd step, change;  // changes of the parameters and of the slope
   double along() const { return step.dot(change); }
 };
 
-/// The inverse of the curvature, as far as the moves know it, times the slope.
+/// Product of the slope and the inverse Hessian, as approximated from the moves.
 Eigen::VectorXd turned(const std::deque<Move>& moves, Eigen::VectorXd slope) {
   if (moves.empty()) return slope * (0.1 / slope.norm());
   std::vector<double> share(moves.size());
@@ -30,9 +30,9 @@ Eigen::VectorXd turned(const std::deque<Move>& moves, Eigen::VectorXd slope) {
 
 Eigen::VectorXd descend_lbfgs(const SmoothFunction& f, Eigen::VectorXd x, const LbfgsOptions& options,
                               const std::function<void(int)>& after_step) {
-  constexpr int kShorter = 8;       // times that a step is cut before the descent ends
-  constexpr double kCut = 0.4;      // by which
-  constexpr double kEnough = 1e-4;  // of the gain that the slope promises
+  constexpr int kShorter = 8;       // number of cuts of a step that ends the descent
+  constexpr double kCut = 0.4;      // factor of a cut
+  constexpr double kEnough = 1e-4;  // minimum share of the gain that the slope predicts
   constexpr int kPatience = 10;
   Eigen::VectorXd slope, to_slope;
   double value = f(x, slope), earlier = value;

@@ -1,4 +1,4 @@
-// Descent of a smooth function of many parameters by limited-memory BFGS.
+// Minimizes a smooth function of many parameters by limited-memory BFGS.
 #pragma once
 
 #include <Eigen/Core>
@@ -6,17 +6,17 @@
 
 namespace velour {
 
-/// The value at `x`; writes the slope.
+/// Returns the value at `x` and writes the gradient to `slope`.
 using SmoothFunction = std::function<double(const Eigen::VectorXd& x, Eigen::VectorXd& slope)>;
 
 struct LbfgsOptions {
   int steps = 100;
-  int memory = 12;        // pairs of steps and changes of slope that are kept
-  double settled = 1e-6;  // relative gain of ten steps that ends the descent
+  int memory = 12;        // number of stored pairs of step and change of slope
+  double settled = 1e-6;  // relative gain over ten steps below which the descent ends
 };
 
-/// Minimises `f` from `x` ([NW06], Algorithms 7.4 and 3.1: two loops, backtracking). Never worse than the start.
-/// `after_step` is called once a step with its number.
+/// Minimizes `f` from `x` ([NW06], Algorithms 7.4 and 3.1: two loops, backtracking). Never worse than the start.
+/// Calls `after_step` after each step with its number.
 Eigen::VectorXd descend_lbfgs(const SmoothFunction& f, Eigen::VectorXd x, const LbfgsOptions& options,
                               const std::function<void(int)>& after_step);
 

@@ -1,4 +1,4 @@
-// Damped Gauss-Newton descent of a few parameters, and the choice among several starts.
+// Damped Gauss-Newton descent in a few parameters, and the choice among several starts.
 #pragma once
 
 #include <algorithm>
@@ -11,7 +11,7 @@
 
 namespace velour {
 
-/// The Gauss-Newton model of a cost: curvature step = -slope. `kMost` unknowns live without allocation.
+/// The Gauss-Newton model of a cost: curvature * step = -slope. Up to `kMost` unknowns, without allocation.
 template <int kMost>
 struct NormalEquations {
   Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor, kMost, kMost> curvature;
@@ -22,7 +22,7 @@ struct NormalEquations {
     slope.setZero(size);
   }
 
-  /// The unknown `at` stays where it is: for one at its bound that would cross it.
+  /// Fixes the unknown `at`: for an unknown at its bound that would cross it.
   void freeze(Eigen::Index at) {
     curvature.row(at).setZero();
     curvature.col(at).setZero();
@@ -31,12 +31,12 @@ struct NormalEquations {
   }
 };
 
-/// Descends from `p`; `check` is called once a step. A problem has cost(p), normal(p), its NormalEquations there, and
-/// moved(p, step), the parameters that a step leads to within their bounds.
+/// Descends from `p` and calls `check` once per step. A problem has cost(p); normal(p), the NormalEquations at p; and
+/// moved(p, step), the parameters after a step, within their bounds.
 template <class Problem, class Parameters>
 Parameters descend(const Problem& problem, Parameters p, const std::function<void()>& check) {
   constexpr int kSteps = 40;
-  constexpr double kSettled = 1e-5;  // relative gain of a step that ends the descent
+  constexpr double kSettled = 1e-5;  // relative gain of a step below which the descent ends
   double now = problem.cost(p), damping = 1e-3;
   auto n = problem.normal(p);
   for (int step = 0; step < kSteps && damping < 1e8; ++step) {
@@ -71,7 +71,7 @@ bool better(const Candidate<Parameters>& a, const Candidate<Parameters>& b) {
   return a.cost < b.cost;
 }
 
-/// The starts with their costs, in their own order.
+/// The completed starts with their costs, in the order of `starts`.
 template <class Problem, class Parameters>
 std::vector<Candidate<Parameters>> judged(const Problem& problem, std::span<const Parameters> starts, int threads,
                                           Progress& progress) {
@@ -83,7 +83,7 @@ std::vector<Candidate<Parameters>> judged(const Problem& problem, std::span<cons
   return candidates;
 }
 
-/// The best end of descents from all `candidates`, at least one; the first of equals.
+/// Best result of descents from all `candidates`, at least one; the first of equal ones.
 template <class Problem, class Parameters>
 Parameters best_descent(const Problem& problem, std::vector<Candidate<Parameters>> candidates, int threads,
                         Progress& progress) {

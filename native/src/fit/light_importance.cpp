@@ -8,7 +8,7 @@ namespace velour {
 namespace {
 
 constexpr double kMinImportance = 0.1, kMaxImportance = 10;
-// Light at grazing incidence brings little; its radiance is not to be overrated for that.
+// Minimum divisor, so that the radiance of light at grazing incidence, which contributes little, is not overrated.
 constexpr float kMinLightCosine = 0.05f;
 
 }  // namespace

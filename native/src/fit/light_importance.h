@@ -1,4 +1,4 @@
-// From which directions scenes light a material.
+// Distribution of incident light over directions, from scene usage.
 #pragma once
 
 #include <vector>
@@ -7,9 +7,9 @@
 
 namespace velour {
 
-/// The mean radiance that observed hits receive by direction, relative to its mean over the hemisphere and kept within
-/// 0.1 and 10, so that no direction is left out of a fit. By the polar angle and by the angle to the view's azimuth, as
-/// isotropic materials see it.
+/// Mean incident radiance of the observed hits by direction, relative to its mean over the hemisphere and clamped to
+/// 0.1..10, so that no direction is left out of a fit. Binned by polar angle and by azimuth relative to the view, which
+/// suffices for isotropic materials.
 class LightImportance {
  public:
   explicit LightImportance(const SceneObservation& observation);

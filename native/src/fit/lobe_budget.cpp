@@ -10,8 +10,8 @@ double cost(const ViewPath& view, size_t lobes) {
   return view.importance * e * e;
 }
 
-/// The best next saving of one view: the shorter prefix with the least rise of error a lobe (the convex hull of the
-/// path, so that a flat stretch behind a steep one is found).
+/// The best next saving of one view: the shorter prefix with the smallest rise of error per lobe (the convex hull of
+/// the path, so that a flat stretch behind a steep one is found).
 struct Saving {
   size_t to = 0;
   double rise_per_lobe = std::numeric_limits<double>::infinity();

@@ -1,4 +1,4 @@
-// How many lobes each view may keep when the model has a bound in bytes.
+// Number of lobes that each view may keep if the size of the model is bounded.
 #pragma once
 
 #include <cstdint>
@@ -8,17 +8,17 @@
 
 namespace velour {
 
-/// The greedy path of one view, and how much its error counts.
+/// The greedy path of one view, and the importance of its error.
 struct ViewPath {
   std::vector<SliceFit> path;
   double importance;  // cos(theta_v): the weight of the view in relative_l2
 };
 
-/// Lobes a view such that all views together take at most `lobes`: lobes go where they lower the weighted sum of
-/// squared errors least. The exact minimum where errors fall ever more slowly along each path, near it elsewhere.
+/// Number of lobes of each view, at most `lobes` in total. Lobes are removed where they lower the weighted sum of
+/// squared errors least: the exact minimum if the squared errors along each path are convex, otherwise close to it.
 std::vector<size_t> share_lobes(const std::vector<ViewPath>& views, uint64_t lobes);
 
-/// Indices of `keep` of `count` views, evenly spread, first and last among them.
+/// Indices of `keep` of `count` views, evenly spread, including the first and last.
 std::vector<size_t> thinned(size_t count, size_t keep);
 
 }  // namespace velour

@@ -12,11 +12,11 @@ namespace {
 
 using Index = Eigen::Index;
 
-// All trials take the first steps, the best one the rest.
+// Every trial takes the first steps; only the best takes the remaining ones.
 constexpr int kFirstSteps = 3, kGrowthSteps = 20;
 constexpr double kGrowthTolerance = 3e-3;
 
-/// One lobe more of each of the `spaces`, and one split in two, each after its first steps.
+/// Trials after their first steps: a new lobe in each of the `spaces` and, if samples are dense, a split lobe.
 std::vector<TrackedLobes> first_steps(const TrackedProblem& problem, const TrackedLobes& lobes,
                                       std::span<const LobeSpace> spaces) {
   std::vector<std::optional<TrackedLobes>> found(spaces.size() + (problem.dense() ? 1 : 0));
@@ -36,7 +36,7 @@ std::vector<TrackedLobes> first_steps(const TrackedProblem& problem, const Track
 }  // namespace
 
 bool add_lobe(TrackedProblem& problem, TrackedLobes& lobes, std::span<const LobeSpace> spaces) {
-  problem.evaluate(lobes.model, lobes.x);  // its residuals are what the search looks at
+  problem.evaluate(lobes.model, lobes.x);  // the search reads its residuals
   std::vector<TrackedLobes> trials = first_steps(problem, lobes, spaces);
   const auto best = std::min_element(trials.begin(), trials.end(), costs_less);
   if (best != trials.end()) refine(problem, *best, kGrowthSteps - kFirstSteps, kGrowthTolerance);

@@ -1,4 +1,4 @@
-// How the lobes of the parametric model come and go.
+// Adds and exchanges lobes of the parametric model.
 #pragma once
 
 #include <span>
@@ -7,12 +7,12 @@
 
 namespace velour {
 
-/// One lobe more: a new one of one of the `spaces`, or, where samples are dense, one split in two; what fits best.
-/// False, and nothing changed, when nothing lowers the cost.
+/// Adds the best lobe: a new one in one of the `spaces` or, if samples are dense, by splitting one in two. Returns
+/// false and changes nothing if that does not lower the cost.
 bool add_lobe(TrackedProblem& problem, TrackedLobes& lobes, std::span<const LobeSpace> spaces);
 
-/// Takes out the lobe that is missed least and adds the one that gains most without it. False, and nothing changed,
-/// when that does not lower the cost or there is but one.
+/// Removes the least important lobe and adds the one that gains most without it. Returns false and changes nothing if
+/// that does not lower the cost or there are fewer than two lobes.
 bool exchange_lobe(TrackedProblem& problem, TrackedLobes& lobes);
 
 }  // namespace velour

@@ -12,15 +12,15 @@ namespace {
 
 using P = ParametricBrdf;
 
-constexpr size_t kStride = 4;  // of the blocks of samples that the search looks at
-// A start below the best coefficient leaves room for the lobes that are there; none starts at nothing.
+constexpr size_t kStride = 4;  // the search reads one block of samples in kStride
+// Starting coefficient: this share of the best one, to leave room for present lobes; at least this part of the peak.
 constexpr double kShare = 0.7, kPeakFloor = 1e-3;
-// So many of the candidates are fitted alone before one is chosen.
+// Number of candidates that are fitted on their own before one is chosen.
 constexpr size_t kTried = 3;
 constexpr int kTrySteps = 10;
 constexpr double kTryLeast = 3e-3;
 
-/// A lobe over all views, before the fit bends it.
+/// A lobe over all views, before it is fitted.
 struct LobeCandidate {
   enum class Follows { nothing, view, mirror };
   Follows follows = Follows::nothing;
@@ -38,7 +38,7 @@ struct LobeCandidate {
   }
 };
 
-/// Tilts of length `angle` that differ in direction: along the plane of incidence, or all around.
+/// Tilts by `angle` (radians) in several directions: within the plane of incidence if isotropic, otherwise all around.
 std::vector<std::array<double, 2>> tilts(double angle, bool isotropic) {
   if (angle == 0) return {{0, 0}};
   if (isotropic) return {{angle, 0}, {-angle, 0}};
@@ -52,7 +52,7 @@ std::vector<LobeCandidate> half_candidates(bool isotropic) {
   const auto stretches = isotropic ? std::vector<Ab>{{0, 0}, {0.4, 0}, {-0.4, 0}, {0.9, 0}, {-0.9, 0}}
                                    : std::vector<Ab>{{0, 0}, {0.4, 0}, {-0.4, 0}, {0, 0.4}, {0, -0.4}};
   std::vector<LobeCandidate> out;
-  // The fit moves a bandwidth by a factor e a step.
+  // The fit changes a bandwidth by up to a factor of e per step.
   for (double bandwidth = 1; bandwidth < 1e5; bandwidth *= 2.7) {
     for (const double widths : {0.0, 0.7, 1.5}) {
       for (const auto& t : tilts(widths / std::sqrt(std::max(bandwidth, 4.0)), isotropic)) {
@@ -80,7 +80,7 @@ std::vector<LobeCandidate> light_candidates(bool isotropic) {
   return out;
 }
 
-/// The best coefficients of a candidate at one view, and what they gain.
+/// The best coefficients of a candidate at one view, and their gain.
 struct Start {
   double coefficient[3] = {0, 0, 0};
   double gain = 0;
@@ -133,7 +133,7 @@ Eigen::MatrixXd control_values(LobeSpace space, const LobeCandidate& candidate, 
   return out;
 }
 
-/// A lobe alone, of the given space and control values, in the model of `lobes`.
+/// The model of `lobes` with a single lobe of the given space and control values.
 TrackedLobes alone(const TrackedLobes& lobes, LobeSpace space, const Eigen::MatrixXd& control) {
   TrackedLobes out = lobes;
   out.model.space.assign(1, space);
@@ -141,7 +141,7 @@ TrackedLobes alone(const TrackedLobes& lobes, LobeSpace space, const Eigen::Matr
   return out;
 }
 
-/// The candidates that gain most, best first, one of each bandwidth and way to follow.
+/// The candidates that gain most, best first, at most one for each bandwidth and `follows`.
 std::vector<size_t> most_promising(const std::vector<LobeCandidate>& all, const std::vector<double>& gain) {
   std::vector<size_t> best;
   for (size_t i = 0; i < all.size(); ++i) {

@@ -1,4 +1,4 @@
-// Where one more lobe of the parametric model gains most.
+// Finds the best additional lobe of the parametric model.
 #pragma once
 
 #include <optional>
@@ -7,10 +7,10 @@
 
 namespace velour {
 
-/// `lobes` with one more of `space`. A list of shapes, fixed or following the view or its mirror image, is judged by
-/// what each gains over all views with its best coefficient at each; the few best are fitted, each by itself, to what
-/// `lobes` leave, and the best of these joins. The problem must hold the residuals of `lobes`. Nothing when no lobe
-/// gains anything.
+/// `lobes` with one more lobe in `space`. A list of shapes, fixed or following the view or its mirror direction, is
+/// ranked by the gain of each over all views with its best coefficient at each. The few best are fitted separately to
+/// the residual of `lobes`, and the best of these is added. The problem must hold the residuals of `lobes`. Nothing if
+/// no shape gains anything.
 std::optional<TrackedLobes> with_best_lobe(const TrackedProblem& problem, const TrackedLobes& lobes, LobeSpace space);
 
 }  // namespace velour

@@ -5,7 +5,7 @@ namespace {
 
 using Index = Eigen::Index;
 
-/// Control values are [node][parameter][lobe]: so many rows of lobes.
+/// Number of rows of the control values [node][parameter][lobe], each of all lobes.
 Index rows_of(const ParametricBrdf& model) {
   return static_cast<Index>(model.spline().node_count()) * model.parameter_count();
 }

@@ -1,4 +1,4 @@
-// Lobes taken out of, and put into, those of a parametric fit.
+// Removes, extracts and joins lobes of a parametric fit.
 #pragma once
 
 #include "fit/tracked_solver.h"
@@ -9,10 +9,9 @@ inline bool costs_less(const TrackedLobes& a, const TrackedLobes& b) { return a.
 
 TrackedLobes without_lobe(const TrackedLobes& lobes, Eigen::Index lobe);
 
-/// One of them, alone.
 TrackedLobes only_lobe(const TrackedLobes& lobes, Eigen::Index lobe);
 
-/// Both, those of `more` last. Their models differ in nothing but lobes.
+/// The lobes of both, those of `more` last. The models may differ only in their lobes.
 TrackedLobes joined(const TrackedLobes& lobes, const TrackedLobes& more);
 
 }  // namespace velour

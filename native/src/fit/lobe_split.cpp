@@ -13,14 +13,14 @@ namespace {
 using Index = Eigen::Index;
 using P = ParametricBrdf;
 
-// The halves' log bandwidth from that of their lobe, and their distance from its centre in widths.
+// Offsets of the halves from their lobe: of the log bandwidth, and of the center in lobe widths.
 constexpr double kNarrower = 0.5, kApart = 0.3;
-// All lobes' halves take one step, those that gained most some more.
+// The halves of all lobes are refined by one step, those of the kKept best by more.
 constexpr size_t kKept = 3;
 constexpr int kSplitSteps = 3;
 constexpr double kSplitTolerance = 1e-3;
 
-/// The half of `lobe`, one alone, to either `side` (1 or -1) of it.
+/// The half on `side` (1 or -1) of `lobe`, which has a single lobe.
 TrackedLobes half_of(const TrackedLobes& lobe, double side) {
   TrackedLobes half = lobe;
   const Index parameters = lobe.model.parameter_count();
@@ -36,7 +36,7 @@ TrackedLobes half_of(const TrackedLobes& lobe, double side) {
   return half;
 }
 
-/// A lobe's halves, fitted to what the others leave.
+/// The halves of a lobe, fitted to the residual of the others.
 struct Split {
   Index lobe;
   TrackedLobes halves;

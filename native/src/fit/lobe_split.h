@@ -1,4 +1,4 @@
-// One lobe of the parametric model becomes two.
+// Splits a lobe of the parametric model in two.
 #pragma once
 
 #include <optional>
@@ -7,10 +7,10 @@
 
 namespace velour {
 
-/// `lobes` with that one split whose halves gain most: a narrower and a wider one, a little apart, of half the
-/// coefficient each, fitted for a few steps to what the other lobes leave. A new lobe is judged by what is left over,
-/// which tells little once that is a ripple about all lobes; halves begin where their lobe was. The problem must hold
-/// the residuals of `lobes`. Nothing when there is no lobe.
+/// `lobes` with the lobe split whose halves gain most: a narrower and a wider one, slightly apart, with half the
+/// coefficient each, fitted for a few steps to the residual of the other lobes. A new lobe is ranked by the residual of
+/// all lobes, which says little once it is a ripple about all of them; halves start from their lobe instead. The
+/// problem must hold the residuals of `lobes`. Nothing if there is no lobe.
 std::optional<TrackedLobes> with_split_lobe(const TrackedProblem& problem, const TrackedLobes& lobes);
 
 }  // namespace velour

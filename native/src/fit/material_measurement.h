@@ -1,4 +1,4 @@
-// A material in the place of a measurement: what fits and comparisons see of a model.
+// A material as a measurement, for fits and comparisons of models.
 #pragma once
 
 #include <memory>
@@ -9,10 +9,10 @@
 
 namespace velour {
 
-/// f of `material`, of one that varies its mean over the surface; every pair above the horizon is covered. Immutable.
+/// f of `material`, or its mean over the surface if it varies. Every pair above the horizon is covered. Immutable.
 class MaterialMeasurement final : public Measurement {
  public:
-  /// `views`: what the material is made for.
+  /// `views`: range of views that the material is valid for.
   explicit MaterialMeasurement(std::shared_ptr<const Material> material, const ViewRange& views = {});
 
   void eval(const Vec3& wv, std::span<const Vec3> wl, std::span<Rgb> f, std::span<uint8_t> valid) const override;

@@ -12,11 +12,11 @@
 namespace velour {
 namespace {
 
-constexpr double kManyInvalid = 0.1;  // of the entries above the horizon
-constexpr double kFewLights = 0.9;    // of the hemisphere
-constexpr size_t kFewSamples = 500;   // some 60 of them held out, a dozen for each reported view
-constexpr double kBrushed = 0.1;      // log of a factor
-constexpr double kDarkest = 0.001;    // albedo; black velvet and soot are above
+constexpr double kManyInvalid = 0.1;  // share of the entries above the horizon
+constexpr double kFewLights = 0.9;    // share of the hemisphere
+constexpr size_t kFewSamples = 500;   // about 60 of them held out, a dozen per reported view
+constexpr double kBrushed = 0.1;      // logarithm of a factor
+constexpr double kDarkest = 0.001;    // albedo; black velvet and soot are brighter
 constexpr double kBrokenReciprocity = 0.1;
 
 std::string three_digits(double x) {
@@ -54,7 +54,7 @@ void warn_of_azimuth(std::span<const ScatteredSample> samples, std::vector<std::
                      "azimuths (docs/formats.md, velour-table) keeps them");
 }
 
-/// The view whose noise is furthest above its tolerance speaks for all.
+/// Names the view whose noise exceeds its tolerance by the largest factor.
 void warn_of_noise(const Comparison& errors, double tolerance, std::vector<std::string>& warnings) {
   int worst = 0, count = 0;
   double most = 1;
@@ -73,7 +73,7 @@ void warn_of_noise(const Comparison& errors, double tolerance, std::vector<std::
                      ": a smaller error there says nothing, a larger tolerance saves lobes");
 }
 
-/// "view 5 degrees", "views 5, 30 degrees" of the keys, and the least of the values.
+/// Names views as "view 5 degrees" or "views 5, 30 degrees", with the smallest of their values.
 class Views {
  public:
   void add(int degrees, double value) {
@@ -130,7 +130,7 @@ void warn_of_darkness(double albedo, double error, std::vector<std::string>& war
   }
 }
 
-/// Noise breaks the measurement's reciprocity but, mostly, not that of the smooth model.
+/// Compares with the model, since noise breaks the reciprocity of a measurement but hardly that of a smooth model.
 bool is_not_reciprocal(const FitRecord& record) {
   const double measured = record.measured_reciprocity.value_or(0);
   return measured > kBrokenReciprocity && record.reciprocity > 0.5 * measured;
@@ -153,7 +153,7 @@ void warn_of_measurement(const Measurement& measurement, const Comparison& error
   warn_of_entries(measurement, record.warnings);
   warn_of_few_samples(measurement.samples().size(), record.all_data, record.warnings);
   warn_of_azimuth(measurement.samples(), record.warnings);
-  // Reciprocal pairs of such a measurement tell nothing of its noise.
+  // Reciprocal pairs of a non-reciprocal measurement say nothing about its noise.
   if (!is_not_reciprocal(record)) warn_of_noise(errors, record.tolerance, record.warnings);
   warn_of_narrow_views(errors, record.warnings);
   warn_of_holes(errors, record.warnings);

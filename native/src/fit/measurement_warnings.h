@@ -1,4 +1,4 @@
-// What the user of a fit is told about the measurement itself: no fit mends it.
+// Warnings about the measurement itself, which no fit can fix.
 #pragma once
 
 #include "brdf/measurement.h"
@@ -6,10 +6,10 @@
 
 namespace velour {
 
-/// Appends to `record.warnings` a sentence, with its numbers, for each of: many invalid entries, few scattered samples,
-/// scattered samples of an anisotropic surface, noise above the tolerance, highlights too narrow for the lights of the
-/// error, lights that are not covered, no light sent back at all or next to none (a wrong scale), and broken
-/// reciprocity. `record` holds everything but the warnings.
+/// Appends to `record.warnings` a sentence, with numbers, for each of: many invalid entries, few irregular samples,
+/// irregular samples of an anisotropic surface, noise above the tolerance, highlights too narrow for the lights of the
+/// error, lights that are not covered, no covered view, no or almost no reflected light (a wrong scale), and broken
+/// reciprocity. All other fields of `record` must be set.
 void warn_of_measurement(const Measurement& measurement, const Comparison& errors, FitRecord& record);
 
 }  // namespace velour

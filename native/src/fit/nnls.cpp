@@ -32,8 +32,8 @@ std::vector<Index> positive_entries(const Eigen::VectorXd& x) {
   return out;
 }
 
-/// Goes from the feasible `x` towards the solution on the entries of `passive`, dropping the entry that reaches 0
-/// first, until that solution is itself positive.
+/// Moves from the feasible `x` towards the solution on the entries of `passive`, dropping the entry that reaches 0
+/// first, until the solution is positive.
 void descend(const Eigen::MatrixXd& gram, const Eigen::VectorXd& moment, double ridge, std::vector<Index> passive,
              Eigen::VectorXd& x) {
   while (!passive.empty()) {
@@ -50,7 +50,7 @@ void descend(const Eigen::MatrixXd& gram, const Eigen::VectorXd& moment, double 
       return;
     }
     for (const Index i : passive) x[i] = std::max(0.0, x[i] + step * (goal[i] - x[i]));
-    x[*blocking] = 0;  // exactly, whatever the rounding: every round drops an entry
+    x[*blocking] = 0;  // exactly, despite rounding, so that every round drops an entry
     passive.erase(blocking);
   }
 }
@@ -67,7 +67,7 @@ void solve_nnls(const Eigen::MatrixXd& gram, const Eigen::VectorXd& moment, doub
     Index best = -1;
     double most = 0;
     for (Index i = 0; i < n; ++i) {
-      // Relative to the column's own length; 1e-10 is above the rounding of the sums and far below any use.
+      // Relative to the length of the column; 1e-10 is above the rounding of the sums and far below any useful gain.
       const double gain = slope[i] / std::sqrt(std::max(gram(i, i), 1e-300));
       const double noise = 1e-10 * std::abs(moment[i]) / std::sqrt(std::max(gram(i, i), 1e-300));
       if (x[i] == 0 && gain > noise && gain > most) most = gain, best = i;
@@ -77,7 +77,7 @@ void solve_nnls(const Eigen::MatrixXd& gram, const Eigen::VectorXd& moment, doub
     passive.insert(std::lower_bound(passive.begin(), passive.end(), best), best);
     const Eigen::VectorXd before = x;
     descend(gram, moment, ridge, passive, x);
-    if (x == before) return;  // the entry came and went: rounding, not progress
+    if (x == before) return;  // the entry was added and dropped: rounding, not progress
   }
 }
 

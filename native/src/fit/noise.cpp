@@ -11,9 +11,9 @@ namespace velour {
 namespace {
 
 constexpr int kNoiseLights = 4096;
-constexpr double kPairDistance = kPiD / 180;  // of each angle of a pair of scattered samples
+constexpr double kPairDistance = kPiD / 180;  // radians; maximum difference per angle of a pair of irregular samples
 
-/// Sums over pairs of equal quantities.
+/// Sums over pairs of values that should be equal.
 class PairNoise {
  public:
   void add(double a, double b) {
@@ -67,7 +67,7 @@ void add_table_pairs(const Measurement& measurement, const Vec3& wv, const Progr
   }
 }
 
-/// An isotropic sample without its azimuth and without its order: what both symmetries leave.
+/// An isotropic sample reduced by both symmetries, mirroring and reciprocity.
 struct ReducedSample {
   double larger, smaller, azimuth;  // polar angles and the difference of the azimuths in [0, pi]
   double f, cosine;                 // luminance, and the cosine that weights it
@@ -87,7 +87,7 @@ std::vector<ReducedSample> reduced(std::span<const ScatteredSample> samples) {
   return out;
 }
 
-/// The distance on the sphere that a difference of azimuths makes.
+/// Azimuths are compared by their distance on the sphere.
 bool is_pair(const ReducedSample& a, const ReducedSample& b) {
   return std::abs(a.smaller - b.smaller) <= kPairDistance &&
          std::sin(std::min(a.smaller, b.smaller)) * std::abs(a.azimuth - b.azimuth) <= kPairDistance;

@@ -14,7 +14,7 @@ size_t most_lobes(const FittedSlices& fitted) {
   return most;
 }
 
-/// Of `fitted` with at most `lobes` lobes a view.
+/// The point of `fitted` with at most `lobes` lobes per view.
 OrderPoint point_at(const FittedSlices& fitted, size_t lobes, double tolerance) {
   OrderPoint point{static_cast<int>(lobes), 0, 0, 0};
   double sum = 0, weights = 0;

@@ -1,4 +1,4 @@
-// The order curve of a scattered fit, read off the greedy paths of its views: no view is fitted again.
+// The order curve of a per-view fit, from the greedy paths of its views, without refitting.
 #pragma once
 
 #include "fit/fitted_slices.h"
@@ -6,8 +6,8 @@
 
 namespace velour {
 
-/// The points of at most 1, 2, 4, ... lobes a view out of `all`, and `chosen`, what became the model. Errors are those
-/// of the views at their own samples: the interpolation between views is not in them.
+/// The points of `all` with at most 1, 2, 4, ... lobes per view, and that of `chosen`, the stored model. Errors are
+/// those of the views at their own samples, without the interpolation between views.
 OrderCurve order_of_slices(const FittedSlices& all, const FittedSlices& chosen, double tolerance);
 
 }  // namespace velour

@@ -10,14 +10,14 @@
 namespace velour {
 namespace {
 
-/// f of each wl for one view; `covered` comes filled with 1.
+/// f of each wl for one view; `covered` is 1 everywhere on entry.
 using Source =
     std::function<void(const Vec3& wv, std::span<const Vec3> wl, std::span<Rgb> f, std::span<uint8_t> covered)>;
 
 constexpr int kPairRings = 32, kPairSpokes = 16;
-constexpr float kSampleFloor = 1e-3f;  // of the mean f cos
+constexpr float kSampleFloor = 1e-3f;  // relative to the mean f cos
 
-/// In the middles of five degrees, which is as far from the held-out views as can be.
+/// Views in the middles of 5-degree intervals, as far from the held-out views as possible.
 std::vector<Vec3> views_of(bool isotropic) {
   constexpr int kTurns = 8;
   std::vector<Vec3> views;
@@ -30,7 +30,7 @@ std::vector<Vec3> views_of(bool isotropic) {
   return views;
 }
 
-/// The samples of one view; none where it is black.
+/// The samples of one view; none if it is black.
 std::vector<PairSample> samples_of(const Source& source, const Vec3& wv) {
   LightGrid grid = light_grid(wv, kPairRings, kPairSpokes);
   std::vector<Rgb> f(grid.wl.size());

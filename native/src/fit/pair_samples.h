@@ -1,5 +1,4 @@
-// What the fits of analytic materials see of a material: pairs of directions, with the weight that a picture gives
-// them.
+// Samples of a material for the fits of analytic materials: pairs of directions, weighted by their share in a picture.
 #pragma once
 
 #include <vector>
@@ -18,13 +17,13 @@ struct PairSample {
 };
 
 struct PairSamples {
-  std::vector<PairSample> samples;  // none where all is black
-  float floor = 0;  // what f cos is indistinguishable from 0: a thousandth of its mean; > 0 with samples
+  std::vector<PairSample> samples;  // empty if all are black
+  float floor = 0;  // f cos hardly distinguishable from 0: a thousandth of its mean; > 0 if there are samples
 };
 
-/// 18 views (72 where f depends on the azimuth) in the middles of five degrees, none within the margin of a held-out
-/// one, 32 x 16 half vectors each; held-out samples of scattered measurements are not read. A view weighs
-/// sin(2 theta_v) / albedo, its share in the picture of a sphere. Does not depend on `threads` (0: all).
+/// 18 views (72 if f depends on the azimuth) in the middles of 5-degree intervals, none within the margin of a held-out
+/// one, with 32 x 16 half vectors each. Held-out irregular samples are not read. A view has the weight
+/// sin(2 theta_v) / albedo, its share in the picture of a sphere. The result does not depend on `threads` (0: all).
 PairSamples pair_samples(const Material& material, int threads, Progress& progress);
 PairSamples pair_samples(const Measurement& measurement, int threads, Progress& progress);
 

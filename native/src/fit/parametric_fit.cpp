@@ -12,20 +12,20 @@
 namespace velour {
 namespace {
 
-// Splines over the view: of tables, and of scattered samples, which are too few to hold more.
+// Spline cells over the view, for tables and for irregular samples, which are too few for more.
 constexpr int kTableCells = 10, kSampleCells = 4;
 
-// A control value that fewer scattered samples tell follows their noise; two or three lobes are a material's least.
+// With fewer irregular samples, a control value follows their noise. A material needs two or three lobes at least.
 constexpr size_t kSamplesPerValue = 5;
 constexpr int kLeastLobes = 3;
 
-// Interpolated samples are few and slow to look up: no more of them than they can tell apart.
+// The interpolation of irregular samples is slow, and they are too few to resolve a finer grid.
 SliceGrid grid_for(const Measurement& measurement) {
   if (!measurement.samples().empty()) return {32, 24, measurement.isotropic()};
   return {64, 32, measurement.isotropic()};
 }
 
-/// The lobes that scattered samples can tell apart.
+/// Number of lobes that the irregular samples can determine.
 int most_lobes(const Measurement& measurement, int cells) {
   const ViewSpline spline(measurement.isotropic(), cells);
   const auto parameters = static_cast<size_t>(ParametricBrdf::parameters_of(measurement.isotropic()));

@@ -8,19 +8,19 @@
 
 namespace velour {
 
-/// Few lobes for all views together, each in light or half space, followed over the views (brdf/parametric_brdf.h).
-/// Grown lobe by lobe until every view is within the tolerance, the bounds are met, or one more gains next to nothing.
-/// Isotropic measurements are fitted by a model that is symmetric about the plane of incidence. Deterministic for any
-/// thread count. `share`: how much of the task's progress the fit is.
+/// Fits a few lobes to all views together, each in light or half space and varying with the view
+/// (brdf/parametric_brdf.h). Adds lobes until every view is within the tolerance, a bound is reached, or another lobe
+/// gains next to nothing. Isotropic measurements are fitted by a model that is symmetric about the plane of incidence.
+/// Deterministic for any thread count. `share`: the fit's share of the task's progress.
 Model fit_parametric(const Measurement& measurement, const FitOptions& options, Progress& progress, double share = 1);
 
-// The steps of it, for fits to a part of the views.
+// The steps of fit_parametric(), for fits to a part of the views.
 
 /// The slices that a parametric fit reads.
 MeasuredSlices parametric_slices(const Measurement& measurement, const FitOptions& options, Progress& progress);
-/// Of the fit to all views.
+/// Options of the fit to all views.
 TrackedFitOptions tracked_options(const Measurement& measurement, const FitOptions& options);
-/// The model of `fit` with its record, but for warnings of slices and the time.
+/// The model of `fit` with its record, except for the time and the warnings about slices.
 Model parametric_model(const Measurement& measurement, const TrackedFit& fit, const FitOptions& options,
                        Progress& progress);
 

@@ -1,4 +1,4 @@
-// Analytic materials that a fitted model is compared with: each fitted to the same measurement and judged like a model.
+// Analytic materials to compare a fitted model with: fitted to the same measurement and judged in the same way.
 #pragma once
 
 #include <memory>
@@ -16,18 +16,18 @@ namespace velour {
 enum class Peer { ggx, principled, plain_principled };
 using PeerParameters = std::variant<GgxParameters, PrincipledParameters>;
 
-/// The peer that suits the measurement best. The result does not depend on `threads` (0: all).
+/// The peer with the parameters that fit the measurement best. The result does not depend on `threads` (0: all).
 PeerParameters fit_peer(const Measurement& measurement, Peer peer, int threads, Progress& progress);
 
 std::shared_ptr<const Material> make_peer_material(const PeerParameters& parameters);
 
-/// The fitted peer, and its error as docs/conventions.md defines it for any model.
+/// A fitted peer, and its error as docs/conventions.md defines it for any model.
 struct PeerFit {
   PeerParameters parameters;
   double seconds = 0;  // of the fit
   Comparison error;
 
-  /// Of the parameters as float32.
+  /// Bytes of the parameter struct.
   uint64_t parameter_bytes() const;
 };
 PeerFit judge_peer(const Measurement& measurement, Peer peer, int threads, Progress& progress);

@@ -26,7 +26,7 @@ class Slice {
   std::vector<WarpedLobe> lobes_;
 };
 
-/// `f` of the measurement at a hit's terms, as it is rendered: no channel below 0. `stand_in` where it is silent.
+/// f of the measurement at a hit's terms, clamped at 0 as in rendering; f of `stand_in` for pairs it does not cover.
 void measure_hit(const Measurement& measurement, const ParametricBrdf& stand_in, const ObservedHit& hit,
                  std::span<const Vec3> wl, Vec3d* out) {
   std::vector<Rgb> f(wl.size());
@@ -36,7 +36,7 @@ void measure_hit(const Measurement& measurement, const ParametricBrdf& stand_in,
   for (size_t i = 0; i < wl.size(); ++i) out[i] = valid[i] ? Vec3d(glm::max(f[i], Rgb(0))) : slice(wl[i]);
 }
 
-/// At one hit and for each half of its light: what each lobe sends to the viewer, and the error of their sum.
+/// Reflected radiance of each lobe at one hit, for each half of its light, and the error of their sum.
 struct HitSlopes {
   ViewTaps taps;
   std::vector<Vec3d> lobe[2];
@@ -63,7 +63,7 @@ HitSlopes hit_slopes(const SceneObservation& observation, const ObservedHit& hit
   return out;
 }
 
-/// Normal equations of one channel by the logarithms of its coefficients, [node][lobe].
+/// Normal equations of one channel in the logarithms of its coefficients, [node][lobe].
 class ColorNormal {
  public:
   explicit ColorNormal(size_t unknowns)
@@ -71,7 +71,7 @@ class ColorNormal {
         gradient_(Eigen::VectorXd::Zero(static_cast<Eigen::Index>(unknowns))) {}
 
   void add(const HitSlopes& hit, size_t lobes, int c, double scale) {
-    // Slopes by coefficient: of both halves together, and of each against the other's error.
+    // Slopes by log coefficient: of the mean of both halves, and of each half times the error of the other.
     const auto count = static_cast<Eigen::Index>(hit.taps.count) * static_cast<Eigen::Index>(lobes);
     Eigen::VectorXd both(count), crossed(count);
     std::vector<Eigen::Index> place;
@@ -92,7 +92,7 @@ class ColorNormal {
     }
   }
 
-  /// `ridge`: of the mean diagonal.
+  /// `ridge` is relative to the mean diagonal.
   Eigen::VectorXd solve(double ridge) const {
     const double mean = matrix_.trace() / static_cast<double>(std::max<Eigen::Index>(matrix_.rows(), 1));
     Eigen::MatrixXd held = matrix_;
@@ -148,7 +148,7 @@ std::vector<double> PictureError::shares(const ParametricBrdf& model, Part part)
 
 void PictureError::refine_colors(ParametricBrdf& model) const {
   constexpr int kSteps = 3;
-  constexpr double kRidges[] = {1e-4, 1e-2, 1};  // of the mean diagonal
+  constexpr double kRidges[] = {1e-4, 1e-2, 1};  // relative to the mean diagonal
   double error = estimate(shares(model, Part::refined)).relmse;
   for (int i = 0; i < kSteps; ++i) {
     bool better = false;

@@ -1,4 +1,4 @@
-// How wrong pictures are with a model in place of its measurement, as scenes showed the material.
+// Error of pictures rendered with a model in place of its measurement, from scene usage.
 #pragma once
 
 #include <vector>
@@ -11,28 +11,28 @@
 namespace velour {
 
 struct PictureErrorEstimate {
-  double relmse = 0;  // may come out below 0 where there is next to no error
+  double relmse = 0;  // may be negative if there is almost no error
   double standard_error = 0;
 };
 
-/// relmse of compare_pictures (image/picture.h), with a pixel for each observed hit: the light that leaves it by the
-/// model against that by the measurement. Each hit has two independent sums over its light; the product of their
-/// errors is free of their noise on average.
+/// relmse of compare_pictures (image/picture.h), with a pixel for each observed hit: its reflected radiance with the
+/// model against that with the measurement. Each hit has two independent estimates of its light, so the product of
+/// their errors is an unbiased estimate of the squared error.
 class PictureError {
  public:
-  /// Where the measurement does not cover a pair, `stand_in` speaks for it.
+  /// `stand_in` replaces the measurement at pairs that it does not cover.
   PictureError(const Measurement& measurement, const ParametricBrdf& stand_in, const SceneObservation& observation,
                int threads, const Progress& progress);
 
-  /// Every other hit serves refine_colors, the others judge: what was moved to suit a hit is not judged by it.
+  /// Every other hit is used by refine_colors, the others judge the result, so that no hit judges its own fit.
   enum class Part { refined = 0, judged = 1 };
-  /// The share of each hit of a part. Their mean is the error; shares of two models may be compared hit by hit.
+  /// Error of each hit of a part. The mean is the relmse; errors of two models can be compared hit by hit.
   std::vector<double> shares(const ParametricBrdf& model, Part part = Part::judged) const;
 
-  /// Moves the coefficients of `model` (its shapes stay) by Gauss-Newton steps towards the least error of pictures,
-  /// held near where they are by a ridge: what is left of the error of f after a fit is small, but its mean over the
-  /// lights of a picture need not be. As in shares(), residuals of one half meet slopes of the other, so that the noise
-  /// of the sums is not fitted. Unchanged where that does not help. Control values are half floats.
+  /// Moves the coefficients of `model`, but not its shapes, by Gauss-Newton steps towards the minimum picture error,
+  /// with a ridge that holds them near their values. The residual of f after a fit is small, but its mean over the
+  /// lights of a picture need not be. As in shares(), residuals of one half are multiplied by slopes of the other, so
+  /// that noise is not fitted. Changes nothing if that does not help. Control values stay half floats.
   void refine_colors(ParametricBrdf& model) const;
 
   static PictureErrorEstimate estimate(const std::vector<double>& shares);

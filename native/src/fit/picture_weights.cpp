@@ -5,7 +5,7 @@
 namespace velour {
 namespace {
 
-// Of the mean: below it a sample is lost beside what other lights show.
+// Luminance relative to the mean below which a sample is invisible beside the light from other directions.
 constexpr double kWeightFloor = 0.1;
 
 double luminance_of(const SliceSample& s) { return std::max(static_cast<double>(luminance(s.value)), 0.0); }

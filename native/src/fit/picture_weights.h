@@ -1,4 +1,4 @@
-// How much a sample of f cos shows in pictures, against what it is worth in the squared error of f cos.
+// Weights that make the squared error of f cos reflect what pictures show.
 #pragma once
 
 #include <span>
@@ -8,13 +8,13 @@
 
 namespace velour {
 
-/// The relative error that pictures are to keep to: half a lightness step on even grey is 5 % of its luminance.
+/// Target of the relative error of pictures. Half a lightness step on uniform gray is 5 % of its luminance.
 inline constexpr double kPictureGoal = 0.1;
 
-/// Factors of the samples' weights that make a squared error one of the ratio to the measurement, bright or dim alike,
-/// down to a tenth of the view's mean: a lamp shows of a material what it shines on, a highlight or its tail, and eyes
-/// see ratios. The squared error of f cos itself is that of the highlight alone. Scaled so that the measurement's own
-/// squared luminance sums to 1. Empty where all is black.
+/// Factors for the weights of the samples that make a squared error relative to the measurement, for bright and dim
+/// samples alike, down to a tenth of the view's mean. A light may show the highlight of a material or only its tail,
+/// and eyes see ratios; the squared error of f cos is that of the highlight alone. Scaled so that the weighted squared
+/// luminance of the measurement sums to 1. Empty if all samples are black.
 std::vector<float> picture_weights(std::span<const SliceSample> samples);
 
 }  // namespace velour

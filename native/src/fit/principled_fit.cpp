@@ -23,8 +23,8 @@ std::vector<PrincipledParameters> kinds_of(PrincipledSet set) {
           kind(0.7f, 0.5f, 0.05f, 0.1f), kind(0.7f, 0.5f, 0.3f, 0.3f)};
 }
 
-/// kRoughnesses of one kind, then the next kind. At the ends of the ranges, and between them: a weight of 0 hides the
-/// parameters of what it weighs, and some descents get stuck there.
+/// kRoughnesses starts per kind, kind by kind. Kinds lie at the ends of the ranges and between them: a weight of 0
+/// hides the parameters of the layer it weights, and some descents get stuck there.
 std::vector<PrincipledParameters> starts(PrincipledSet set) {
   std::vector<PrincipledParameters> out;
   for (PrincipledParameters p : kinds_of(set)) {

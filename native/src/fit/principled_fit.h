@@ -1,4 +1,4 @@
-// The Principled material that comes closest to a measurement: what an artist would set by hand, at best.
+// Fits the Principled material to a measurement: the best that an artist could set by hand.
 #pragma once
 
 #include "brdf/measurement.h"
@@ -7,16 +7,16 @@
 
 namespace velour {
 
-/// What a fit may use of the Principled material.
+/// Parameters of the Principled material that a fit may use.
 enum class PrincipledSet {
   all,
-  plain,  // base colour, metallic, roughness and specular: what Blender before 4.0 and other programs have as well
+  plain,  // base color, metallic, roughness and specular, which Blender before 4.0 and other programs also have
 };
 
-/// Least squares on sqrt(f cos) over the pair_samples of the measurement, as fit_ggx. Starts: eight kinds between
-/// dielectric and metal, bare and coated, each at eight roughnesses over the range, with the base colour that suits;
-/// the best roughness of each kind goes on by Levenberg-Marquardt. What is not in `set` stays at white tints and no
-/// coat. Does not depend on `threads` (0: all). A black diffuse material without samples.
+/// Least squares on sqrt(f cos) over the pair_samples of the measurement, as in fit_ggx. Starts: eight kinds (plain:
+/// four) between dielectric and metal, bare and coated, each at eight roughnesses over the range, with the best base
+/// color. The best roughness of each kind is refined by Levenberg-Marquardt. PrincipledSet::plain has white tints and
+/// no coat. The result does not depend on `threads` (0: all). Black and diffuse if there are no samples.
 PrincipledParameters fit_principled(const Measurement& measurement, PrincipledSet set, int threads, Progress& progress);
 
 }  // namespace velour

@@ -9,7 +9,7 @@ namespace velour {
 namespace {
 
 constexpr auto kShape = PrincipledProblem::kShape;
-constexpr Eigen::Index kTint = 3, kFirstShape = 6;  // places among the unknowns
+constexpr Eigen::Index kTint = 3, kFirstShape = 6;  // indices of the unknowns
 
 Eigen::Index place(size_t shape) { return kFirstShape + static_cast<Eigen::Index>(shape); }
 
@@ -24,14 +24,14 @@ float least(float PrincipledParameters::*which) {
   return rough ? kMinRoughness : 0;
 }
 
-/// What a derivative at `value` in [0, 1] looks ahead, away from the nearer end: well above the rounding of f.
+/// Step of a finite difference at `value` in [0, 1], away from the nearer end and well above the rounding of f.
 float difference_of(float value) { return value > 0.5f ? -3e-4f : 3e-4f; }
 
 }  // namespace
 
 PrincipledProblem::PrincipledProblem(PairSamples samples, PrincipledSet set)
     : samples_(std::move(samples.samples)), floor_(samples.floor), set_(set) {
-  for (size_t i = 0; i < samples_.size(); ++i) {  // samples come a view at a time
+  for (size_t i = 0; i < samples_.size(); ++i) {  // samples are grouped by view
     const DirectionPair& w = samples_[i].w;
     const bool begins = batches_.empty() || batches_.back().wv != w.wv;
     if (begins || batches_.back().wl.count == DirectionBatch::kCapacity) batches_.push_back({w.wv, i, {}});
@@ -76,7 +76,7 @@ PrincipledParameters PrincipledProblem::completed(const PrincipledParameters& st
     for (size_t i = 0; i < black.size(); ++i) {
       const PairSample& s = samples_[i];
       const double tinted = white[i][c] - black[i][c];
-      const double weight = s.weight / (s.f_cos[c] + floor_);  // g'(y)^2 but for a factor
+      const double weight = s.weight / (s.f_cos[c] + floor_);  // g'(y)^2 up to a factor
       top += weight * tinted * (s.f_cos[c] - black[i][c]);
       bottom += weight * tinted * tinted;
     }
@@ -87,7 +87,7 @@ PrincipledParameters PrincipledProblem::completed(const PrincipledParameters& st
 
 PrincipledProblem::Normal PrincipledProblem::normal(const PrincipledParameters& p) const {
   const std::vector<Rgb> f_cos = values(p);
-  std::vector<Rgb> slopes(f_cos.size() * kSize, Rgb(0));  // of an unknown after the other
+  std::vector<Rgb> slopes(f_cos.size() * kSize, Rgb(0));  // [sample][unknown]
   for (int k = 0; k < kSize; ++k) {
     if (is_fixed(k)) continue;
     PrincipledParameters other = p;

@@ -12,10 +12,11 @@
 
 namespace velour {
 
-/// Minimises sum_i weight_i |g(model_i) - g(f_cos_i)|^2 over colours, g(y) = sqrt(y + floor), parameters in [0, 1].
+/// Minimizes sum_i weight_i |g(model_i) - g(f_cos_i)|^2, the norm over channels, with g(y) = sqrt(y + floor) and
+/// parameters in [0, 1].
 class PrincipledProblem {
  public:
-  /// Unknowns: base colour, specular tint, then those of kShape.
+  /// Unknowns: base color, specular tint, then those of kShape.
   static constexpr int kSize = 11;
   using Normal = NormalEquations<kSize>;
   static constexpr std::array<float PrincipledParameters::*, 5> kShape{
@@ -25,23 +26,22 @@ class PrincipledProblem {
   explicit PrincipledProblem(PairSamples samples, PrincipledSet set = PrincipledSet::all);
 
   double cost(const PrincipledParameters& p) const;
-  /// Derivatives are differences.
+  /// Derivatives are finite differences.
   Normal normal(const PrincipledParameters& p) const;
   PrincipledParameters moved(const PrincipledParameters& p, const decltype(Normal::slope)& step) const;
-  /// With the base colour that suits the rest: least squares of the problem linearised at the data, f taken for linear
-  /// in the colour.
+  /// `start` with the best base color: least squares, linearized at the data, with f assumed linear in the color.
   PrincipledParameters completed(const PrincipledParameters& start) const;
 
  private:
   /// Samples of one view.
   struct Batch {
     Vec3 wv;
-    size_t first;  // of samples_
+    size_t first;  // index in samples_
     DirectionBatch wl;
   };
   /// f cos at each sample.
   std::vector<Rgb> values(const PrincipledParameters& p) const;
-  /// Whether the set leaves an unknown where it is.
+  /// Whether `unknown` is fixed, because it is not in the set.
   bool is_fixed(Eigen::Index unknown) const;
   void freeze_at_bounds(const PrincipledParameters& p, Normal& n) const;
 

@@ -18,7 +18,7 @@ std::vector<Vec3> views(bool isotropic) {
   return out;
 }
 
-/// `f(wl, wv, value)` gives the luminance and whether there is one. Nothing when no pair is covered or all are black.
+/// `f(pair)` is the luminance, or nothing if the pair is not covered. Returns nothing if no pair is covered both ways.
 template <class Luminance>
 std::optional<double> error_of(bool isotropic, const Progress& progress, const Luminance& f) {
   double difference = 0, energy = 0;

@@ -1,4 +1,4 @@
-// How far a BRDF is from f(wl, wv) = f(wv, wl).
+// Deviation of a BRDF from reciprocity, f(wl, wv) = f(wv, wl).
 #pragma once
 
 #include <optional>
@@ -9,14 +9,13 @@
 
 namespace velour {
 
-/// Relative L2 of the difference of the luminances a = f(wl, wv) cos cos and b = f(wv, wl) cos cos over the square of
-/// the hemisphere, sqrt(sum (a - b)^2 / sum (a^2 + b^2) / 2): 0 for a reciprocal f, the root of 2 where of every pair
-/// one is black. Views: 16 of equal solid angle, on the meridian when isotropic; lights: half vectors about each
-/// (fit/view_grid.h).
+/// Relative L2 of the difference of the luminances a = f(wl, wv) cos cos and b = f(wv, wl) cos cos over all pairs of
+/// directions, sqrt(2 sum (a - b)^2 / sum (a^2 + b^2)): 0 if f is reciprocal, sqrt(2) if one of every pair is black.
+/// Views: 16 of equal solid angle, on the meridian if isotropic. Lights: half vectors about each (fit/view_grid.h).
 double reciprocity_error(const Material& material, const Progress& progress);
 
-/// The same of the pairs that a measurement covers both ways; nothing when there are none, and for scattered samples,
-/// whose interpolation takes reciprocity for granted.
+/// Reciprocity error over the pairs that a measurement covers both ways. Nothing if there are none, and for irregular
+/// samples, whose interpolation assumes reciprocity.
 std::optional<double> reciprocity_error(const Measurement& measurement, const Progress& progress);
 
 }  // namespace velour

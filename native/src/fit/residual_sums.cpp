@@ -6,7 +6,7 @@
 #define HWY_TARGET_INCLUDE "fit/residual_sums.cpp"
 #include "hwy/foreach_target.h"
 #include "hwy/highway.h"
-// Needs Highway's namespace of the target.
+// Requires Highway's namespace of the target.
 #include "srbf/simd_dispatch.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -14,7 +14,7 @@ namespace velour::HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
-/// The kPadding sums over a block of what lies so far apart. Not fused: the same bits on every machine.
+/// kPadding interleaved sums over a block. Without fused multiply-adds, so the bits are the same on every machine.
 void AddSquares(const float* residual, const float* share, size_t count, float* all, float* shared) {
   const hn::CappedTag<float, SliceSamples::kPadding> tag;
   for (size_t lane = 0; lane < SliceSamples::kPadding; lane += hn::Lanes(tag)) {

@@ -5,13 +5,13 @@
 
 namespace velour {
 
-/// Sums of the squares of a residual: of all, and of each sample's share. In floats over a block, in as many lanes on
-/// every machine, then in doubles.
+/// Sums of the squares of a residual: of all, and of each sample's share. In float within a block, with the same number
+/// of lanes on every machine, then in double.
 struct ResidualSums {
   double all = 0, shared = 0;
 };
 
-/// `residual` and `share`: as long, a multiple of SliceSamples::kPadding.
+/// `residual` and `share` have the same length, a multiple of SliceSamples::kPadding.
 ResidualSums residual_sums(const AlignedFloats& residual, const AlignedFloats& share);
 
 }  // namespace velour

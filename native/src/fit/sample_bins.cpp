@@ -11,7 +11,7 @@ namespace {
 
 constexpr double kBin = 1.0;  // degrees
 
-/// Turned about the normal so that wv lies on the meridian, wl mirrored to y >= 0.
+/// The pair rotated about the normal so that wv lies on the meridian, with wl mirrored to y >= 0.
 DirectionPair canonical(const Vec3& wl, const Vec3& wv) {
   const double azimuth = std::atan2(static_cast<double>(wv.y), static_cast<double>(wv.x));
   const double c = std::cos(azimuth), s = std::sin(azimuth);

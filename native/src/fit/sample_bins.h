@@ -1,4 +1,4 @@
-// Scattered samples as slices: the fit of the parametric model reads the samples themselves, not what lies between.
+// Irregular samples as slices: the parametric fit reads the samples themselves, not only their interpolation.
 #pragma once
 
 #include <span>
@@ -9,10 +9,10 @@
 
 namespace velour {
 
-/// The samples of an isotropic measurement in bins of theta_v, each pair in both orders (f is taken as reciprocal, as
-/// the interpolant takes it) and on one side of the plane of incidence. A pair comes to its bin's view with its half
-/// vector kept: of all that the few tenths of a degree change, f feels that most. Every sample weighs the same. Bins
-/// carry the energy of all samples within kHeldOutGroup, as the errors that are reported do.
+/// The samples of an isotropic measurement in bins of theta_v, each pair in both orders (f is assumed reciprocal, as by
+/// the interpolation) and on one side of the plane of incidence. A pair is moved to the view of its bin, by a few
+/// tenths of a degree, with its half vector kept, because f depends on it most. All samples have the same weight. Bins
+/// have the energy of all samples within kHeldOutGroup, as reported errors do.
 std::vector<MeasuredSlice> bin_samples(std::span<const ScatteredSample> samples);
 
 }  // namespace velour

@@ -7,11 +7,11 @@ namespace velour {
 namespace {
 
 constexpr float kNone = 1e30f;
-constexpr double kWideEnough = -100;  // an excess
+constexpr double kWideEnough = -100;  // excess of lobes that are wide enough
 constexpr double kMinCenterCosine = 1e-3;
 
-/// The light direction at the lobe's centre. Half vectors that face away from the view have none: the last one that
-/// does not stands for them.
+/// Light direction at the center of the lobe. Half vectors that face away from the view have none, so their cosine with
+/// it is clamped.
 Vec3d light_at_center(const WarpedLobe& lobe, const Vec3d& wv) {
   const Vec3d center = argument_at(lobe, lobe.center);
   if (lobe.space == LobeSpace::light) return center;
@@ -41,14 +41,14 @@ SampleSpacing::SampleSpacing(std::span<const SliceSample> samples, const Vec3d& 
   spread();
 }
 
-/// In cells.
+/// Position on the disk, in cells.
 glm::dvec2 SampleSpacing::place_of(const Vec3d& wl) {
-  // Lambert's disk. A slice of isotropic data may hold one side of the plane of incidence only.
+  // Lambert's disk, folded: a slice of isotropic data may have only one side of the plane of incidence.
   const double scale = 1 / std::sqrt(1 + std::max(wl.z, 0.0));
   return {kSide * (0.5 + 0.5 * wl.x * scale), kSide * (0.5 + 0.5 * std::abs(wl.y) * scale)};
 }
 
-/// A lobe at the edge of a cell reaches into the next; cells without samples take what is about them.
+/// Takes the minimum over neighbors, because lobes reach into adjacent cells, until no cell is empty.
 void SampleSpacing::spread() {
   for (bool first = true, gaps = !empty_; first || gaps; first = false) {
     const Cells before = log_cell_;
@@ -76,7 +76,7 @@ double SampleSpacing::log_solid_angle(const Vec3d& wl) const {
                    std::lerp(cell(x, y + 1), cell(x + 1, y + 1), place.x - x), place.y - y);
 }
 
-/// How fast the logarithm of the lobe falls from the horizon up, per radian.
+/// Decrease of the logarithm of the lobe from the horizon upwards, per radian.
 double SampleSpacing::steepness(const WarpedLobe& lobe, const Vec3d& at) const {
   constexpr double kStep = 1e-4;
   const Vec3d above = glm::normalize(at + Vec3d(0, 0, kStep));

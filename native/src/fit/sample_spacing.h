@@ -1,4 +1,4 @@
-// How narrow a lobe may be before it hides between the samples of a view.
+// Minimum width of a lobe that the samples of a view can resolve.
 #pragma once
 
 #include <array>
@@ -11,19 +11,18 @@
 
 namespace velour {
 
-/// The solid angle that one sample of a view stands for, as it varies over the light directions: of the finest samples
-/// about a direction, so that highlights, where samples crowd, may be sharp. Continuous.
+/// Solid angle of one sample of a view as a continuous function of the light direction: that of the finest samples
+/// nearby, so that highlights, where samples are dense, may be sharp.
 class SampleSpacing {
  public:
-  /// `samples` weigh their solid angle (sr); `wv` is unit.
+  /// Weights of `samples` are solid angles (sr); `wv` is unit.
   SampleSpacing(std::span<const SliceSample> samples, const Vec3d& wv);
 
-  /// By how much the logarithm of the lobe's bandwidth is above what the samples can tell; negative for lobes that are
-  /// wide enough. A lobe is to spread over the solid angle of a sample at its centre, and what rises above the horizon
-  /// of one whose centre lies below it is to be at least half as high as the samples are apart. Without samples any
-  /// bandwidth will do.
+  /// Excess of the lobe's log bandwidth over what the samples can resolve; negative for lobes that are wide enough. A
+  /// lobe must cover at least the solid angle of a sample at its center. If the center is below the horizon, the tail
+  /// above it must also decay over at least half the spacing of the samples. Without samples, any bandwidth is allowed.
   double excess(const WarpedShape& shape) const;
-  /// Its derivatives by the parameters of the shape, in the order of fill_warped_slopes: as many as `out` has.
+  /// Derivatives of excess() by the first out.size() parameters of the shape, in the order of fill_warped_slopes.
   void slopes(const WarpedShape& shape, Eigen::Ref<Eigen::VectorXd> out) const;
 
  private:
@@ -36,7 +35,7 @@ class SampleSpacing {
 
   Vec3d wv_;
   bool empty_;
-  Cells log_cell_;  // logarithm of sr, over the equal-area disk of light directions
+  Cells log_cell_;  // log of the solid angle (sr), over the equal-area disk of light directions
 };
 
 }  // namespace velour

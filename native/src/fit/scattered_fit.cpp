@@ -15,7 +15,7 @@
 namespace velour {
 namespace {
 
-// A slice is fitted a little tighter than asked, for what the interpolation between slices adds at the views between.
+// Slices are fitted more tightly than required, to leave room for the interpolation error between them.
 constexpr double kSliceGoalShare = 0.8;
 constexpr SliceGrid kGrid{96, 64};
 
@@ -51,7 +51,7 @@ uint64_t size_of_scattered(const Model& model, const FitOptions& options) {
   return options.size_of ? options.size_of(model) : std::get<ScatteredBrdf>(model.body).parameter_bytes();
 }
 
-/// The best model of `all` within options.max_bytes that a few tries find: a file's size is known only when it is made.
+/// Best model of `all` within options.max_bytes, in a few tries: its size is known only once it is encoded.
 Model bounded_model(const Measurement& measurement, const FittedSlices& all, const FitOptions& options,
                     Progress& progress) {
   const uint64_t whole = parameter_bytes(all);

@@ -14,24 +14,24 @@ namespace {
 
 constexpr int kCells[] = {1, 2, 3, 4};
 constexpr size_t kLeastViews = 4;
-// A view that was hardly seen keeps this share of the mean view's weight.
+// Minimum weight of a view, relative to the mean, for views that were hardly seen.
 constexpr double kLeastViewWeight = 0.05;
-// The pictures decide how many lobes are enough, so views are pushed beyond any tolerance.
+// The picture error decides how many lobes are enough, so views are fitted far more tightly than the tolerance.
 constexpr double kSceneGoalShare = 0.1;
 
-// Standard errors that a model must stay below the bound: many are tried, and the luckiest would win.
+// Standard errors by which a model must stay below the bound. Otherwise the luckiest of many would win.
 constexpr double kSure = 2;
-// Pictures may err that much more, in relmse.
+// Allowed relative increase of the relmse of pictures.
 constexpr double kSlack = 0.05;
-// The relmse of a thousandth of the light: where both models err by less, no picture tells them apart.
+// relmse of an error of a thousandth of the light. Pictures cannot distinguish models with smaller errors.
 constexpr double kUnseen = 1e-6;
 
-// Of the progress: the full model, where it is to be fitted, and the reading of the slices.
+// Shares of the progress: fit of the full model, if needed, and reading of the slices.
 constexpr double kFullShare = 0.5, kReadingShare = 0.1;
 
 double polar_angle(const Vec3& w) { return std::acos(std::clamp(static_cast<double>(w.z), -1.0, 1.0)); }
 
-/// The weight of the views within a degree and a half of `theta`.
+/// Weight of the observed views within a degree and a half of `theta` (radians).
 double seen_weight(const SceneDomain& domain, double theta) {
   const int bin = static_cast<int>(theta / (kPiD / 2) * SceneDomain::kViewBins);
   double sum = 0;
@@ -40,7 +40,7 @@ double seen_weight(const SceneDomain& domain, double theta) {
   return sum;
 }
 
-/// The slices within the range, or the nearest few to it, weighted as they are seen and lit.
+/// The slices within the range, at least the kLeastViews nearest, weighted by the observed views and lights.
 std::vector<MeasuredSlice> seen_slices(std::vector<MeasuredSlice> slices, const ViewRange& range,
                                        const SceneObservation& observation) {
   const auto outside = [&range](const MeasuredSlice& s) {
@@ -57,14 +57,14 @@ std::vector<MeasuredSlice> seen_slices(std::vector<MeasuredSlice> slices, const 
   for (MeasuredSlice& s : slices) {
     s.weight = seen_weight(observation.domain, polar_angle(s.wv));
     mean += s.weight / static_cast<double>(slices.size());
-    if (s.energy > 0) continue;  // bins that share their energy
+    if (s.energy > 0) continue;  // bins of irregular samples
     for (SliceSample& sample : s.samples) sample.weight *= static_cast<float>(importance(s.wv, sample.wl));
   }
   for (MeasuredSlice& s : slices) s.weight = mean > 0 ? std::max(s.weight / mean, kLeastViewWeight) : 1;
   return slices;
 }
 
-/// Looks for the smallest model whose pictures are no worse than the full one's.
+/// Searches for the smallest model whose pictures are no worse than those of the full model.
 class SceneSearch {
  public:
   SceneSearch(const std::vector<MeasuredSlice>& slices, const TrackedFitOptions& tracked, bool limit,
@@ -80,8 +80,8 @@ class SceneSearch {
     least_bytes_ = full.parameter_bytes();
   }
 
-  /// From `begin` to `end` of the task's progress, a step for each number of cells: fits of their own report theirs to
-  /// a stage without width.
+  /// Covers `begin` to `end` of the task's progress, one step per number of cells. The fits report their own progress
+  /// to a stage of zero width.
   void run(double begin, double end) {
     const int most = tracked_.cells;
     double at = begin;
@@ -94,7 +94,7 @@ class SceneSearch {
     }
   }
 
-  /// Nothing when no smaller model will do.
+  /// Nothing if no smaller model is good enough.
   std::optional<TrackedFit>& best() { return best_; }
   const std::vector<double>& full_shares() const { return full_shares_; }
 
@@ -108,8 +108,8 @@ class SceneSearch {
     return ParametricBrdf::parameter_bytes(brdf.index(brdf.spline().node_count(), 0, 0), brdf.space.size());
   }
 
-  /// The fewest lobes that are enough, if that makes a smaller model than the best so far. From below: small fits are
-  /// fast, and a fit that ended with fewer lobes than it might have had ends the same with more.
+  /// Finds the fewest lobes that are enough, if that makes a smaller model than the best so far. Goes upwards: small
+  /// fits are fast, and a fit that ended with fewer lobes than allowed ends the same if more are allowed.
   void try_lobes() {
     tracked_.max_lobes = ParametricBrdf::kMaxLobes;
     TrackedGrowth growth(slices_, tracked_, progress_);
@@ -118,13 +118,13 @@ class SceneSearch {
     }
   }
 
-  /// Whether a fit of at most `lobes` makes pictures as good as the full model's; then it is the best so far.
+  /// Whether a fit of at most `lobes` makes pictures as good as the full model's; if so, it becomes the best so far.
   bool enough(TrackedGrowth& growth, int lobes) {
     TrackedFit fit = growth.fit(lobes);
     tried_lobes_ = fit.brdf.lobe_count();
     judge_.refine_colors(fit.brdf);
     if (limit_) limit_albedo(fit.brdf, tracked_.threads, progress_);
-    // Of this model beyond the full one, hit by hit: what both have in common, and its noise, cancels.
+    // Excess error over the full model, hit by hit, so that the common part and its noise cancel.
     std::vector<double> excess = judge_.shares(fit.brdf);
     for (size_t i = 0; i < excess.size(); ++i) excess[i] -= (1 + kSlack) * full_shares_[i];
     const PictureErrorEstimate worse = PictureError::estimate(excess);
@@ -136,12 +136,12 @@ class SceneSearch {
 
   const std::vector<MeasuredSlice>& slices_;
   TrackedFitOptions tracked_;
-  bool limit_;  // of the albedo
+  bool limit_;  // limit the albedo
   const PictureError& judge_;
   Progress& progress_;
   std::vector<double> full_shares_;
   uint64_t least_bytes_;
-  int tried_lobes_ = 0;  // that the last fit came to
+  int tried_lobes_ = 0;  // lobes of the last fit
   std::optional<TrackedFit> best_;
 };
 
@@ -194,7 +194,7 @@ Model fit_for_scene(const Measurement& measurement, const FitOptions& options, P
   progress.stage("checking", 0.95, 1.0);
   Model model = full;
   if (search.best()) {
-    judge_again(slices, tracked, *search.best(), progress);  // colours have moved
+    judge_again(slices, tracked, *search.best(), progress);  // colors have changed
     model = parametric_model(measurement, *search.best(), options, progress);
     model.shell = full.shell;
   } else {

@@ -1,4 +1,4 @@
-// Fits no more of a parametric model than scenes need.
+// Fits a scene model: a parametric model reduced to scene usage.
 #pragma once
 
 #include "fit/fit_options.h"
@@ -6,14 +6,14 @@
 
 namespace velour {
 
-/// The smallest parametric model found that, over the views at which options.for_scene saw the material, makes pictures
-/// no worse than the full model does: fewer lobes and fewer cells over a range of views, weighted by how often views
-/// were seen and from where light came. The full model is options.full_model, or is fitted first. Where nothing smaller
-/// will do, the full model's lobes are returned. The model carries a SceneRecord; beyond its views it is not to be
-/// trusted (domain/out_of_domain.h).
+/// The smallest parametric model found whose pictures, for the scene usage options.for_scene, are no worse than those
+/// of the full model. It has fewer lobes and cells over a range of views; its fit is weighted by the observed views and
+/// light directions. The full model is options.full_model, or is fitted first. If nothing smaller is good enough, the
+/// full model's lobes are returned. The model has a SceneRecord and is not valid beyond its views
+/// (domain/out_of_domain.h).
 ///
-/// Throws Error(invalid_argument) when nothing was observed, or the full model is not parametric, and
-/// Error(unsupported) for anisotropic measurements: a domain does not know azimuths.
+/// Throws Error(invalid_argument) if nothing was observed or the full model is not parametric or is itself reduced, and
+/// Error(unsupported) for anisotropic measurements, because scene usage does not record azimuths.
 Model fit_for_scene(const Measurement& measurement, const FitOptions& options, Progress& progress);
 
 }  // namespace velour

@@ -9,7 +9,7 @@
 #define HWY_TARGET_INCLUDE "fit/slice_columns.cpp"
 #include "hwy/foreach_target.h"
 #include "hwy/highway.h"
-// Needs Highway's namespace of the target.
+// Require Highway's namespace of the target.
 #include "hwy/contrib/math/math-inl.h"
 #include "srbf/simd_dispatch.h"
 
@@ -20,7 +20,7 @@ namespace hn = hwy::HWY_NAMESPACE;
 using Tag = hn::CappedTag<float, SliceSamples::kPadding>;
 using Lanes = hn::Vec<Tag>;
 
-/// What a shape needs in every lane.
+/// Broadcasts a shape to all lanes.
 struct Broadcast {
   Lanes x, y, z, sharpness;
   explicit Broadcast(const LobeShape& s)
@@ -30,7 +30,7 @@ struct Broadcast {
         sharpness(hn::Set(Tag(), static_cast<float>(s.sharpness))) {}
 };
 
-/// k d = k |eta - xi|^2 / 2: no subtraction of numbers near one.
+/// k d = k |eta - xi|^2 / 2, without cancellation of numbers near one.
 Lanes scaled_distance(const Broadcast& lobe, Lanes x, Lanes y, Lanes z) {
   const Lanes dx = hn::Sub(x, lobe.x), dy = hn::Sub(y, lobe.y), dz = hn::Sub(z, lobe.z);
   const Lanes squares = hn::MulAdd(dx, dx, hn::MulAdd(dy, dy, hn::Mul(dz, dz)));
@@ -42,7 +42,7 @@ template <Kernel kernel>
 void shape_and_slope(Lanes kd, Lanes& shape, Lanes& slope) {
   const Tag tag;
   if constexpr (kernel == Kernel::gaussian) {
-    // Below exp(-80) a column is nothing, and denormals would be slow.
+    // Values below exp(-80) are negligible, and denormals would be slow.
     shape = hn::IfThenElseZero(hn::Lt(kd, hn::Set(tag, 80.0f)), hn::Exp(tag, hn::Neg(kd)));
     slope = shape;
   } else {
@@ -71,7 +71,7 @@ void fill_derivatives_of(const LobeShape& lobe, const SliceSamples& samples, flo
   const Tag tag;
   const Broadcast b(lobe);
   const LobeTangents t = lobe_tangents(lobe);
-  // dS/dt along a tangent is k slope (eta . tangent); a turn of 1/sqrt(k) leaves sqrt(k).
+  // dS/dt along a tangent is k slope (eta . tangent); for a turn of 1/sqrt(k) the factor is sqrt(k).
   const double turn = std::sqrt(lobe.sharpness);
   const Broadcast tx({turn * t.x, 0}), ty({turn * t.y, 0});
   for (size_t i = 0; i < samples.padded(); i += hn::Lanes(tag)) {
@@ -181,10 +181,10 @@ HWY_EXPORT(Project);
 HWY_EXPORT(AddTile);
 HWY_EXPORT(SubtractColumns);
 
-// Samples summed in float before they go to a double: 64 lanes of 8 numbers at most, and 32 columns of it stay in L1.
+// Samples summed in float before the sum goes to a double: 64 per lane with 4 lanes. 32 columns of a block fit in L1.
 constexpr size_t kBlock = 256;
 
-/// Pointers to columns, filled up to a multiple of 4 with the last one so that tiles have no edges.
+/// Pointers to columns, padded with the last one to a multiple of 4, so that all tiles are full.
 std::vector<const float*> in_fours(std::span<const float* const> columns) {
   std::vector<const float*> out(columns.begin(), columns.end());
   while (out.size() % 4 != 0) out.push_back(out.back());
@@ -198,7 +198,7 @@ void fill_value(Kernel kernel, const LobeShape& shape, const SliceSamples& sampl
 
 LobeTangents lobe_tangents(const LobeShape& shape) {
   const Frame frame = Frame::about(Vec3(shape.center));
-  // The frame is of floats; make it orthogonal to the centre in double.
+  // The frame is in float; make it orthogonal to the center in double.
   const Vec3d x = glm::normalize(Vec3d(frame.x) - glm::dot(Vec3d(frame.x), shape.center) * shape.center);
   return {x, glm::cross(shape.center, x)};
 }

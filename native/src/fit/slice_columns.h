@@ -1,6 +1,6 @@
-// The loops over the samples of a slice: kernel columns, their derivatives, Gram matrices, residuals. SIMD through
-// Highway with run-time dispatch; float columns, sums of a block in float lanes, blocks summed in double in a fixed
-// order.
+// Loops over the samples of a slice: kernel columns, their derivatives, Gram matrices, residuals. SIMD through Highway
+// with run-time dispatch. Columns are float; a block is summed in float lanes, and blocks are summed in double in a
+// fixed order.
 #pragma once
 
 #include <Eigen/Core>
@@ -14,13 +14,13 @@ namespace velour {
 
 /// The shape of a lobe in the solver: peak 1 at `center` (unit), and `sharpness` k = -dS/dd there, d = 1 - eta .
 /// center. Gaussian: S = exp(-k d), k the bandwidth. Abel-Poisson: S = (1 + 2/3 k d)^(-3/2), the kernel over its peak
-/// with 2/3 k = 2 b / (1 - b)^2. So one scale, log k, serves both kernels and needs no bounds of its own.
+/// with 2/3 k = 2 b / (1 - b)^2. One scale, log k, thus serves both kernels and needs no bounds.
 struct LobeShape {
   Vec3d center{0, 0, 1};
   double sharpness = 1;
 };
 
-/// Columns of `padded` floats each, side by side.
+/// Columns of `padded` floats each, contiguous.
 class ColumnSet {
  public:
   explicit ColumnSet(size_t padded) : padded_(padded) {}
@@ -42,8 +42,8 @@ class ColumnSet {
 /// out_i = sqrt(weight_i) S(wl_i).
 void fill_value(Kernel kernel, const LobeShape& shape, const SliceSamples& samples, float* out);
 
-/// Derivatives of fill_value's column: along `tangent_x` and `tangent_y` (unit, normal to the centre) for a turn of 1 /
-/// sqrt(sharpness) radians, and by log sharpness.
+/// Tangents for fill_derivatives (unit, normal to the center). It fills the derivatives of fill_value's column along
+/// each tangent, for a turn of 1 / sqrt(sharpness) radians, and by log sharpness.
 struct LobeTangents {
   Vec3d x, y;
 };
@@ -51,7 +51,7 @@ LobeTangents lobe_tangents(const LobeShape& shape);
 void fill_derivatives(Kernel kernel, const LobeShape& shape, const SliceSamples& samples, float* along_x,
                       float* along_y, float* by_log_sharpness);
 
-/// What one more lobe of this shape would meet: its column's dot product with each channel's residual, and with itself.
+/// Dot products of the column of a shape with each channel's residual, and with itself.
 struct Projection {
   double moment[3];
   double norm_sq;

@@ -11,7 +11,7 @@ constexpr size_t kCoarseStride = 8;  // candidates and their scores use one samp
 constexpr double kFirstSharpness = 0.5, kSharpnessRatio = 2.5;
 constexpr int kStepsPerLobe = 8, kFinalSteps = 40, kSwapRounds = 6;
 
-/// One sample in kCoarseStride, to look for the next lobe.
+/// One sample in kCoarseStride, for the search for the next lobe.
 std::vector<SliceSample> coarse_samples(const SliceSamples& samples) {
   std::vector<SliceSample> out;
   for (size_t i = 0; i < samples.count(); i += kCoarseStride) {
@@ -34,7 +34,7 @@ class CoarseResidual {
       for (size_t i = 0; i < samples_.count(); ++i) r[i] = scale * solver.residual(c)[i * kCoarseStride];
     }
   }
-  /// Drop of E when a lobe of this shape alone is fitted to the residual.
+  /// Decrease of E if a single lobe of this shape is fitted to the residual.
   double gain(Kernel kernel, const LobeShape& shape) const {
     const float* const r[3] = {residual_[0].data(), residual_[1].data(), residual_[2].data()};
     const Projection p = project(kernel, shape, samples_, r);
@@ -63,7 +63,7 @@ LobeShape best_candidate(const SliceSolver& solver, Kernel kernel, const CoarseR
     const Vec3d center = glm::normalize(centers.wl(i));
     const double limit = solver.max_sharpness(center);
     for (double k = kFirstSharpness; k <= limit; k *= kSharpnessRatio) {
-      // A broad lobe does not need a fine grid of centres.
+      // A broad lobe does not need a fine grid of centers.
       if (k < 10 && i % 8 != 0) continue;
       const double gain = coarse.gain(kernel, {center, k});
       if (gain > most) most = gain, best = {center, k};
@@ -94,7 +94,7 @@ std::vector<SliceFit> fit_slice(const SliceSamples& samples, const SliceFitOptio
     solver.refine(last ? kFinalSteps : kStepsPerLobe, options.goal, last ? 1e-4 : 1e-3);
     path.push_back(solver.relative_l2() < path.back().relative_l2 ? snapshot(solver) : path.back());
   }
-  // At the bound and short of the goal: move the lobe that does least to where one would do most.
+  // At max_lobes and short of the goal: move the least important lobe to where it gains most.
   for (int round = 0; round < kSwapRounds && path.back().relative_l2 > options.goal && solver.count() > 1; ++round) {
     const auto before = solver.shapes();
     const double objective = solver.objective();

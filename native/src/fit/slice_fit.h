@@ -1,4 +1,4 @@
-// Greedy fit of one slice: a lobe at a time until the goal or the bound is met.
+// Greedy fit of one slice: adds one lobe at a time until the goal or the bound is reached.
 #pragma once
 
 #include <vector>

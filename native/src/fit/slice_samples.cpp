@@ -5,7 +5,7 @@ namespace velour {
 SliceSamples::SliceSamples(std::span<const SliceSample> samples) : count_(samples.size()) {
   const size_t padded = (count_ + kPadding - 1) / kPadding * kPadding;
   for (AlignedFloats* a : {&x_, &y_, &sqrt_weight_, &target_[0], &target_[1], &target_[2]}) a->assign(padded, 0.0f);
-  z_.assign(padded, 1.0f);  // padding is a direction too, so that no kernel meets one of length 0
+  z_.assign(padded, 1.0f);  // padding has unit length, so that no kernel divides by 0
   for (size_t i = 0; i < count_; ++i) {
     const SliceSample& s = samples[i];
     x_[i] = s.wl.x;

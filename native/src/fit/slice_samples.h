@@ -1,4 +1,4 @@
-// One slice as the solver sees it: f cos(theta_l) of one view at weighted light directions.
+// Samples of one slice for the solver: f cos(theta_l) of one view at weighted light directions.
 #pragma once
 
 #include <oneapi/tbb/cache_aligned_allocator.h>
@@ -20,9 +20,9 @@ struct SliceSample {
   Rgb value;
 };
 
-/// Structure of arrays, padded with samples of weight 0 to a multiple of kPadding, so that kernels have no tails.
+/// Structure of arrays, padded with samples of weight 0 to a multiple of kPadding, so that loops have no tails.
 ///
-/// Everything is multiplied by the square root of the weight: weighted sums of products are then plain dot products.
+/// Values are multiplied by the square root of the weight, so that weighted sums of products are plain dot products.
 class SliceSamples {
  public:
   static constexpr size_t kPadding = 16;
@@ -39,17 +39,17 @@ class SliceSamples {
   /// sqrt(weight) x channel `c` of f cos.
   const float* target(int c) const { return target_[c].data(); }
 
-  /// Multiplies the weights by `factors`, one a sample. The energies stay those of the weights that were given.
+  /// Multiplies the weights by `factors`, one per sample. The energies remain those of the original weights.
   void scale_weights(std::span<const float> factors);
 
-  /// Takes `values`, one a sample and multiplied by the square root of its weight, in place of what channel `c`
-  /// measured. The energies stay.
+  /// Replaces the measured values of channel `c` by `values`, one per sample, multiplied by the square root of its
+  /// weight. Does not change the energies.
   void replace_target(int c, const AlignedFloats& values) { target_[c] = values; }
 
   /// Sum of weight x luminance(f cos)^2.
   double luminance_energy() const { return luminance_energy_; }
-  /// Relative L2 of the luminance that is left when every channel is fitted exactly but for its negative values, which
-  /// non-negative coefficients cannot follow: no fit gets below it, and lobes spent on it are wasted.
+  /// Relative L2 error of the luminance if every channel is fitted exactly except for its negative values, which
+  /// non-negative coefficients cannot follow. No fit gets below it, and lobes spent on it are wasted.
   double gamut_error() const;
   /// Sum of weight x f cos^2 of one channel.
   double energy(int c) const { return energy_[c]; }

@@ -14,7 +14,7 @@ namespace {
 // Fewer samples than this leave a lobe's four unknowns undetermined.
 constexpr size_t kLeastSamples = 8;
 
-// Squares of more would not fit a float, and a model file holds no larger coefficients.
+// Maximum value: keeps squares within the range of float; a model file holds no larger coefficients.
 constexpr float kLargestValue = 1e12f;
 
 bool usable(const Rgb& f) { return std::isfinite(f.r) && std::isfinite(f.g) && std::isfinite(f.b); }
@@ -37,13 +37,13 @@ void keep_one_side(LightGrid& grid) {
   grid = std::move(half);
 }
 
-/// f of lights and of their mirror images, as measured.
+/// Measured f of lights and of their mirror images.
 struct MirrorPairs {
   std::vector<Rgb> f, image;
   std::vector<uint8_t> valid, image_valid;
 };
 
-/// f of `lights` for a view on the meridian, each the mean of what is valid of it and its mirror image.
+/// f of `lights` for a view on the meridian: the mean of the light and its mirror image, where valid.
 MirrorPairs eval_folded(const Measurement& source, const Vec3& wv, const std::vector<Vec3>& lights, std::vector<Rgb>& f,
                         std::vector<uint8_t>& valid) {
   std::vector<Vec3> mirrored = lights;
@@ -63,7 +63,7 @@ MirrorPairs eval_folded(const Measurement& source, const Vec3& wv, const std::ve
   return measured;
 }
 
-/// For a view along the normal, where an isotropic f depends on theta_l alone: the mean of every ring.
+/// Replaces f by the mean of its ring: for a view along the normal, where an isotropic f depends on theta_l alone.
 void average_rings(const LightGrid& grid, std::vector<Rgb>& f, std::span<const uint8_t> valid) {
   for (size_t begin = 0, end = 0; begin < f.size(); begin = end) {
     Vec3d sum(0);
@@ -75,7 +75,7 @@ void average_rings(const LightGrid& grid, std::vector<Rgb>& f, std::span<const u
   }
 }
 
-/// Relative L2 between what was measured and the folded `f`.
+/// Relative L2 difference between the measured and the folded `f`.
 double fold_of(const LightGrid& grid, const MirrorPairs& measured, const std::vector<Rgb>& f) {
   double hidden = 0, energy = 0;
   const auto add = [&](size_t i, const Rgb& value) {
@@ -105,12 +105,11 @@ double energy_of(const Measurement& source, const Vec3& wv, const std::vector<Ve
   return sum;
 }
 
-/// Whether the energy about the view's own direction is not what `grid` makes of it. Scattered samples are slow to look
-/// up between, and are fitted themselves.
+/// Whether `grid` misjudges the energy about the view's own direction. False for irregular samples, whose interpolation
+/// is slow and which are fitted directly.
 bool hides_retro_reflection(const Measurement& source, const Vec3& wv, const LightGrid& grid) {
-  constexpr double kHidden = 0.02;  // of the view's energy
-  constexpr float kNearNormal =
-      0.97f;  // there the mirror direction, about which the grid is fine, lies within the rings
+  constexpr double kHidden = 0.02;      // share of the view's energy
+  constexpr float kNearNormal = 0.97f;  // cos(theta_v); above it the mirror direction, where the grid is fine, is close
   if (!source.samples().empty() || wv.z > kNearNormal) return false;
   const CloseRings rings = retro_rings(wv);
   std::vector<Vec3> close;

@@ -1,4 +1,4 @@
-// From a measurement to the slices that are fitted.
+// Samples a measurement at the slices that are fitted.
 #pragma once
 
 #include <vector>
@@ -9,28 +9,28 @@
 
 namespace velour {
 
-/// The slice of one view, and what was met on the way.
+/// The slice of one view, and facts about its samples.
 struct MeasuredSlice {
   Vec3 wv;
   std::vector<SliceSample> samples;
-  double weight = 1;          // of the view's squared error in a fit of all views together
-  double energy = 0;          // sum of weight x luminance(f cos)^2 that errors are measured by; 0: that of the samples
-  double fold = 0;            // relative L2 of what folding took from it (SliceGrid::folded)
-  bool interpolated = false;  // between scattered samples that the fit reads themselves as well
-  size_t out_of_gamut = 0;    // samples with a negative channel: kept, though no model of ours can follow them
+  double weight = 1;          // weight of the view's squared error in a fit of all views together
+  double energy = 0;          // sum of weight x luminance(f cos)^2 that errors are relative to; 0: that of the samples
+  double fold = 0;            // relative L2 error of folding (SliceGrid::folded)
+  bool interpolated = false;  // from irregular samples, which the fit also reads directly
+  size_t out_of_gamut = 0;    // samples with a negative channel: kept, although no model of ours can follow them
 };
 
 struct MeasuredSlices {
   std::vector<MeasuredSlice> slices;  // views with samples only
-  std::vector<Vec3> uncovered;        // views left out because the measurement holds nothing there
+  std::vector<Vec3> uncovered;        // views left out because the measurement does not cover them
 };
 
 /// The light grid of a view (fit/view_grid.h).
 struct SliceGrid {
   int rings, spokes;
-  /// Isotropic data: only lights on one side of the plane of incidence, each with the mean of its value and its mirror
-  /// image's (at the normal, with the mean of its ring), for models that are symmetric about that plane: the same fit
-  /// from half the samples.
+  /// Isotropic data: only lights on one side of the plane of incidence, each with the mean of its value and that of its
+  /// mirror image (for a view along the normal, the mean of its ring). For models that are symmetric about that plane,
+  /// which get the same fit from half the samples.
   bool folded = false;
 };
 

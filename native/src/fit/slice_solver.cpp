@@ -12,14 +12,14 @@ namespace {
 
 using Index = Eigen::Index;
 
-// Broader than this a lobe is a constant over the hemisphere, whatever its centre.
+// Minimum sharpness: broader lobes are constant over the hemisphere, whatever their center.
 constexpr double kMinSharpness = 0.02;
-// Of a lobe whose centre no sample is near, the peak over what is seen of it.
+// Maximum ratio of the peak of a lobe to its largest visible value, if no sample is near its center.
 constexpr double kMaxPeakToSeen = 100;
-constexpr double kHole = 4;  // so many spacings of the samples from the nearest one
-// Column products are sums in float: below this share of its length a column is rounding.
+constexpr double kHole = 4;  // a point this many sample spacings from the nearest sample is in a hole
+// Column products are summed in float; a column below this share of its length is rounding.
 constexpr double kSliceRidge = 1e-7;
-// Longest step of one refinement: this many lobe widths, and a factor e of sharpness.
+// Maximum step of one refinement, in lobe widths and in log sharpness.
 constexpr double kMaxTurn = 1.0, kMaxLogStep = 1.0;
 
 Vec3d turned(const LobeShape& shape, double along_x, double along_y) {
@@ -83,8 +83,8 @@ double SliceSolver::max_sharpness(const Vec3d& center) const {
   const double half_width = 0.5 * std::clamp(static_cast<double>(spacing), 1e-4, 1.0);
   const double s = std::sin(0.5 * half_width);
   double limit = std::log(2.0) / (2 * s * s);
-  // Of a lobe below the horizon or in a hole of the data only the tail is seen: a sharp one would need a peak without
-  // bound.
+  // Only the tail of a lobe below the horizon or in a hole of the data is visible: the peak of a sharp one would be
+  // unbounded.
   const double to_nearest = 1 - static_cast<double>(nearest);
   if (2 * to_nearest > kHole * kHole * spacing * spacing)
     limit = std::min(limit, std::log(kMaxPeakToSeen) / to_nearest);
@@ -93,14 +93,14 @@ double SliceSolver::max_sharpness(const Vec3d& center) const {
   return std::min(limit, std::log(kMaxPeakToSeen) / (1 - cos_depth));
 }
 
-/// The lobes' values, then the cosine term's.
+/// Columns of the lobes, then of the cosine term.
 std::vector<const float*> SliceSolver::columns(const State& state) const {
   auto out = state.values.first(state.shapes.size());
   out.push_back(cosine_.data());
   return out;
 }
 
-/// Peaks, residual and objective of the shapes.
+/// Computes peaks, residual and objective of the shapes.
 void SliceSolver::solve(State& state) const {
   const size_t n = state.shapes.size(), padded = samples_.padded();
   state.values.resize(n);
@@ -125,7 +125,7 @@ void SliceSolver::solve(State& state) const {
   for (int c = 0; c < 3; ++c) state.objective += kChannelWeight[static_cast<size_t>(c)] * residual_products(c, c);
 }
 
-/// Adds channel `c` to the normal equations: its peaks are free only where they are positive.
+/// Adds a channel to the normal equations, eliminating its positive peaks; peaks of 0 stay fixed.
 void SliceSolver::eliminate_peaks(const Eigen::MatrixXd& products, int channel, Step& step) const {
   const Index n = count();
   std::vector<Index> term, row;
@@ -177,7 +177,7 @@ SliceSolver::Step SliceSolver::linearize() {
       step.slope[r] += kChannelWeight[static_cast<size_t>(c)] * state_.peaks(r / 3, c) * slopes(r, c);
     }
   }
-  // Both tangents share one scale, so that the step does not depend on how the tangents are turned.
+  // Both tangents share one scale, so that the step does not depend on their rotation about the center.
   for (Index j = 0; j < unknowns; j += 3) {
     step.scale[j] = step.scale[j + 1] = 0.5 * (step.scale[j] + step.scale[j + 1]);
   }
@@ -223,7 +223,7 @@ void SliceSolver::refine(int steps, double goal, double least_gain) {
     }
     const double promised = by.dot(step.slope) + damping * by.dot(step.scale.cwiseProduct(by));
     const double ratio = promised > 0 ? gain / promised : 1.0;
-    // Nielsen's rule (1999): damping follows how well the linear model foretold the gain.
+    // Nielsen's rule (1999): the damping depends on how well the linear model predicted the gain.
     damping = std::max(1e-9, damping * std::max(1.0 / 3.0, 1.0 - std::pow(2.0 * ratio - 1.0, 3.0)));
     growth = 2;
     const bool slow = gain < least_gain * state_.objective;
@@ -242,7 +242,7 @@ int SliceSolver::least_important() const {
   int least = 0;
   double least_cost = std::numeric_limits<double>::infinity();
   for (int j = 0; j < count(); ++j) {
-    double cost = 0;  // rise of E when lobe j goes and the others are solved anew
+    double cost = 0;  // rise of E if lobe j is removed and the other peaks are solved for again
     for (int c = 0; c < 3; ++c) {
       cost += kChannelWeight[static_cast<size_t>(c)] * state_.peaks(j, c) * state_.peaks(j, c) /
               std::max(inverse(j, j), 1e-300);

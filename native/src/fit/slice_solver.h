@@ -1,5 +1,4 @@
-// Fits one slice with J lobes: centres, bandwidths and non-negative RGB coefficients together (docs/equations.md,
-// "Fit").
+// Fits one slice with J lobes: centers, bandwidths and non-negative RGB coefficients together (docs/fit.md).
 #pragma once
 
 #include <array>
@@ -18,10 +17,10 @@ struct SliceLobe {
 
 /// The model of a slice: F_c(wl) = diffuse_c max(wl.z, 0) + sum_j peak_jc S_j(wl). E = sum_c w_c sum_i q_i (F_ic -
 /// model_ic)^2 with w_c the luminance weights. Because they sum to 1, E is never below the squared error of the
-/// luminance (Jensen), which is what the tolerance is about.
+/// luminance (Jensen), which the tolerance bounds.
 ///
-/// The peaks are the non-negative least-squares solution for the present shapes at all times (variable projection); the
-/// shapes move by Levenberg-Marquardt steps. J^T J of an RGB fit factorises,
+/// The peaks are always the non-negative least-squares solution for the current shapes (variable projection); the
+/// shapes move by Levenberg-Marquardt steps. J^T J of an RGB fit factorizes,
 ///   (d lobe_j / d a) . (d lobe_k / d b) summed over channels = (sum_c w_c peak_jc peak_kc) (D_ja . D_kb),
 /// so one Gram matrix of the J values and 3 J derivatives serves all channels.
 class SliceSolver {
@@ -30,15 +29,15 @@ class SliceSolver {
 
   SliceSolver(Kernel kernel, const SliceSamples& samples, const Progress& progress);
 
-  /// Replaces the lobes; peaks are solved anew.
+  /// Replaces the lobes and solves for their peaks.
   void set_lobes(std::vector<LobeShape> shapes);
   void add_lobe(const LobeShape& shape);
 
-  /// At most `steps` accepted or refused Levenberg-Marquardt steps. Ends early when the luminance error is at most
-  /// `goal` (relative L2) or when a step gains less than `least_gain` of E. E never rises.
+  /// Tries at most `steps` Levenberg-Marquardt steps, accepted or rejected. Ends early if the luminance error is at
+  /// most `goal` (relative L2) or if an accepted step gains less than `least_gain` of E. E never rises.
   void refine(int steps, double goal, double least_gain);
 
-  /// The lobe whose removal would raise E least; -1 when there are none.
+  /// The lobe whose removal would raise E least; -1 if there are none.
   int least_important() const;
 
   double objective() const { return state_.objective; }
@@ -51,18 +50,18 @@ class SliceSolver {
   Vec3d diffuse() const;
   const float* residual(int c) const { return state_.residual[static_cast<size_t>(c)]; }
 
-  /// Largest sharpness at `center`: the half-width of a lobe is never below half the spacing of the samples there, so
-  /// no lobe hides between samples. Where there are none, its peak is bounded by the tail that is seen.
+  /// Maximum sharpness at `center`: the half-width of a lobe is never below half the spacing of the samples there, so
+  /// that no lobe hides between samples. If there are none nearby, the visible tail of the lobe bounds its peak.
   double max_sharpness(const Vec3d& center) const;
 
  private:
-  /// Everything that follows from the shapes.
+  /// The shapes and everything computed from them.
   struct State {
     explicit State(size_t padded) : values(padded), residual(padded) { residual.resize(3); }
     std::vector<LobeShape> shapes;
-    Eigen::MatrixXd peaks;  // J + 1 rows of 3: the lobes', then the cosine term's
+    Eigen::MatrixXd peaks;  // J + 1 rows of 3: the lobes, then the cosine term
     ColumnSet values, residual;
-    Eigen::Matrix3d residual_products;  // of the channels
+    Eigen::Matrix3d residual_products;  // dot products of the channels' residuals
     double objective = 0;
   };
   /// The normal equations of the shapes with the peaks eliminated; rows 3 j + {x, y, log sharpness}.

@@ -13,19 +13,19 @@ namespace {
 
 using Index = Eigen::Index;
 
-// Views are fitted a little tighter than asked, for those between them and for what the fold has hidden.
+// Views are fitted more tightly than required, to leave room for the views between them and for the folding error.
 constexpr double kViewGoalShare = 0.8;
 constexpr int kFirstLobes = 4;
 constexpr int kPolishSteps = 80, kPolishRounds = 4, kRoundSteps = 8;
-// A model of few lobes is put in order before it grows on: so often lobes change places.
+// Maximum number of lobe exchanges in a model of few lobes before it grows further.
 constexpr int kExchanges = 4;
 constexpr double kPolishLeast = 3e-4;
 
-// A lobe that lowers the cost by less than this says that lobes are not what is missing.
+// If a lobe lowers the cost by less than this share, more lobes hardly help.
 constexpr double kLeastGain = 0.01;
-// So many of them in turn: one alone may be what the next needs.
+// Number of such lobes in a row that ends the growth: a single one may enable the next.
 constexpr int kIdleLobes = 2;
-// The same where the growth by the error is over and only pictures ask for more.
+// That share once growth by view errors has ended and only the picture error asks for more lobes.
 constexpr double kLeastPictureGain = 0.03;
 
 OrderPoint order_point(const TrackedProblem& problem, const TrackedLobes& lobes) {
@@ -45,7 +45,7 @@ OrderPoint order_point(const TrackedProblem& problem, const TrackedLobes& lobes)
   return point;
 }
 
-/// Views that are far from their goal count more from now on.
+/// Raises the weights of views that are far from their goal.
 void reweight(TrackedProblem& problem) {
   double square = 0, mean = 0, count = 0;
   for (const TrackedView& v : problem.views()) {
@@ -71,7 +71,7 @@ bool is_color(const ParametricBrdf& model, Index i) {
 
 double half(double value) { return glm::unpackHalf1x16(glm::packHalf1x16(static_cast<float>(value))); }
 
-/// Rounds to what the file holds: shapes first, so that the colours can make up for it.
+/// Rounds to half floats, as in the file: shapes first, so that the colors can compensate.
 void round_to_half(TrackedProblem& problem, TrackedLobes& lobes) {
   for (const bool colors : {false, true}) {
     for (Index i = 0; i < lobes.x.size(); ++i) {
@@ -82,14 +82,14 @@ void round_to_half(TrackedProblem& problem, TrackedLobes& lobes) {
   lobes.cost = problem.evaluate(lobes.model, lobes.x);
 }
 
-/// Mean over the views, each by the area that faces its viewer.
+/// Mean over the views, weighted by the projected area, cos(theta_v).
 double mean_picture_error(const TrackedProblem& problem) {
   double sum = 0, weight = 0;
   for (const TrackedView& v : problem.views()) sum += v.wv.z * v.picture_error, weight += v.wv.z;
   return sum / std::max(weight, 1e-12);
 }
 
-/// What pictures show counts from now on, with more lobes while they gain much there.
+/// Adds the picture error to the cost, and lobes as long as they lower it enough.
 void grow_for_pictures(TrackedProblem& problem, TrackedLobes& lobes, int most, std::vector<OrderPoint>& points) {
   constexpr LobeSpace kBoth[] = {LobeSpace::half, LobeSpace::light};
   problem.weigh_for_pictures();
@@ -102,7 +102,7 @@ void grow_for_pictures(TrackedProblem& problem, TrackedLobes& lobes, int most, s
   }
 }
 
-/// The last word on a number of lobes: the views far from their goal brought nearer, then rounded.
+/// Final refinement for a number of lobes: reweights views that are far from their goal, then rounds.
 void polish(TrackedProblem& problem, TrackedLobes& lobes) {
   refine(problem, lobes, kPolishSteps, kPolishLeast);
   for (int round = 0; round < kPolishRounds; ++round) {
@@ -134,14 +134,14 @@ class TrackedGrowth::Growth {
     lobes_.cost = problem.evaluate(lobes_.model, lobes_.x);
   }
 
-  /// Adds lobes of `spaces` until there are `most`, or until no view asks for more.
+  /// Adds lobes in `spaces` until there are `most`, all views meet their goals, or more lobes hardly help.
   void grow(std::span<const LobeSpace> spaces, int most) {
     problem_.evaluate(lobes_.model, lobes_.x);
     while (!done_ && lobes_.model.lobe_count() < most) {
       const double before = lobes_.cost;
       done_ = !add_lobe(problem_, lobes_, spaces);
       if (done_) return;
-      // A lobe that gains next to nothing: perhaps another stands in the wrong place.
+      // If the lobe gains next to nothing, another may be in the wrong place.
       if (lobes_.cost > (1 - kLeastGain) * before) exchange_lobe(problem_, lobes_);
       points_.push_back(order_point(problem_, lobes_));
       progress_.update(static_cast<double>(lobes_.model.lobe_count()) / options_.max_lobes);
@@ -150,7 +150,7 @@ class TrackedGrowth::Growth {
     }
   }
 
-  /// Lobes change places while that gains something: greed may have put the first ones where later ones cannot mend it.
+  /// Exchanges lobes while that helps: greedy growth may have misplaced the first ones beyond repair by later ones.
   void put_in_order() {
     for (int k = 0; k < kExchanges && problem_.dense() && !points_.empty() && !good_enough(); ++k) {
       const double before = lobes_.cost;
@@ -173,15 +173,15 @@ class TrackedGrowth::Growth {
   Progress& progress_;
   TrackedLobes lobes_;
   std::vector<OrderPoint> points_;
-  int idle_ = 0;       // lobes in turn that gained next to nothing
+  int idle_ = 0;       // lobes in a row that gained next to nothing
   bool done_ = false;  // no more lobes are wanted
 };
 
 namespace {
 
-/// What a symmetric model may err by against the folded values of a view, so that against what was measured it errs by
-/// `tolerance`, or, where that is more, by what mirror images differ by: sqrt(2) times `fold` (fit/noise.h). Never more
-/// than `tolerance`.
+/// Allowed error of a symmetric model against the folded values of a view, such that its error against the measurement
+/// is `tolerance` or, if larger, the difference of mirror images: sqrt(2) times `fold` (fit/noise.h). At most
+/// `tolerance`.
 double beside_fold(double tolerance, double fold) {
   const double allowed = std::max(tolerance, std::sqrt(2.0) * fold);
   return std::min(tolerance, std::sqrt(allowed * allowed - fold * fold));
@@ -199,7 +199,7 @@ TrackedProblem problem_of(const std::vector<MeasuredSlice>& slices, const Tracke
 
 }  // namespace
 
-/// Greed may begin in the wrong space and never mend it, so the first lobes are tried in half space alone as well.
+/// Greedy growth may start in the wrong space and never recover, so the first lobes are also tried in half space alone.
 struct TrackedGrowth::State {
   TrackedFitOptions options;
   TrackedProblem problem, problem_of_half;
@@ -219,7 +219,7 @@ struct TrackedGrowth::State {
     constexpr LobeSpace kBoth[] = {LobeSpace::half, LobeSpace::light}, kHalf[] = {LobeSpace::half};
     const int first = std::min(kFirstLobes, most);
     if (!begun) {
-      // Not the lobes of smaller models: larger ones that share this growth would begin with others than on their own.
+      // Not for smaller models: larger ones that share this growth would start with other lobes than on their own.
       begun = first == kFirstLobes;
       parallel_pieces(2, options.threads, problem.progress(), [&](size_t i) {
         Growth& growth = i == 0 ? both : half;
@@ -252,12 +252,12 @@ TrackedFit TrackedGrowth::State::fit(int most) {
   TrackedLobes lobes = growth.lobes();
   TrackedFit fit;
   fit.order.points = growth.points();
-  TrackedProblem own = problem;  // weights change from here on
+  TrackedProblem own = problem;  // a copy, because its weights change
   own.evaluate(lobes.model, lobes.x);
   if (lobes.model.lobe_count() > 0) {
     grow_for_pictures(own, lobes, most, fit.order.points);
     polish(own, lobes);
-    // What the growth ends with takes the place of its last point.
+    // The final model replaces the last point of the growth.
     fit.order.points.back() = order_point(own, lobes);
     fit.order.chosen = fit.order.points.size() - 1;
   }

@@ -1,4 +1,4 @@
-// From the slices of a measurement to a parametric model: growth, refinement, rounding.
+// Fits a parametric model to the slices of a measurement: growth, refinement, rounding.
 #pragma once
 
 #include <memory>
@@ -17,7 +17,7 @@ struct TrackedFitOptions {
   ViewRange views;
   int max_lobes = 12;
   double tolerance = 0.02;  // relative L2 of every view up to 75 degrees; twice that beyond
-  bool seen_evenly = true;  // samples weigh their solid angle alone (fit/tracked_problem.h)
+  bool seen_evenly = true;  // sample weights are solid angles alone (fit/tracked_problem.h)
   int threads = 0;
 };
 
@@ -25,17 +25,17 @@ struct TrackedFit {
   ParametricBrdf brdf;  // control values are half floats
   std::vector<Vec3d> views;
   std::vector<double> error;  // relative L2 of each view, channels weighted as in luminance
-  OrderCurve order;           // the growth, and what it became
+  OrderCurve order;           // the growth, then the final model
 };
 
-/// Fits with more and more lobes that share their growth: each is what fit_tracked() makes with that many at most.
+/// Fits with increasing numbers of lobes that share their growth. Each equals fit_tracked() with that maximum.
 class TrackedGrowth {
  public:
-  /// Of `options`, max_lobes only scales the progress.
+  /// options.max_lobes only scales the progress.
   TrackedGrowth(const std::vector<MeasuredSlice>& slices, const TrackedFitOptions& options, Progress& progress);
   ~TrackedGrowth();
 
-  /// With at most `most` lobes, no fewer than were asked for before.
+  /// Fit with at most `most` lobes, which must not decrease from call to call.
   TrackedFit fit(int most);
 
  private:
@@ -46,7 +46,7 @@ class TrackedGrowth {
 
 TrackedFit fit_tracked(const std::vector<MeasuredSlice>& slices, const TrackedFitOptions& options, Progress& progress);
 
-/// Takes the errors of `fit` anew, after its model was changed.
+/// Recomputes the errors of `fit` after a change of its model.
 void judge_again(const std::vector<MeasuredSlice>& slices, TrackedFitOptions options, TrackedFit& fit,
                  const Progress& progress);
 

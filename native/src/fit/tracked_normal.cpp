@@ -12,14 +12,14 @@ namespace {
 using Index = Eigen::Index;
 using P = ParametricBrdf;
 
-// Of the residual in the preconditioner's norm: more digits make no better steps.
+// Relative tolerance of the residual in the preconditioner's norm. More digits do not improve the steps.
 constexpr double kRelativeResidual = 3e-3;
 constexpr int kMostSteps = 80;
-// Of the mean diagonal: what the data leave open must not be singular, nor drift.
+// Ridge relative to the mean diagonal, so that what the data leave open is not singular and does not drift.
 constexpr float kNormalRidge = 1e-6f;
-// Of a block's diagonal of ones, so that floats can hold its factors.
+// Ridge relative to a block's unit diagonal, so that it can be factored in float.
 constexpr float kBlockRidge = 1e-5f;
-// Of the rows of a view's matrix: the threads share what is larger, in so many runs.
+// Matrices with at least this many rows are processed in parallel, in this many chunks.
 constexpr Index kLeastShared = 32;
 constexpr size_t kRuns = 8;
 
@@ -37,7 +37,7 @@ double dot(const Eigen::VectorXf& a, const Eigen::VectorXf& b) { return a.cast<d
 
 }  // namespace
 
-/// The inverse of the nodes' own blocks, each scaled to a diagonal of ones.
+/// Inverse of the nodes' diagonal blocks, each scaled to a unit diagonal.
 class TrackedNormal::Preconditioner {
  public:
   Preconditioner(const TrackedNormal& normal, const Eigen::VectorXf& added, const Eigen::VectorXf& free)
@@ -49,7 +49,7 @@ class TrackedNormal::Preconditioner {
       const Index at = static_cast<Index>(n) * size;
       const Eigen::VectorXf scale = scale_.segment(at, size);
       Eigen::MatrixXf m = scale.asDiagonal() * normal.block_[n] * scale.asDiagonal();
-      // What stays is apart from the rest.
+      // Fixed unknowns are decoupled from the others.
       const auto stays = 1 - free.segment(at, size).array();
       m.diagonal().array() += added.segment(at, size).array() * scale.array().square() + kBlockRidge + stays;
       inverse_[n].compute(m);
@@ -100,8 +100,8 @@ TrackedNormal::TrackedNormal(const ParametricBrdf& model, const TrackedProblem& 
       weight_.push_back(w);
     }
   }
-  // The penalty's own diagonal is at most 6 per direction of the grid; small against that of the data where there is
-  // any, and a fair scale where there is none.
+  // The diagonal of the penalty is at most 6 per direction of the grid: small compared with that of the data, and a
+  // fair scale where there are no data.
   diagonal_.resize(gradient_.size());
   for (size_t n = 0; n < block_.size(); ++n) {
     block_[n].diagonal().array() += static_cast<float>(6 * kSmoothness);

@@ -1,9 +1,9 @@
-// The damped Gauss-Newton step of the parametric model, without its big matrix.
+// The damped Gauss-Newton step of the parametric model, without assembling its large matrix.
 //
-// A view touches three nodes of the spline (nine of a hemisphere's), so the matrix is a sum of small ones, one a view.
-// Conjugate gradients with the nodes' own blocks as preconditioner solve it: neighbouring nodes of a quadratic spline
-// are coupled weakly, so some twenty steps do, whatever the condition inside a block. In floats, which hold the
-// residuals as well: a step is judged by the cost that it leads to, not by its last digits.
+// A view affects three nodes of the spline (nine on a hemisphere), so the matrix is a sum of small ones, one per view.
+// Conjugate gradients with the nodes' diagonal blocks as preconditioner solve it. Neighboring nodes of a quadratic
+// spline are weakly coupled, so about twenty iterations suffice, whatever the condition of a block. Computed in float,
+// like the residuals: a step is judged by the resulting cost, not by its last digits.
 #pragma once
 
 #include "fit/tracked_problem.h"
@@ -12,13 +12,13 @@ namespace velour {
 
 class TrackedNormal {
  public:
-  /// At `x`, with the views' matrices there. Keeps references to `model` and `problem`.
+  /// `local` are the views' matrices at `x`. Keeps references to `model` and `problem`.
   TrackedNormal(const ParametricBrdf& model, const TrackedProblem& problem, std::vector<LocalNormal> local,
                 const Eigen::VectorXd& x);
 
-  /// Solves (H + damping diag H) step = -gradient for the unknowns where `free` is 1; where it is 0 they stay.
+  /// Solves (H + damping diag H) step = -gradient for the unknowns where `free` is 1; the others stay fixed.
   Eigen::VectorXd step(double damping, const Eigen::VectorXd& free) const;
-  /// By how much the quadratic model says that a step lowers the cost.
+  /// Decrease of the cost by a step, as predicted by the quadratic model.
   double promised(const Eigen::VectorXd& step) const;
   /// Half the gradient of the cost.
   const Eigen::VectorXd& gradient() const { return gradient_; }
@@ -33,9 +33,9 @@ class TrackedNormal {
   const ParametricBrdf& model_;
   const TrackedProblem& problem_;
   std::vector<LocalNormal> local_;       // matrices in units of the cost
-  std::vector<Eigen::VectorXf> weight_;  // of the taps of all views, [parameter][lobe]
-  std::vector<size_t> first_tap_;        // of each view in weight_
-  std::vector<Eigen::MatrixXf> block_;   // of each node
+  std::vector<Eigen::VectorXf> weight_;  // tap weights of all views, [parameter][lobe]
+  std::vector<size_t> first_tap_;        // first tap of each view in weight_
+  std::vector<Eigen::MatrixXf> block_;   // diagonal block of each node
   Eigen::VectorXd gradient_;
   Eigen::VectorXf diagonal_;
 };

@@ -13,7 +13,7 @@ namespace {
 using Index = Eigen::Index;
 using P = ParametricBrdf;
 
-/// Triples of neighbouring nodes whose second difference is to be small.
+/// Calls `use` for the triples of neighboring nodes whose second differences are penalized.
 template <class Use>
 void for_each_triple(const ViewSpline& spline, const Use& use) {
   const int side = spline.side();
@@ -36,7 +36,7 @@ TrackedProblem::TrackedProblem(const std::vector<MeasuredSlice>& slices, const V
   for (const MeasuredSlice& slice : slices) {
     TrackedView view(slice, spline, goal(slice) / std::sqrt(slice.weight));
     if (!(view.energy > 0)) continue;
-    // Samples of a goniometer weigh one each, and nobody measured what lies between.
+    // Samples of a goniometer have a weight of one each, and nothing between them was measured.
     if (seen_evenly && !slice.interpolated && !(slice.energy > 0)) {
       view.picture_weight = picture_weights(slice.samples);
       view.spacing.emplace(slice.samples, view.wv);

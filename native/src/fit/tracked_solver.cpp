@@ -10,9 +10,9 @@ using Index = Eigen::Index;
 using P = ParametricBrdf;
 
 constexpr double kFirstDamping = 1e-3, kLeastDamping = 1e-6;
-constexpr double kFastestFall = 0.2, kSlowestRise = 2;  // of the damping after a step that was taken
+constexpr double kFastestFall = 0.2, kSlowestRise = 2;  // bounds of the factor of the damping after an accepted step
 constexpr int kTrials = 6;
-constexpr double kMaxStep = 1;  // of a control value: a factor e, a radian
+constexpr double kMaxStep = 1;  // maximum change of a control value: a factor of e, or a radian
 
 int parameter_of(const P& model, Index i) { return static_cast<int>(i / model.lobe_count()) % model.parameter_count(); }
 
@@ -25,8 +25,8 @@ Eigen::VectorXd stepped(const TrackedLobes& lobes, const Eigen::VectorXd& step) 
   return x;
 }
 
-/// 1 where an unknown may move: 0 as well at a bound that the cost pushes it against, or the step of the others would
-/// count on what the bound takes back.
+/// 1 for unknowns that may move, otherwise 0. Unknowns at a bound that a step would cross are held, because the step of
+/// the others would rely on a move that the bound prevents.
 Eigen::VectorXd free_to_move(const TrackedLobes& lobes, const Eigen::VectorXd& gradient, Free free) {
   Eigen::VectorXd out = Eigen::VectorXd::Ones(lobes.x.size());
   for (Index i = 0; i < out.size(); ++i) {
@@ -39,7 +39,7 @@ Eigen::VectorXd free_to_move(const TrackedLobes& lobes, const Eigen::VectorXd& g
   return out;
 }
 
-/// How much a step is damped, by what the steps before it brought of what they promised [Nie99].
+/// Damping of a step, adapted by the ratio of actual to predicted gain of earlier steps [Nie99].
 class Damping {
  public:
   double value() const { return value_; }

@@ -5,7 +5,7 @@
 
 namespace velour {
 
-/// Lobes while they are fitted: what a ParametricBrdf holds, its control values in double.
+/// Lobes during a fit: a ParametricBrdf with its control values in double.
 struct TrackedLobes {
   ParametricBrdf model;  // spaces and order; its `control` is empty
   Eigen::VectorXd x;
@@ -15,11 +15,11 @@ struct TrackedLobes {
 /// Which unknowns move.
 enum class Free { all, colors };
 
-/// Steps until one lowers the cost by less than `least` of it, or `most` of them. Never worse than the start.
+/// Takes at most `most` steps, until one lowers the cost by less than `least` of it. Never worse than the start.
 /// Deterministic for any thread count.
 void refine(TrackedProblem& problem, TrackedLobes& lobes, int most, double least, Free free = Free::all);
 
-/// What a lobe may be at any view: bounds of its control values, all of them half floats.
+/// Bounds of the control values of a lobe, all of them half floats. They also bound its parameters at any view.
 double lower_bound(int parameter);
 double upper_bound(int parameter);
 

@@ -45,11 +45,11 @@ WarpedShape shape_of(const P& model, const Eigen::MatrixXd& parameters, Index lo
   return s;
 }
 
-/// One view at one x: the columns of its lobes, then those of their slopes, and the coefficients.
+/// One view at one x: the columns of its lobes, then the columns of their slopes, and the coefficients.
 struct Linear {
   ColumnSet columns;
   Eigen::MatrixXd coefficient;   // [lobe][channel]
-  Eigen::VectorXd excess;        // of each lobe's log bandwidth
+  Eigen::VectorXd excess;        // excess of each lobe's log bandwidth
   Eigen::MatrixXd excess_slope;  // [slope][lobe]; zero without excess
 
   Linear(const P& model, const Eigen::VectorXd& x, const TrackedView& view, bool slopes)
@@ -129,7 +129,7 @@ LocalNormal local_normal(const P& model, const Linear& linear, const TrackedView
       }
     }
   }
-  // The cost is the view's scale times all of this, and an excess counts in the cost as it is.
+  // The view's scale later multiplies all of this. It does not apply to the cost of an excess, so it is divided out.
   const double hiding = kHiding / view.scale();
   for (Index j = 0; j < lobes; ++j) {
     const auto slope = linear.excess_slope.col(j);
@@ -141,7 +141,7 @@ LocalNormal local_normal(const P& model, const Linear& linear, const TrackedView
       }
     }
   }
-  // The stretch that the view sees is the faded one.
+  // Chain rule: the stretch at the view is the control value times the fade.
   for (const int p : {static_cast<int>(P::kStretchA), static_cast<int>(P::kStretchB)}) {
     if (p >= model.parameter_count()) continue;
     out.gradient.segment(p * lobes, lobes) *= view.fade;

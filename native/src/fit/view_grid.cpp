@@ -12,10 +12,10 @@ namespace {
 
 constexpr double kMeridianStep = 2.0, kMeridianEnd = 89.0;  // degrees
 constexpr int kHemisphereViews = 400;                       // a spacing of about 7 degrees
-// A little more than the margin, so that no rounding brings a view inside.
+// Slightly more than the margin, so that rounding does not bring a view inside.
 constexpr double kSafeMargin = kHeldOutMargin + 0.05;
 
-/// `theta` moved to the nearer edge of the margin when a held-out view is too near.
+/// `theta` (degrees), moved to the nearer edge of the margin if a held-out view is too close.
 double outside_margins(double theta) {
   for (const int held_out : kHeldOutViews) {
     const double away = theta - held_out;
@@ -33,7 +33,7 @@ double half_vector_cell(int i, int rings, int spokes) {
   return 2 * std::sin(0.5 * (begin + end)) * std::sin(0.5 * (end - begin)) * 2 * kPiD / spokes;
 }
 
-/// Lights of light_grid(wv, rings, spokes) per steradian at `wl`.
+/// Density of the lights of light_grid(wv, rings, spokes) at `wl`, 1/sr.
 double grid_density(const Vec3& wv, const Vec3& wl, int rings, int spokes) {
   const Vec3d h = glm::normalize(Vec3d(wv) + Vec3d(wl));
   const double theta = std::acos(std::clamp(h.z, -1.0, 1.0));
@@ -76,7 +76,7 @@ LightGrid light_grid(const Vec3& wv, int rings, int spokes) {
   for (int i = 0; i < rings; ++i) {
     const double cell = half_vector_cell(i, rings, spokes),
                  theta = 0.5 * (ring_edge(i, rings) + ring_edge(i + 1, rings));
-    const double turn = i * 0.6180339887498949;  // golden ratio: neighbouring rings do not line up
+    const double turn = i * 0.6180339887498949;  // golden ratio: neighboring rings do not line up
     for (int k = 0; k < spokes; ++k) {
       const double phi = azimuth + 2 * kPiD * (k + turn - std::floor(turn)) / spokes;
       const Vec3d h(std::sin(theta) * std::cos(phi), std::sin(theta) * std::sin(phi), std::cos(theta));
@@ -115,7 +115,7 @@ void join_retro_rings(LightGrid& grid, const Vec3& wv, int rings, int spokes) {
 }
 
 void redistribute_weights(LightGrid& grid, std::span<const uint8_t> kept) {
-  const size_t rings = grid.ring.empty() ? 0 : grid.ring.back() + size_t{1};  // in order
+  const size_t rings = grid.ring.empty() ? 0 : grid.ring.back() + size_t{1};  // rings are in ascending order
   std::vector<double> all(rings, 0.0), left(rings, 0.0);
   for (size_t i = 0; i < grid.wl.size(); ++i) {
     all[grid.ring[i]] += grid.weight[i];

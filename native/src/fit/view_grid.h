@@ -1,4 +1,4 @@
-// Which views a fit samples, and at which light directions.
+// The views that a fit samples, and their light directions.
 #pragma once
 
 #include <cstdint>
@@ -17,22 +17,22 @@ std::vector<Vec3> meridian_views(bool all_data);
 std::vector<Vec3> hemisphere_views(bool all_data);
 
 /// Light directions of the view `wv` with their solid angles, as a product grid of half vectors: theta_h in quadratic
-/// steps, so that the highlight is sampled as finely as MERL tabulates it, phi_h uniform, each ring turned against the
-/// one before. d wl = 4 (wv . h) d h. Lights at or below the horizon are left out.
+/// steps, so that the highlight is sampled as finely as MERL tabulates it, phi_h uniform, each ring rotated against the
+/// previous one. d wl = 4 (wv . h) d h. Lights at or below the horizon are left out.
 struct LightGrid {
   std::vector<Vec3> wl;
   std::vector<float> weight;   // sr
-  std::vector<uint32_t> ring;  // of equal theta_h
+  std::vector<uint32_t> ring;  // index of the light's ring, which has equal theta_h
 };
 LightGrid light_grid(const Vec3& wv, int rings = 96, int spokes = 64);
 
-/// Rings about `wv` itself, from a tenth of a degree to twenty: where the grid, which is fine about the mirror
-/// direction, sees a retro-reflector but by chance.
+/// Rings about `wv` itself, from 0.1 to 20 degrees. The grid is fine about the mirror direction and resolves
+/// retro-reflection only by chance.
 CloseRings retro_rings(const Vec3& wv);
-/// Joins `grid`, of light_grid(wv, rings, spokes), with the lights of retro_rings(wv), by the balance heuristic.
+/// Adds the lights of retro_rings(wv) to `grid`, made by light_grid(wv, rings, spokes), by the balance heuristic.
 void join_retro_rings(LightGrid& grid, const Vec3& wv, int rings, int spokes);
 
-/// Hands the solid angle of the lights that are not `kept` to the kept ones of their ring.
+/// Distributes the solid angle of the lights that are not `kept` to the kept ones of their ring.
 void redistribute_weights(LightGrid& grid, std::span<const uint8_t> kept);
 
 }  // namespace velour

@@ -7,7 +7,7 @@
 #define HWY_TARGET_INCLUDE "fit/warped_columns.cpp"
 #include "hwy/foreach_target.h"
 #include "hwy/highway.h"
-// Need Highway's namespace of the target.
+// Require Highway's namespace of the target.
 #include "srbf/simd_dispatch.h"
 #include "srbf/simd_math-inl.h"
 
@@ -26,10 +26,10 @@ struct Lanes3 {
 Lanes dot(const Lanes3& a, const Lanes3& b) { return hn::MulAdd(a.x, b.x, hn::MulAdd(a.y, b.y, hn::Mul(a.z, b.z))); }
 Lanes3 every(const Vec3d& v) { return {every(v.x), every(v.y), every(v.z)}; }
 
-/// What a shape needs in every lane.
+/// Broadcasts a shape to all lanes.
 struct Warp {
   Lanes xx, xy, yy;
-  Lanes3 offset;  // added to wl before the stretch: wv of half lobes
+  Lanes3 offset;  // added to wl before the stretch: wv for half-space lobes
   Lanes3 center;
   Lanes bandwidth;
 
@@ -42,7 +42,7 @@ struct Warp {
   }
 };
 
-/// psi at one vector of samples, and what the derivatives need of it.
+/// psi at one vector of samples, and intermediate values for the derivatives.
 struct Warped {
   Lanes3 y;       // before the stretch
   Lanes inverse;  // 1 / |S y|
@@ -74,7 +74,7 @@ void FillWarped(const WarpedShape& shape, const Vec3d& wv, const SliceSamples& s
   for (size_t i = 0; i < samples.padded(); i += hn::Lanes(tag)) hn::Store(warp(w, samples, i).value, tag, out + i);
 }
 
-/// Derivative of psi . center by a change `slope` of the stretch.
+/// Derivative of psi . center with respect to a change `slope` of the stretch.
 Lanes stretch_slope(const Stretch& slope, const Warped& at, const Lanes3& across) {
   const Lanes x = hn::MulAdd(every(slope.xx), at.y.x, hn::Mul(every(slope.xy), at.y.y));
   const Lanes y = hn::MulAdd(every(slope.xy), at.y.x, hn::Mul(every(slope.yy), at.y.y));
@@ -91,7 +91,7 @@ void FillWarpedSlopes(const WarpedShape& shape, const Vec3d& wv, const SliceSamp
   for (size_t i = 0; i < samples.padded(); i += hn::Lanes(tag)) {
     const Warped at = warp(w, samples, i);
     const Lanes slope = hn::Mul(at.value, w.bandwidth);
-    // The part of the centre across psi: what psi . center gains when psi moves.
+    // The component of the center orthogonal to psi: the gradient of psi . center as psi moves on the sphere.
     const Lanes t = dot(at.psi, w.center);
     const Lanes3 across = {hn::NegMulAdd(at.psi.x, t, w.center.x), hn::NegMulAdd(at.psi.y, t, w.center.y),
                            hn::NegMulAdd(at.psi.z, t, w.center.z)};
@@ -109,7 +109,7 @@ void ProjectWarped(const WarpedShape& shape, const Vec3d& wv, const SliceSamples
   const Tag tag;
   const Warp w(shape, wv);
   Lanes m0 = hn::Zero(tag), m1 = m0, m2 = m0, norm_sq = m0;
-  // Whole blocks of kPadding samples, so that every instruction set takes the same ones.
+  // Whole blocks of kPadding samples, so that every instruction set uses the same samples.
   for (size_t block = 0; block < samples.padded(); block += stride * SliceSamples::kPadding) {
     for (size_t i = block; i < block + SliceSamples::kPadding; i += hn::Lanes(tag)) {
       const Lanes value = warp(w, samples, i).value;

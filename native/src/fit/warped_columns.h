@@ -1,5 +1,5 @@
-// The loops over the samples of a view for lobes with a parameterisation of their own: columns and their derivatives.
-// SIMD through Highway with run-time dispatch; the rest of the linear algebra is that of fit/slice_columns.h.
+// Loops over the samples of a view for lobes with their own parameterization: columns and their derivatives. SIMD
+// through Highway with run-time dispatch; the other linear algebra is in fit/slice_columns.h.
 #pragma once
 
 #include "fit/slice_columns.h"
@@ -7,7 +7,7 @@
 
 namespace velour {
 
-/// The shape of a lobe at one view, as the fit varies it.
+/// The shape of a lobe at one view, in the parameters of the fit.
 struct WarpedShape {
   LobeSpace space = LobeSpace::light;
   double log_bandwidth = 0;
@@ -18,12 +18,12 @@ struct WarpedShape {
 /// out_i = sqrt(weight_i) cos(theta_i) G(psi(wl_i)).
 void fill_warped(const WarpedShape& shape, const Vec3d& wv, const SliceSamples& samples, float* out);
 
-/// Derivatives of that column by log bandwidth, tilt_x, stretch_a, tilt_y, stretch_b: the first `count` of them.
+/// Derivatives of fill_warped's column by log bandwidth, tilt_x, stretch_a, tilt_y, stretch_b: the first `count`.
 inline constexpr int kWarpedSlopes = 5;
 void fill_warped_slopes(const WarpedShape& shape, const Vec3d& wv, const SliceSamples& samples, int count,
                         float* const out[kWarpedSlopes]);
 
-/// What one more lobe of this shape would meet (fit/slice_columns.h project), at every `stride`-th vector of samples.
+/// project() of fit/slice_columns.h for this shape, over every `stride`-th block of kPadding samples.
 Projection project_warped(const WarpedShape& shape, const Vec3d& wv, const SliceSamples& samples,
                           const float* const residual[3], size_t stride);
 

@@ -12,12 +12,12 @@ using Matrix = glm::dmat3;
 
 constexpr double kSingular = 1e-9;
 
-/// CIE XYZ of luminance y of these coordinates.
+/// CIE XYZ of chromaticities x, y, for luminance y.
 Vec xyz_of(const std::array<double, 2>& xy) { return {xy[0], xy[1], 1 - xy[0] - xy[1]}; }
 
 Vec white_of(const ColorPrimaries& p) { return xyz_of(p.white) / p.white[1]; }
 
-/// Lindbloom, "RGB/XYZ Matrices": columns scaled so that (1, 1, 1) is the white.
+/// Matrix from RGB to XYZ, with columns scaled so that (1, 1, 1) is the white (Lindbloom, "RGB/XYZ Matrices").
 std::optional<Matrix> xyz_of_rgb(const ColorPrimaries& p) {
   const Matrix columns(xyz_of(p.red), xyz_of(p.green), xyz_of(p.blue));
   const double determinant = glm::determinant(columns);
@@ -28,7 +28,7 @@ std::optional<Matrix> xyz_of_rgb(const ColorPrimaries& p) {
   return result;
 }
 
-/// Bradford's cone responses (Lam 1985), scaled from one white to the other.
+/// Chromatic adaptation: scales Bradford's cone responses (Lam 1985) from one white to the other.
 Matrix adaptation(const Vec& from, const Vec& to) {
   const Matrix cones =
       glm::transpose(Matrix(0.8951, 0.2664, -0.1614, -0.7502, 1.7135, 0.0367, 0.0389, -0.0685, 1.0296));
@@ -41,7 +41,7 @@ bool close(const std::array<double, 2>& a, const std::array<double, 2>& b, doubl
 }
 
 bool is_xyz(const ColorPrimaries& p) {
-  constexpr double kWritten = 1e-4;  // digits that files have
+  constexpr double kWritten = 1e-4;  // precision with which files state it
   return close(p.red, {1, 0}, kWritten) && close(p.green, {0, 1}, kWritten) && close(p.blue, {0, 0}, kWritten);
 }
 

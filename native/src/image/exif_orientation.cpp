@@ -13,9 +13,9 @@ namespace {
 
 using namespace std::string_view_literals;
 
-constexpr int kMaxSegments = 4096;  // of a hostile file, whose segments may be a few bytes each
+constexpr int kMaxSegments = 4096;  // protects against hostile files with segments of a few bytes
 
-/// A part of a file that cannot be left: what lies beyond its end is nothing.
+/// Bounds-checked view of a part of a file; reads beyond its end return nothing.
 class Part {
  public:
   explicit Part(const RandomAccessFile& file) : file_(file), begin_(0), size_(file.size()) {}
@@ -47,7 +47,7 @@ class Part {
   uint64_t begin_, size_;
 };
 
-/// From the first directory of EXIF data, which are a TIFF file.
+/// Reads the first directory of EXIF data, which have the form of a TIFF file.
 Orientation of_tiff(const Part& tiff) {
   constexpr uint64_t kEntryBytes = 12, kOrientationTag = 274, kShort = 3;
   const bool big = tiff.holds(0, "MM\0\x2a"sv);
@@ -65,7 +65,7 @@ Orientation of_tiff(const Part& tiff) {
   return Orientation::normal;
 }
 
-/// The segments before the first scan.
+/// Searches the segments before the first scan.
 Orientation of_jpeg(const Part& jpeg) {
   constexpr uint64_t kFill = 0xff, kStartOfScan = 0xda, kApp1 = 0xe1;
   constexpr auto kExif = "Exif\0\0"sv;

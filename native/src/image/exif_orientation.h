@@ -1,4 +1,4 @@
-// The orientation that cameras and editors write beside the pixels (EXIF 2.3, tag 274).
+// The orientation that cameras and editors store in a picture file (EXIF 2.3, tag 274).
 #pragma once
 
 #include <string>
@@ -8,12 +8,12 @@
 
 namespace velour {
 
-/// From a JPEG (APP1 segment) or a PNG (eXIf chunk); normal where the file says nothing, or
-/// nothing that makes sense. Reads a few bytes of the file.
+/// Orientation stored in a JPEG (APP1 segment) or PNG file (eXIf chunk); normal if it is missing or invalid. Reads only
+/// a few bytes of the file.
 Orientation exif_orientation(PictureFormat format, const std::string& path);
 
-/// Throws Error(bad_data) for a PNG file with a chunk that does not lie within the file: libraries take memory for what
-/// a chunk says that it holds before they read it.
+/// Throws Error(bad_data) for a PNG file with a chunk that extends beyond the file: libraries allocate the stated size
+/// of a chunk before they read it.
 void check_png_chunks(const std::string& path);
 
 }  // namespace velour

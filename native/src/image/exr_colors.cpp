@@ -17,7 +17,7 @@ constexpr int kNoRole = -1;
 constexpr std::pair<std::string_view, Role> kRoleNames[] = {
     {"r", kRed},       {"red", kRed}, {"g", kGreen}, {"green", kGreen}, {"b", kBlue}, {"blue", kBlue}, {"a", kAlpha},
     {"alpha", kAlpha}, {"x", kX},     {"y", kY},     {"z", kZ},         {"ry", kRy},  {"by", kBy}};
-/// What programs call the layer of a picture among layers of its parts.
+/// Names that programs give to the layer with the complete picture.
 constexpr std::string_view kWholePicture[] = {"combined", "rgb", "rgba", "beauty"};
 
 std::string lower(std::string_view text) {
@@ -36,7 +36,7 @@ std::string_view last_of(std::string_view name) {
   return dot == std::string_view::npos ? name : name.substr(dot + 1);
 }
 
-/// The channels of one layer by what they mean.
+/// The channels of one layer by their role.
 struct Layer {
   std::array<std::string, kRoles> channel;  // empty: none
   std::vector<std::string> all;
@@ -96,7 +96,7 @@ ExrColors single(const std::string& channel) {
   return {ExrColors::Kind::grey, {channel, "", ""}, "", layer_of(channel), {}};
 }
 
-/// The layer that `wanted` names: exactly, in another case, or by its end.
+/// The layer that `wanted` names: exactly, case-insensitively, or by its last components.
 std::optional<std::string> find_layer(const Layers& layers, const std::string& wanted, const std::string& path) {
   if (layers.contains(wanted)) return wanted;
   const std::string small = lower(wanted);

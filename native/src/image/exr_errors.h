@@ -1,4 +1,4 @@
-// What OpenEXR throws, in the project's own words.
+// Translates OpenEXR's exceptions.
 #pragma once
 
 #include <exception>
@@ -8,7 +8,7 @@
 
 namespace velour {
 
-/// Calls `work()`; an exception of OpenEXR's comes out as Error(status, `sentence` of its words).
+/// Calls `work()` and rethrows OpenEXR's exceptions as Error(status, sentence(what())).
 template <class Work, class Sentence>
 auto with_exr_errors(Status status, const Sentence& sentence, const Work& work) {
   try {

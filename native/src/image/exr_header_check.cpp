@@ -21,25 +21,26 @@ constexpr std::pair<std::string_view, uint32_t> kFixedTypes[] = {
     {"compression", 1}, {"lineOrder", 1}, {"rational", 8}, {"timecode", 8},
     {"keycode", 28},    {"envmap", 1},    {"tiledesc", 9}, {"deepImageState", 1}};
 
-/// How OpenEXR stores rows.
+/// Properties of a compression method of OpenEXR.
 struct Packing {
-  double rows;        // of a block, which has that many in memory whatever the picture has
-  double most_ratio;  // of decoded bytes to those in the file
+  double rows;        // per block in memory, even if the picture has fewer
+  double most_ratio;  // maximum ratio of decoded to stored bytes
 };
 
 constexpr double kDeflate = 1032;
-/// By the number of the compression: none, runs, rows by DEFLATE, blocks by DEFLATE, wavelets (10 bits for 257 values
-/// of 16), 24 of 32 bits, blocks of 4 x 4 (3 bytes for 32), and of 8 x 8 of which DEFLATE packs the means.
+/// Indexed by the compression attribute: none, RLE, ZIPS, ZIP, PIZ (10 bits for 257 16-bit values), PXR24 (DEFLATE of
+/// 24 of 32 bits), B44 and B44A (3 bytes for a 4 x 4 block of 32), DWAA and DWAB (DEFLATE of the means of 8 x 8
+/// blocks).
 constexpr Packing kPackings[] = {{1, 1},     {1, 128}, {1, kDeflate}, {16, kDeflate},       {32, 412},
                                  {16, 1376}, {32, 11}, {32, 11},      {32, kDeflate * 128}, {256, kDeflate * 128}};
 
-/// What a header says of a part.
+/// Claims of a header about its part.
 struct Claims {
   int64_t width = 0, height = 0;
   double pixel_bytes = 0;
   uint8_t compression = 0;
   uint32_t tile_width = 0, tile_height = 0;
-  bool is_deep = false;  // any number of values a pixel
+  bool is_deep = false;  // any number of values per pixel
 };
 
 class HeaderCheck {
@@ -59,7 +60,7 @@ class HeaderCheck {
  private:
   static constexpr size_t kMaxHeader = size_t{1} << 20, kEnd = SIZE_MAX;
   static constexpr size_t kBesideChannelName = 16;   // type, a flag, steps along x and y
-  static constexpr uint32_t kSeveralParts = 0x1000;  // a bit of the version field
+  static constexpr uint32_t kSeveralParts = 0x1000;  // multi-part bit of the version field
 
   [[noreturn]] void fail(const std::string& what) const { throw Error(Status::bad_data, path_ + ": " + what); }
 
@@ -79,8 +80,8 @@ class HeaderCheck {
     return std::string(begin, end);
   }
 
-  /// The attributes of the part that begins at `at`: name, type, size, value. Returns where the next one begins; kEnd:
-  /// the header ends early or is longer than was read, and OpenEXR itself will say so.
+  /// Checks the attributes (name, type, size, value) of the part whose header begins at `at`. Returns where the next
+  /// header begins, or kEnd if the header ends early or is longer than head_, which is left to OpenEXR.
   size_t check_part(size_t at) const {
     Claims claims;
     while (at < head_.size() && head_[at] != 0) {
@@ -98,7 +99,7 @@ class HeaderCheck {
     return at < head_.size() ? at + 1 : kEnd;
   }
 
-  /// OpenEXR reads values by their types, whatever the size: what it takes for the next attribute would be another.
+  /// OpenEXR reads a value by its type and ignores the size, so a wrong size would misplace the next attribute.
   void check_value(const std::string& name, const std::string& type, uint32_t size, size_t at) const {
     const auto fixed = fixed_exr_bytes(type);
     const bool is_whole = fixed                    ? size == *fixed
@@ -112,7 +113,7 @@ class HeaderCheck {
     }
   }
 
-  /// The end is an empty name.
+  /// The list ends with an empty name.
   bool is_channel_list(uint32_t size, size_t at) const {
     const size_t end = at + size;
     while (at < end) {
@@ -160,7 +161,7 @@ class HeaderCheck {
     }
   }
 
-  /// Of a pixel; those of fewer pixels count their share.
+  /// Bytes per pixel; subsampled channels count in proportion.
   double bytes_of_channels(uint32_t size, size_t at) const {
     constexpr int32_t kHalf = 1;
     const size_t end = at + size;
@@ -175,7 +176,7 @@ class HeaderCheck {
 
   void check_claims(const Claims& claims) const {
     constexpr double kAlwaysAllowed = 64 << 20, kTimesDecoded = 4;
-    if (claims.width <= 0 || claims.height <= 0) return;  // OpenEXR says so
+    if (claims.width <= 0 || claims.height <= 0) return;  // reported by OpenEXR
     const Packing& packing = kPackings[std::min<size_t>(claims.compression, std::size(kPackings) - 1)];
     const double row = static_cast<double>(claims.width) * claims.pixel_bytes;
     const double decoded = row * static_cast<double>(claims.height);
@@ -192,7 +193,7 @@ class HeaderCheck {
   }
 
   std::string path_;
-  std::vector<uint8_t> head_;  // read first: it says plainly what is wrong with the path
+  std::vector<uint8_t> head_;  // read first, for a clear error message about a bad path
   uint64_t file_bytes_;
 };
 

@@ -1,5 +1,5 @@
-// The headers of an OpenEXR file of any program, checked before OpenEXR sees them: it takes memory for all rows, chunks
-// and attributes that they claim before anyone can ask how many. Internal to image/.
+// Checks the headers of an OpenEXR file by any program before OpenEXR sees them: OpenEXR allocates memory for all rows,
+// chunks and attributes that they claim before their number can be queried. Internal to image/.
 #pragma once
 
 #include <optional>
@@ -8,11 +8,11 @@
 
 namespace velour {
 
-/// Throws Error(bad_data) for claims that the file cannot hold, and attributes whose sizes or contents are not those of
-/// their types. A header that ends early is left to OpenEXR, which says so.
+/// Throws Error(bad_data) for claims that exceed the file, and for attributes whose sizes or contents do not match
+/// their types. A header that ends early is left to OpenEXR, which reports it.
 void check_exr_header(const std::string& path);
 
-/// The size of an attribute of this type; nothing where sizes vary.
+/// Size in bytes of an attribute of this type; empty if it varies.
 std::optional<uint32_t> fixed_exr_bytes(std::string_view type);
 
 }  // namespace velour

@@ -1,4 +1,4 @@
-// OpenEXR's output into a file that appears whole or not at all.
+// OpenEXR output stream into an AtomicFile.
 #pragma once
 
 #include <OpenEXR/ImfIO.h>

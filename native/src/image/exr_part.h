@@ -1,4 +1,4 @@
-// OpenEXR files that are a part of a larger picture, and say so.
+// OpenEXR files that contain a part of a larger picture.
 #pragma once
 
 #include <map>
@@ -9,7 +9,7 @@
 
 namespace velour {
 
-/// Where pixels lie in a larger picture: its size, and the place of their lower left one, from its lower left corner.
+/// Position of pixels in a larger picture: its size, and the position of their lower left pixel relative to its own.
 struct PictureFrame {
   int width = 0, height = 0;
   int x = 0, y = 0;
@@ -18,19 +18,20 @@ struct PictureFrame {
 
 using PictureTexts = std::map<std::string, std::string>;  // by the attribute's name
 
-/// What the header of the first part says.
+/// Contents of the first part's header.
 struct ExrHeader {
-  int width = 0, height = 0;          // of the pixels that are there (data window)
-  std::vector<std::string> channels;  // as read_picture orders them
-  PictureFrame frame;                 // they lie in the display window; where that is
+  int width = 0, height = 0;          // of the stored pixels (data window)
+  std::vector<std::string> channels;  // in the order of read_picture_channels()
+  PictureFrame frame;                 // position of the data window in the display window
   PictureTexts texts;
-  bool multi_part = false;  // the file has further parts, which none of this is of
+  bool multi_part = false;  // the file has further parts, which are not described here
 };
 
 /// Throws Error with the file's name; Error(bad_data) for another format.
 ExrHeader read_exr_header(const std::string& path);
 
-/// As write_picture, with such a frame and texts. Throws Error(invalid_argument) where a name is one of OpenEXR's own.
+/// Like write_picture(), with a frame and texts. Throws Error(invalid_argument) if a text has the name of one of
+/// OpenEXR's own attributes.
 void write_exr_part(const std::string& path, const Picture& picture, const PictureFrame& frame,
                     const PictureTexts& texts);
 

@@ -25,7 +25,7 @@
 namespace velour {
 namespace {
 
-/// The layer, whether the channel is no color, its place among colors, its name: what channels are sorted by.
+/// Sort key of channels: layer, colors before others, order of the color, name.
 auto order_of(const std::string& channel) {
   constexpr std::string_view kColors = "RYGBA";
   const size_t dot = channel.rfind('.');
@@ -59,7 +59,7 @@ ColorPrimaries primaries_of(const Imf::Chromaticities& c) {
   return {xy(c.red), xy(c.green), xy(c.blue), xy(c.white)};
 }
 
-/// A file that is checked before OpenEXR sees it, and one of its parts.
+/// A part of a file that is checked before OpenEXR sees it.
 class OpenExr : public OpenPicture {
  public:
   const PictureHeader& header() const override { return header_; }
@@ -87,7 +87,7 @@ class OpenExr : public OpenPicture {
     header_.height = side(window.min.y, window.max.y);
   }
 
-  /// Reads `names` into as many channels; an empty one becomes 0.
+  /// Reads the channels `names`, interleaved; an empty name gives 0.
   void read_channels(std::span<const std::string> names, std::span<float> values) {
     const size_t pixel = names.size() * sizeof(float);
     const Imath::Box2i& window = exr_header().dataWindow();
@@ -154,7 +154,7 @@ class AllChannels : public OpenExr {
   std::vector<std::string> names_;
 };
 
-/// The picture of a file: colors of one layer of one part.
+/// The picture of a file: the colors of one layer of one part.
 class ExrPicture : public OpenExr {
  public:
   ExrPicture(const std::string& path, const std::string& layer) : OpenExr(path) {
@@ -182,7 +182,7 @@ class ExrPicture : public OpenExr {
   }
 
  private:
-  /// The first part whose channels can be chosen from; `layer` may name a part, too.
+  /// Chooses the first part with a clear choice of channels; `layer` may also name a part.
   void choose(const std::string& layer) {
     std::string refusal;
     int flat = 0;
@@ -239,7 +239,7 @@ class ExrPicture : public OpenExr {
       header_.notes.push_back("it lacks one of the channels R, G, B, which is read as 0.");
   }
 
-  /// By OpenEXR's own reconstruction, which works in half floats.
+  /// Uses OpenEXR's own reconstruction, which works in half floats.
   void read_luminance_chroma(std::span<float> values) {
     with_exr_errors(Status::bad_data, input_error_of(path_), [&] {
       Imf::RgbaInputFile input(path_.c_str(), colors_.layer, 0);
@@ -258,10 +258,10 @@ class ExrPicture : public OpenExr {
   }
 
   ExrColors colors_;
-  std::vector<std::string> names_;  // of the channels that are read, as they are interleaved
+  std::vector<std::string> names_;  // of the channels that are read, in interleaved order
 };
 
-/// Names whose order in the alphabet is that of the channels, for that is how they are read.
+/// Channel names that order_of() sorts in the order of the channels.
 std::string channel_name(int channel, int channels) {
   constexpr std::array kColors{"R", "G", "B", "A"};
   if (channels <= 2) return channel == 0 ? "Y" : "A";
@@ -270,7 +270,7 @@ std::string channel_name(int channel, int channels) {
   return "channel" + std::string(3 - std::min<size_t>(digits.size(), 3), '0') + digits;
 }
 
-/// OpenEXR counts rows from the top.
+/// The data window; OpenEXR counts rows from the top.
 Imath::Box2i data_window(const Picture& picture, const PictureFrame& frame) {
   const int top = frame.height - frame.y - picture.height;
   return {{frame.x, top}, {frame.x + picture.width - 1, top + picture.height - 1}};

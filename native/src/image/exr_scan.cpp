@@ -13,11 +13,11 @@ namespace {
 constexpr int32_t kMagic = 20000630;
 constexpr uint32_t kTiled = 0x200, kDeep = 0x800, kMultiPart = 0x1000;
 constexpr size_t kMaxParts = 4096;
-/// DEFLATE cannot expand a byte to more than this.
+/// Maximum expansion of a byte by DEFLATE.
 constexpr uint64_t kMaxDeflateRatio = 1032;
 constexpr int32_t kIntegerPixels = 0, kHalfPixels = 1, kFloatPixels = 2;
 
-/// What the scan needs of a part beside its ExrPart.
+/// Data of a part that only the scan needs.
 struct PartLayout {
   bool has_window = false;
   uint8_t compression = 255;
@@ -31,8 +31,8 @@ struct PartLayout {
   throw Error(Status::bad_data, in.name() + ": part '" + part.name + "': " + what);
 }
 
-/// Values of a fixed size, strings and channel lists are the only ones let through: the readers of others take counts
-/// from their values.
+/// Accepts only values of a fixed size, strings and channel lists: OpenEXR's readers of other types take counts from
+/// the values.
 void check_type(const ByteReader& in, const ExrPart& part, const std::string& field, const std::string& type,
                 int32_t size) {
   if (size < 0) fail(in, part, "attribute " + field + " has size " + std::to_string(size) + "; the file is damaged.");
@@ -68,7 +68,7 @@ void read_channels(ByteReader value, ExrPart& part) {
     part.integers = integers;
     part.channels.push_back(channel);
   }
-  // OpenEXR takes the rest for the next attribute.
+  // OpenEXR would read the rest as the next attribute.
   if (value.remaining() != 0) fail(value, part, "attribute channels is longer than its list; the file is damaged.");
 }
 
@@ -120,9 +120,9 @@ void check_part(const ByteReader& in, const ExrPart& part, const PartLayout& lay
     fail(in, part, "dataWindow has " + std::to_string(part.width) + " columns, more than a chunk can hold.");
 }
 
-/// Each chunk lies in the file and is large enough for the pixels that it claims to hold. All together are no larger
-/// than the file, or entries of the tables could share a chunk and claim its pixels many times over. `left`: bytes that
-/// chunks before did not take.
+/// Checks that each chunk lies in the file and is large enough for its pixels, and that all chunks together are no
+/// larger than the file: otherwise, table entries could share a chunk and claim its pixels many times over. `left`:
+/// bytes that previous chunks have not used.
 void check_chunks(ByteReader& in, const ExrPart& part, const PartLayout& layout, bool multi_part, uint64_t& left) {
   const uint64_t lines = layout.lines_per_chunk();
   const uint64_t chunk_count = (part.height + lines - 1) / lines;

@@ -28,7 +28,7 @@ namespace velour {
 namespace {
 
 constexpr char kShapeAttribute[] = "velour.shape", kCodingAttribute[] = "velour.coding", kPack[] = "pack";
-constexpr int kZipLevel = 6;  // written out, because the library's default may change and the bytes must not
+constexpr int kZipLevel = 6;  // explicit, because the library's default may change but the bytes must not
 
 class MemoryInput : public Imf::IStream {
  public:
@@ -70,7 +70,7 @@ class MemoryOutput : public Imf::OStream {
   uint64_t position_ = 0;
 };
 
-/// Those of a part that there is.
+/// The hidden or the shown names, whichever the part has.
 ChannelNames names_in(const Imf::Header& header, uint64_t channels) {
   const ChannelNames hidden = hidden_names(channels);
   return header.channels().findChannel(hidden[0]) ? hidden : shown_names(channels);
@@ -92,7 +92,7 @@ std::vector<uint64_t> parse_shape(const std::string& text, const std::string& wh
               where + "velour.shape is '" + text + "'; it must be up to 16 extents, as in '90 90 180'.");
 }
 
-/// Whether OpenEXR has room for them.
+/// Throws Error(invalid_argument) if a part exceeds OpenEXR's limits.
 void check_size(const std::string& name, const PartSize& size) {
   constexpr uint64_t kMaxLine = INT32_MAX / (4 * 16 * 3);  // a chunk's bytes are an int in OpenEXR
   if (size.width > kMaxLine || size.height > INT32_MAX / 2)
@@ -119,8 +119,8 @@ Imf::Header make_header(const std::string& name, const TensorPixels& pixels, con
   return header;
 }
 
-/// Parts of a file, of tensors that outlive it. All share the first one's display window, as OpenEXR asks; the data
-/// windows differ.
+/// The parts of a file, from tensors that must outlive it. All share the first part's display window, as OpenEXR
+/// requires; their data windows differ.
 class PartList {
  public:
   void add(const std::string& name, const Tensor& tensor) {
@@ -130,7 +130,7 @@ class PartList {
     headers_.back().insert(kShapeAttribute, Imf::StringAttribute(shape_text(tensor.shape)));
   }
 
-  /// It covers `part`.
+  /// Adds a pack padded to cover `part`.
   void add_pack(const std::vector<uint8_t>& pack, const PartSize& part) {
     add_pixels(kPack, TensorPixels(pack, part));
     headers_.back().insert(kCodingAttribute, Imf::StringAttribute(kPack));
@@ -168,7 +168,7 @@ class PartList {
 
 bool is_open(const std::string& text) { return text.size() <= kLongestOpenText; }
 
-/// The first of the smallest tensors that OpenEXR has a type for.
+/// Name of the smallest tensor that OpenEXR has a type for; the first if there are several.
 const std::string& open_tensor(const TensorFile& file) {
   const auto values = [](const auto& named) {
     return named.second.precision == Precision::bytes ? SIZE_MAX : named.second.data.size();
@@ -180,7 +180,8 @@ const std::string& open_tensor(const TensorFile& file) {
   return smallest->first;
 }
 
-/// One tensor and short attributes are open, the rest is one part, which comes first, because it covers the tensor.
+/// Adds one tensor and short attributes in plain form, and the rest as a pack, which comes first because it covers the
+/// tensor.
 void add_packed(const TensorFile& file, PartList& parts) {
   const std::string& name = open_tensor(file);
   const Tensor& tensor = file.tensors.at(name);
@@ -193,7 +194,7 @@ void add_packed(const TensorFile& file, PartList& parts) {
   parts.describe(open);
 }
 
-/// The first tensor that covers all others; where there is none, the first one.
+/// Name of the first tensor that covers all others; of the first one if there is none.
 const std::string& covering_tensor(const TensorFile& file) {
   PartSize all;
   for (const auto& [name, tensor] : file.tensors) {
@@ -213,7 +214,7 @@ void add_all(const TensorFile& file, PartList& parts) {
   parts.describe(file.attributes);
 }
 
-/// The shape of a scanned part, agreed with its pixels.
+/// The shape of a scanned part, checked against its pixels.
 std::vector<uint64_t> checked_shape(const ExrPart& part, const std::string& where) {
   auto shape = parse_shape(part.shape, where);
   const uint64_t count = element_count(shape);
@@ -257,7 +258,7 @@ Tensor read_tensor(Imf::MultiPartInputFile& in, int index, const ExrPart& part, 
   return {std::move(shape), read_pixels<float>(in, index, Imf::FLOAT, part, where), precision};
 }
 
-/// Keeps the remaining bytes of the limits while parts are read.
+/// Tracks the remaining memory while parts are read.
 class Budget {
  public:
   Budget(const TensorLimits& limits, uint64_t file_bytes)
@@ -276,7 +277,7 @@ class Budget {
     }
     left_ -= bytes;
   }
-  /// A pack is compressed in itself: what it shrinks by in the file is next to nothing.
+  /// A pack is already compressed, so the file cannot be much smaller.
   void check_pack(uint64_t bytes, const std::string& where) const {
     constexpr uint64_t kTimes = 4, kAlways = 1 << 20;
     if (bytes > kAlways + kTimes * file_bytes_)
@@ -306,7 +307,7 @@ void merge(TensorFile from, TensorFile& file) {
 TensorFile decode_scanned(std::span<const uint8_t> bytes, const std::vector<ExrPart>& parts, const std::string& name,
                           Budget budget) {
   MemoryInput stream(bytes, name);
-  // No threads of OpenEXR's own: its pool is global to the process. No repair of chunk tables: a damaged file is
+  // No OpenEXR threads, because its pool is global to the process. No repair of chunk tables: damaged files are
   // refused.
   Imf::MultiPartInputFile in(stream, 0, false);
   TensorFile file;

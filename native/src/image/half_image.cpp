@@ -6,7 +6,7 @@
 namespace velour {
 namespace {
 
-/// One coarse texel's share of the fine ones along an axis.
+/// Weights of the fine texels in a coarse one along an axis.
 struct Taps {
   uint32_t first = 0;
   std::vector<float> weight;

@@ -41,7 +41,7 @@ std::vector<Imf::Header> headers_of(std::span<const ImageStack> stacks) {
   return headers;
 }
 
-/// Channels lie beside one another in memory, and behind one another in a row of the file.
+/// Converts a row from interleaved channels, as in memory, to planes, as in the file.
 template <typename Value>
 void separate(const uint8_t* row, uint64_t width, uint8_t* planes) {
   const auto* from = reinterpret_cast<const Value*>(row);
@@ -63,7 +63,7 @@ void store_row(const ImageStack& stack, const uint8_t* row, uint8_t* planes) {
   }
 }
 
-/// Where they end, and the chunk tables begin, which OpenEXR leaves room for.
+/// Writes the headers and returns their size. OpenEXR also leaves room for the chunk tables, which is subtracted.
 uint64_t write_headers(AtomicFile& file, const std::string& path, std::span<const Imf::Header> headers,
                        std::span<const ImageStack> stacks) {
   ExrOutput stream(file, path);
@@ -81,8 +81,8 @@ void write_tables(AtomicFile& file, const StackLayout& layout, std::span<const I
   }
 }
 
-/// OpenEXR's own writing hands over each row to threads that Blender has started: two thirds of what a capture of
-/// small texels took.
+/// Writes the chunks directly: OpenEXR hands each row to threads that Blender has started, which took two thirds of the
+/// time of a capture of small texels.
 void write_stack(AtomicFile& file, const StackLayout& layout, const ImageStack& stack, size_t index,
                  std::span<const uint8_t> pixels, const Progress& progress) {
   const uint64_t row_bytes = stack.row_bytes();

@@ -1,9 +1,9 @@
-// Stacks of images of one size in one file, read image by image without the rest: OpenEXR of several parts, scan lines,
-// uncompressed.
+// Stacks of images of the same size in a multi-part OpenEXR file of uncompressed scan lines, from which single images
+// can be read.
 //
-// Uncompressed, because what is stored here is mostly Monte Carlo noise in half floats, of which ZIP saves 28 % (ZIPS
-// 20 %) at some 30 MB/s and core, and because uncompressed rows lie at known places: reading an image is one read of
-// its bytes, and a file can be checked by its size, its headers and its chunk tables alone.
+// Uncompressed, because the content is mostly Monte Carlo noise in half floats, of which ZIP saves 28 % (ZIPS 20 %) at
+// some 30 MB/s per core, and because uncompressed rows have known offsets: an image is read in one piece, and a file
+// can be checked by its size, its headers and its chunk tables alone.
 #pragma once
 
 #include <cstdint>
@@ -18,8 +18,8 @@ namespace velour {
 
 enum class StackValue : uint8_t { half, float32 };
 
-/// One part: images one below the other, channel Y or R, G, B. In memory an image is [row][column][channel] with row 0
-/// at the bottom, in the file its top row comes first, so that viewers show it upright.
+/// One part: images below one another, with channel Y or R, G, B. In memory, an image is [row][column][channel] with
+/// row 0 at the bottom; in the file, its top row comes first, so that viewers show it upright.
 struct ImageStack {
   std::string name;
   StackValue value = StackValue::half;
@@ -32,10 +32,10 @@ struct ImageStack {
   bool operator==(const ImageStack&) const = default;
 };
 
-/// Names and texts of the header.
+/// Header attributes: text by name.
 using ImageAttributes = std::map<std::string, std::string>;
 
-/// Atomic. `pixels[i]`: all bytes of stacks[i]. Throws Error(io, invalid_argument).
+/// Writes atomically. `pixels[i]`: all bytes of stacks[i]. Throws Error(io, invalid_argument).
 void write_image_stacks(const std::string& path, std::span<const ImageStack> stacks,
                         std::span<const std::span<const uint8_t>> pixels, const ImageAttributes& attributes = {},
                         const Progress& progress = Progress());

@@ -11,7 +11,7 @@ namespace {
 
 constexpr uint64_t kMostHeaderBytes = uint64_t{1} << 14;
 
-/// Channels lie behind one another in a row of the file, and beside one another in memory.
+/// Converts a row from planes, as in the file, to interleaved channels, as in memory.
 template <typename Value>
 void interleave(const uint8_t* planes, uint64_t width, uint8_t* row) {
   const auto* from = reinterpret_cast<const Value*>(planes);
@@ -82,7 +82,7 @@ void ImageStackFile::check_chunk_tables() const {
   }
 }
 
-/// The rows of one image as they lie in the file, the top one first.
+/// Reads one image, whose rows are stored from top to bottom. `chunks`: scratch memory for its chunks.
 void ImageStackFile::read_image(size_t index, uint64_t image, std::span<uint8_t> chunks,
                                 std::span<uint8_t> pixels) const {
   const ImageStack& stack = stacks_[index];

@@ -1,4 +1,4 @@
-// Reads image stacks image by image, without the rest of their file.
+// Reads single images of image stacks.
 #pragma once
 
 #include <cstdint>
@@ -11,16 +11,16 @@
 
 namespace velour {
 
-/// An open file of stacks. Calls are thread-safe.
+/// An open file of image stacks. Calls are thread-safe.
 class ImageStackFile {
  public:
-  /// Throws Error(bad_data) unless the file's headers and size are those of exactly these stacks.
+  /// Throws Error(bad_data) unless the file's headers and size match exactly these stacks.
   ImageStackFile(const std::string& path, std::vector<ImageStack> stacks);
 
-  /// Images [first, first + pixels.size() / image_bytes()) of stacks[stack].
+  /// Reads images [first, first + pixels.size() / image_bytes()) of stacks[stack].
   void read(size_t stack, uint64_t first, std::span<uint8_t> pixels) const;
-  /// Throws Error(bad_data) unless the chunk tables, by which other programs find rows, say what is true. Nothing here
-  /// needs them; once, when a file is met, is enough.
+  /// Throws Error(bad_data) unless the chunk tables, with which other programs find rows, are correct. Nothing here
+  /// uses them, so one check per file is enough.
   void check_chunk_tables() const;
   uint64_t bytes() const { return file_.size(); }
 

@@ -1,4 +1,4 @@
-// JPEG files in a library without OpenImageIO.
+// Reads JPEG files in a library without OpenImageIO.
 #include <cstdio>  // jpeglib.h needs it
 
 #include <jpeglib.h>
@@ -16,7 +16,7 @@
 namespace velour {
 namespace {
 
-/// libjpeg's state. Its errors are jumps, so nothing with a destructor may live in a function that sets one.
+/// State of libjpeg. Errors are long jumps, so functions that call setjmp must not hold objects with destructors.
 struct Decoder {
   explicit Decoder(std::span<const uint8_t> bytes) {
     info.err = jpeg_std_error(&errors);
@@ -25,7 +25,7 @@ struct Decoder {
       common->err->format_message(common, self.message.data());
       std::longjmp(self.failed, 1);
     };
-    // libjpeg warns of damage, fills in what is missing and goes on.
+    // libjpeg reports damage as a warning, fills in what is missing and continues.
     errors.output_message = [](j_common_ptr common) {
       common->err->format_message(common, static_cast<Decoder*>(common->client_data)->message.data());
     };
@@ -66,7 +66,7 @@ struct Decoder {
   std::array<char, JMSG_LENGTH_MAX> message{};
 };
 
-/// Stored are the shares of paper that ink leaves white.
+/// The stored CMYK values are the fractions of the paper that each ink leaves white.
 void to_rgb(std::span<const uint8_t> cmyk, std::span<float> rgb) {
   for (size_t i = 0; i < rgb.size() / 3; ++i) {
     const float paper = static_cast<float>(cmyk[4 * i + 3]) / 255.0f;

@@ -5,7 +5,7 @@
 namespace velour {
 namespace {
 
-/// `below`: the row below, or null.
+/// Predicts byte `x` of `row`. `below`: the row below, or null.
 uint8_t guess(const uint8_t* row, const uint8_t* below, uint64_t x) {
   if (x == 0) return below ? below[0] : 0;
   if (!below) return row[x - 1];
@@ -16,7 +16,7 @@ uint8_t guess(const uint8_t* row, const uint8_t* below, uint64_t x) {
 }  // namespace
 
 void maps_to_rests(std::span<uint8_t> maps, uint64_t rows, uint64_t columns) {
-  // From the last byte to the first, so that guesses are made of bytes.
+  // Runs from the last byte to the first, so that predictions use bytes, not residuals.
   for (uint64_t line = maps.size() / columns; line-- > 0;) {
     uint8_t* const row = maps.data() + line * columns;
     const uint8_t* const below = line % rows == 0 ? nullptr : row - columns;

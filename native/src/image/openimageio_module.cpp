@@ -20,7 +20,7 @@ File* open(const std::string& path, const char* reader, std::string& error) {
     return nullptr;
   }
   OIIO::ImageSpec request, spec;
-  // Channels as stored: no product with alpha before the sRGB curve.
+  // Channels as stored: no multiplication by alpha before the sRGB curve.
   request.attribute("oiio:UnassociatedAlpha", 1);
   if (!input->open(path, spec, request)) {
     error = input->geterror();
@@ -51,7 +51,7 @@ std::optional<std::string> text(const File& file, const std::string& name) {
 bool read(File& file, std::span<float> values, std::string& error) {
   OIIO::ImageInput& input = *file.input;
   const bool complete = input.read_image(0, 0, 0, input.spec().nchannels, OIIO::TypeDesc::FLOAT, values.data());
-  // A JPEG that ends early is read with success, and with an error.
+  // Reading a JPEG that ends early succeeds, but sets an error.
   if (complete && !input.has_error()) return true;
   error = input.geterror();
   return false;

@@ -1,5 +1,5 @@
-// The interface of libvelour_openimageio.so, which reads and writes pictures by OpenImageIO. The first picture that
-// needs it opens it: OpenImageIO brings some 260 libraries, and loading them takes longer than most commands.
+// The interface of libvelour_openimageio.so, which reads and writes pictures with OpenImageIO. It is opened for the
+// first picture that needs it: OpenImageIO brings some 260 libraries, and loading them takes longer than most commands.
 #pragma once
 
 #include "image/open_picture.h"
@@ -10,7 +10,7 @@ namespace velour {
 /// returned as texts.
 struct OpenImageIoModule {
   struct File;
-  /// By the reader of that name ("png") and no other. Returns null and sets `error` for a file that it cannot read.
+  /// Opens with the reader of that name ("png") only. Returns null and sets `error` for a file that it cannot read.
   File* (*open)(const std::string& path, const char* reader, std::string& error);
   void (*close)(File* file);
   PictureHeader (*header)(const File& file);

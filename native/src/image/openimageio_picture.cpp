@@ -1,4 +1,4 @@
-// Pictures in other formats than OpenEXR, read and written by the module that links OpenImageIO.
+// Reads PNG, JPEG and BMP files and encodes PNG files through the module that links OpenImageIO.
 #include "file/private_library.h"
 #include "image/exif_orientation.h"
 #include "image/open_picture.h"
@@ -9,7 +9,7 @@ namespace velour {
 namespace {
 
 const OpenImageIoModule& open_module() {
-  // Never closed: unloading 260 libraries at exit takes time, and threads of OpenImageIO may still be running.
+  // Never closed: unloading 260 libraries at exit takes time, and OpenImageIO's threads may still be running.
   static const auto& library =
       *new PrivateLibrary("libvelour_openimageio.so",
                           "run scripts/setup and scripts/build again, or use an OpenEXR file, which needs neither.");

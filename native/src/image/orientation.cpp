@@ -6,7 +6,7 @@
 namespace velour {
 namespace {
 
-/// From which sides of the stored pixels the upright picture's first pixel is counted.
+/// Corner of the stored pixels where the upright picture's first pixel lies.
 struct Origin {
   bool right = false, bottom = false;
 };

@@ -19,7 +19,7 @@ namespace {
 constexpr uint64_t kMaxValues = uint64_t{1} << 30;
 constexpr int kMaxChannels = 64;
 
-/// Nearest 8-bit code; not a number and negative values give 0.
+/// Nearest 8-bit code; NaN and negative values give 0.
 uint8_t srgb_byte(float linear) {
   const float v = linear > 0.0f ? srgb_from_linear(std::min(linear, 1.0f)) : 0.0f;
   return static_cast<uint8_t>(std::lround(v * 255.0f));
@@ -29,8 +29,8 @@ std::string size_text(int width, int height, int channels) {
   return std::to_string(width) + " x " + std::to_string(height) + " x " + std::to_string(channels) + " channels";
 }
 
-/// The limits of OpenEXR and OpenImageIO are the process's (Blender shares them) and stay as they are, so sizes are
-/// checked here.
+/// The size limits of OpenEXR and OpenImageIO are global to the process, which may be Blender's, and are left alone, so
+/// sizes are checked here.
 void check_size(const std::string& path, const PictureHeader& header) {
   const std::string size = size_text(header.width, header.height, header.channels);
   if (header.width <= 0 || header.height <= 0 || header.depth > 1 || header.channels <= 0 ||
@@ -42,7 +42,7 @@ void check_size(const std::string& path, const PictureHeader& header) {
     throw Error(Status::bad_data, path + ": the header says " + size + ", more than the file can hold.");
 }
 
-/// A small part of a large picture may be all that a file holds, but not of one that is larger by any measure.
+/// Limits the size of a picture of which the file contains only a part.
 void check_frame(const std::string& path, const PictureHeader& header) {
   constexpr uint64_t kAlwaysAllowed = uint64_t{1} << 24, kTimesStored = 64;
   if (!header.frame) return;
@@ -59,7 +59,7 @@ void check_frame(const std::string& path, const PictureHeader& header) {
 }
 
 PictureFormat format_of(const std::string& path) {
-  return picture_format_of(read_file_head(path, kPictureHeadBytes), path);  // says plainly what is wrong with the path
+  return picture_format_of(read_file_head(path, kPictureHeadBytes), path);  // clear error message about a bad path
 }
 
 std::unique_ptr<OpenPicture> checked(const std::string& path, std::unique_ptr<OpenPicture> input) {
@@ -91,7 +91,7 @@ const std::optional<ColorPrimaries>& primaries_of(const PictureHeader& header, c
   return header.primaries ? header.primaries : options.primaries;
 }
 
-/// Header notes, and what Blender shows otherwise than the header says.
+/// Notes of the header and, for options.as_stored, of what Blender ignores in it.
 std::vector<std::string> notes_of(const std::string& path, const PictureHeader& header, const PictureOptions& options) {
   std::vector<std::string> notes;
   for (const std::string& note : header.notes) notes.push_back(path + ": " + note);
@@ -138,7 +138,7 @@ void make_linear(Picture& picture, int alpha_channel, const TransferCurve& curve
       picture.pixels[i] = linear(picture.pixels[i]);
 }
 
-/// Negative values stay: of a difference, or of a color outside of the gamut.
+/// Keeps negative values: differences and out-of-gamut colors have them.
 void replace_not_finite(Picture& picture, const std::string& path) {
   ValueFaults faults = find_value_faults(picture.pixels);
   if (faults.infinite + faults.no_number == 0) return;
@@ -162,7 +162,7 @@ void apply_primaries(Picture& picture, const ColorPrimaries& primaries, const st
   transform_colors(*matrix, static_cast<size_t>(picture.channels), picture.pixels);
 }
 
-/// `part`, row 0 at the bottom, in the picture that it belongs to; black where the file holds nothing.
+/// Places `part`, row 0 at the bottom, in its whole picture, which is black elsewhere.
 Picture placed(const Picture& part, const PictureFrame& frame) {
   Picture whole{frame.width, frame.height, part.channels, {}};
   const auto channels = static_cast<size_t>(part.channels);
@@ -181,7 +181,7 @@ Picture placed(const Picture& part, const PictureFrame& frame) {
   return whole;
 }
 
-/// Pixels as stored, the top row first.
+/// Reads the pixels in stored order.
 Picture stored_pixels(OpenPicture& input) {
   const PictureHeader& header = input.header();
   Picture picture{header.width, header.height, header.channels, {}};
@@ -202,7 +202,7 @@ void write_png(const std::string& path, const Picture& picture) {
   write_file(path, png_of(path, picture.width, picture.height, picture.channels, bytes));
 }
 
-/// `picture` as files store it; its size is checked.
+/// `picture` with its top row first, as files store it. Checks its size.
 Picture top_first(const std::string& path, const Picture& picture) {
   const uint64_t count = static_cast<uint64_t>(picture.width) * static_cast<uint64_t>(picture.height) *
                          static_cast<uint64_t>(picture.channels);
@@ -218,7 +218,7 @@ Picture top_first(const std::string& path, const Picture& picture) {
 }  // namespace
 
 std::string input_error(const std::string& path, std::string detail) {
-  std::ranges::replace(detail, '\n', ' ');  // readers may say several sentences, a line each
+  std::ranges::replace(detail, '\n', ' ');  // libraries may report several sentences, one per line
   return path + ": cannot be read as a picture" + (detail.empty() ? "." : ": " + detail);
 }
 
@@ -286,7 +286,7 @@ PictureDifference compare_pictures(const float* pixels, const float* reference, 
       }
   };
   each([&](double, double r) { mean += r / count; });
-  // The floor only matters where the reference is black as a whole.
+  // The lower bound only matters if the whole reference is black.
   const double floor = std::max(0.01 * mean * mean, 1e-30);
   PictureDifference difference;
   each([&](double x, double r) {

@@ -23,7 +23,7 @@ constexpr std::pair<std::string_view, PictureFormat> kFormats[] = {
     {"BM"sv, PictureFormat::bmp},
 };
 
-/// Formats that people do try. A dot stands for any byte.
+/// Unsupported formats to name in the error message. A dot matches any byte.
 constexpr std::pair<std::string_view, std::string_view> kOthers[] = {
     {"SDPX"sv, "a DPX file"},
     {"XPDS"sv, "a DPX file"},

@@ -1,4 +1,4 @@
-// Which format a picture file has, by its first bytes.
+// Recognizes the format of a picture file by its first bytes.
 #pragma once
 
 #include <cstdint>
@@ -9,11 +9,10 @@ namespace velour {
 
 enum class PictureFormat { exr, radiance, png, jpeg, tiff, bmp };
 
-/// Bytes that picture_format_of() looks at; fewer where the file is shorter.
+/// Number of bytes that picture_format_of() examines; shorter files have fewer.
 inline constexpr size_t kPictureHeadBytes = 16;
 
-/// Throws Error(unsupported) for every other content, naming the file, its format where that is known, and the formats
-/// that are read.
+/// Throws Error(unsupported) for any other content, naming the file, its format if known, and the supported formats.
 PictureFormat picture_format_of(std::span<const uint8_t> head, const std::string& path);
 
 }  // namespace velour

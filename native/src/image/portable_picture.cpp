@@ -6,7 +6,7 @@
 namespace velour {
 namespace {
 
-/// What the libraries do not say.
+/// Adds the orientation, which the libraries do not report.
 class WithOrientation : public OpenPicture {
  public:
   WithOrientation(std::unique_ptr<OpenPicture> picture, Orientation orientation)

@@ -1,5 +1,5 @@
-// Pictures of integers in a library without OpenImageIO, which would bring some 260 others: by libraries that are
-// linked into it. Values, channels and refusals are OpenImageIO's (portable_picture_test.cpp). Internal to image/.
+// Reads PNG, JPEG and BMP files in a library without OpenImageIO, which would bring some 260 others, using libraries
+// linked into it. Values, channels and refusals match OpenImageIO's (portable_picture_test.cpp). Internal to image/.
 #pragma once
 
 #include <memory>
@@ -9,9 +9,9 @@
 
 namespace velour {
 
-/// PNG and BMP, by stb_image.
+/// Opens PNG and BMP files with stb_image.
 std::unique_ptr<OpenPicture> open_by_stb(const std::string& path, PictureFormat format);
-/// By libjpeg; CMYK becomes RGB.
+/// Opens JPEG files with libjpeg; CMYK becomes RGB.
 std::unique_ptr<OpenPicture> open_jpeg(const std::string& path);
 
 }  // namespace velour

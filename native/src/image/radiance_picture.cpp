@@ -1,5 +1,5 @@
-// Radiance HDR files (G. Ward, "Radiance File Formats", picture files). Read here for every build: OpenImageIO and
-// stb_image know neither XYZE nor old run lengths, and pass over orientation, EXPOSURE, COLORCORR and PRIMARIES.
+// Reads Radiance HDR files (G. Ward, "Radiance File Formats", picture files) in every build: OpenImageIO and stb_image
+// support neither XYZE nor old run lengths, and ignore orientation, EXPOSURE, COLORCORR and PRIMARIES.
 #include <algorithm>
 #include <array>
 #include <charconv>
@@ -13,7 +13,7 @@
 namespace velour {
 namespace {
 
-constexpr int kMinRunWidth = 8, kMaxRunWidth = 0x7fff;  // of scan lines whose four components are stored apart
+constexpr int kMinRunWidth = 8, kMaxRunWidth = 0x7fff;  // of scan lines with components stored separately
 using Rgbe = std::array<uint8_t, 4>;
 
 class Radiance : public OpenPicture {
@@ -92,7 +92,7 @@ class Radiance : public OpenPicture {
     return numbers;
   }
 
-  /// Stored values were multiplied by these; several lines of a variable multiply.
+  /// The stored values have been multiplied by these factors; repeated lines of a variable multiply.
   template <size_t kCount>
   void divide_by(const std::array<double, kCount>& factors) {
     for (size_t c = 0; c < 3; ++c) {
@@ -103,7 +103,7 @@ class Radiance : public OpenPicture {
     }
   }
 
-  /// "-Y 512 +X 1024": rows from the top, pixels from the left; X first: columns are stored as rows.
+  /// "-Y 512 +X 1024": rows from the top, pixels from the left. If X comes first, columns are stored as rows.
   void read_resolution(std::string_view line) {
     std::array<char, 2> sign{}, axis{};
     std::array<int, 2> count{};
@@ -168,8 +168,8 @@ class Radiance : public OpenPicture {
     }
   }
 
-  /// Pixels, and (1, 1, 1, n): the pixel before n times more, also beyond the end of the line. Such counts one after
-  /// another are the digits of one, the lowest first.
+  /// Reads pixels and run lengths: (1, 1, 1, n) repeats the previous pixel n times, even beyond the end of the line.
+  /// Consecutive run lengths are the bytes of one, the lowest first.
   void read_old_line(std::vector<Rgbe>& line) {
     for (Rgbe& to : line) {
       while (repeats_ == 0) {
@@ -195,8 +195,8 @@ class Radiance : public OpenPicture {
   bool is_xyz_ = false;
   // State of old run lengths.
   std::optional<Rgbe> repeated_;
-  size_t repeats_ = 0;  // of it, still to come
-  int digit_ = 0;       // of the next count
+  size_t repeats_ = 0;  // remaining repetitions of it
+  int digit_ = 0;       // byte index of the next run length
   PictureHeader header_;
 };
 

@@ -1,4 +1,4 @@
-// The curve of sRGB (IEC 61966-2-1) and back.
+// The sRGB transfer curve (IEC 61966-2-1) and its inverse.
 #pragma once
 
 #include <cmath>

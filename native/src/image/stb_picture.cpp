@@ -1,4 +1,4 @@
-// PNG and BMP files in a library without OpenImageIO.
+// Reads PNG and BMP files and encodes PNG files in a library without OpenImageIO.
 #include <algorithm>
 #include <cstring>
 #include <string_view>
@@ -21,7 +21,7 @@
 namespace velour {
 namespace {
 
-/// stb_image takes zeros for what a file lacks; who asks for a byte beyond the end has been told of more than there is.
+/// stb_image reads zeros beyond the end of a file, so a read or skip beyond it means that the file ends early.
 struct Source {
   std::span<const uint8_t> bytes;
   size_t position = 0;
@@ -57,7 +57,7 @@ struct Free {
 template <typename T>
 using Values = std::unique_ptr<T, Free<T>>;
 
-/// A color of a PNG file that is clear, of which stb_image says nothing before it decodes.
+/// Whether a PNG file has a transparent color (tRNS), which stb_image does not report before it decodes.
 bool has_clear_color(std::span<const uint8_t> png) {
   constexpr size_t kSignature = 8, kBesideData = 12;
   for (uint64_t at = kSignature; at + kBesideData <= png.size();) {

@@ -1,4 +1,4 @@
-// Named tensors and texts: what Velour's own files hold.
+// Named tensors and texts, the content of Velour's own files.
 #pragma once
 
 #include <cstdint>
@@ -8,11 +8,11 @@
 
 namespace velour {
 
-/// What a file keeps of each value of a tensor, exactly: nothing is rounded on the way.
+/// Precision of a tensor's values in a file. Values must be representable; writing never rounds.
 enum class Precision {
   floats,  // 32 bits
-  halves,  // 16 bits: every value is one that a half float holds (rounded_to_half)
-  bytes,   // 8 bits: every value is a byte over 256, the last two dimensions are rows and columns of maps
+  halves,  // 16 bits: every value is a half float (rounded_to_half)
+  bytes,   // 8 bits: every value is a byte / 256; the last two dimensions are rows and columns of maps
 };
 
 /// Row-major.
@@ -27,21 +27,21 @@ constexpr size_t kMaxTensorRank = 16;
 struct TensorFile {
   std::map<std::string, std::string> attributes;  // "velour.kind", "velour.format_version", ...: strings
   std::map<std::string, Tensor> tensors;          // by name
-  /// Small rather than open to other programs: of tensors they see the first, of attributes those that are short
-  /// (tensor_pack.h). Tensors of bytes need it.
+  /// Trades readability by other programs for size: they see only the smallest tensor and short attributes
+  /// (tensor_pack.h). Required for tensors of bytes.
   bool packed = false;
 };
 
-/// The half float nearest to `value`; infinite past 65504.
+/// The half float nearest to `value`; infinite above 65504.
 float rounded_to_half(float value);
 
-/// Number of elements, or 0 where an extent is 0 or the product is beyond 2^40.
+/// Number of elements; 0 if an extent is 0 or the product exceeds 2^40.
 uint64_t element_count(const std::vector<uint64_t>& shape);
 
-/// As in "90 90 180"; "scalar" without extents.
+/// Extents as in "90 90 180"; "scalar" if there are none.
 std::string shape_text(const std::vector<uint64_t>& shape);
 
-/// Throws Error(invalid_argument) where values are more or fewer than the shape says, or not of its precision.
+/// Throws Error(invalid_argument) if the number of values does not match the shape, or values do not fit the precision.
 void check_tensor(const std::string& name, const Tensor& tensor);
 
 }  // namespace velour

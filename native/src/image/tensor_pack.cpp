@@ -17,7 +17,7 @@ namespace {
 
 using Json = JsonFields::Json;
 
-constexpr float kOfByte = 1.0f / 256;  // exact, times a byte
+constexpr float kOfByte = 1.0f / 256;  // multiplying a byte by it is exact
 constexpr std::array kNames = {"float", "half", "byte"};
 constexpr std::array<uint64_t, 3> kValueBytes = {4, 2, 1};
 constexpr uint64_t kMostTensors = 4096;
@@ -45,7 +45,7 @@ float value_of(uint32_t bits, Precision precision) {
   return value;
 }
 
-/// All highest bytes, then all of the next lower ones.
+/// All highest bytes, then all next lower ones, and so on.
 std::vector<uint8_t> planes_of(const Tensor& tensor) {
   std::vector<uint8_t> planes;
   for (uint64_t plane = value_bytes(tensor.precision); plane-- > 0;) {
@@ -96,7 +96,7 @@ Precision precision_in(const JsonFields& fields) {
   return static_cast<Precision>(found - kNames.begin());
 }
 
-/// Reads the list of a stream, then the values that it lists.
+/// Reads the list at the beginning of a stream, then the values that it lists.
 class PackReader {
  public:
   PackReader(std::span<const uint8_t> bytes, const std::string& where, const PackLimits& limits)
@@ -184,8 +184,8 @@ class PackReader {
   JsonSource source_;
   const PackLimits& limits_;
   Inflater inflater_;
-  uint64_t left_;         // bytes that may still come out of the stream
-  uint64_t memory_left_;  // that tensors may still take
+  uint64_t left_;         // remaining bytes that may come out of the stream
+  uint64_t memory_left_;  // remaining bytes that tensors may take
 };
 
 }  // namespace

@@ -8,10 +8,11 @@
 namespace velour {
 namespace {
 
-/// Words. What OpenEXR adds to a row is a three-thousandth of it, and no graphics processor refuses such a picture.
+/// Row length of packs in words: OpenEXR's overhead is a three-thousandth of such a row, and every GPU accepts pictures
+/// of this width.
 constexpr uint64_t kLongestRow = 1 << 14;
 
-/// Rows of nearly the same length that cover `part`.
+/// Size of a part for `words`, with as little padding as covering `part` allows.
 PartSize words_size(uint64_t words, const PartSize& part) {
   PartSize size;
   size.height = std::max(part.height, (words + kLongestRow - 1) / kLongestRow);
@@ -39,7 +40,7 @@ PartSize part_size(std::vector<uint64_t> shape) {
 TensorPixels::TensorPixels(const Tensor& tensor)
     : size_(part_size(tensor.shape)), data_(reinterpret_cast<const char*>(tensor.data.data())) {
   if (tensor.precision == Precision::floats) return;
-  // OpenEXR converts what it reads, not what it writes.
+  // OpenEXR converts values when it reads, but not when it writes.
   for (const float value : tensor.data) halves_.push_back(half(value).bits());
   type_ = Imf::HALF;
   data_ = reinterpret_cast<const char*>(halves_.data());

@@ -1,4 +1,4 @@
-// How tensors and packs lie in the parts of OpenEXR files.
+// Layout of tensors and packs in the parts of OpenEXR files.
 #pragma once
 
 #include <OpenEXR/ImfFrameBuffer.h>
@@ -17,18 +17,18 @@ struct PartSize {
   uint64_t width = 1, height = 1, channels = 1;
 };
 
-/// Of a tensor.
+/// Size of the part for a tensor.
 PartSize part_size(std::vector<uint64_t> shape);
 
-/// Blender makes room for the first part's pixels and writes every other part there, row by row of the first one's
-/// width: what is wider or higher lies beside it.
+/// Whether `part` fits into `first`. Blender allocates a buffer for the first part's pixels and reads every other part
+/// into it with the first one's row width, so a wider or higher part would exceed it.
 bool covers(const PartSize& first, const PartSize& part);
 
-/// The pixels of one part, as they are written. Keeps a reference to a tensor.
+/// The pixels of one part in the form in which they are written. The tensor must outlive it.
 class TensorPixels {
  public:
   explicit TensorPixels(const Tensor& tensor);
-  /// Of a pack, filled up with zeros, so that it covers `part`.
+  /// The pixels of a pack, padded with zeros to cover `part`.
   TensorPixels(const std::vector<uint8_t>& pack, const PartSize& part);
 
   const PartSize& size() const { return size_; }
@@ -43,13 +43,13 @@ class TensorPixels {
   const char* data_ = nullptr;
 };
 
-/// OpenEXR's view of row-major pixels of a type. It takes mutable pointers for reading and writing alike.
+/// Frame buffer over row-major pixels. OpenEXR takes mutable pointers for reading and writing alike.
 Imf::FrameBuffer pixel_buffer(const char* data, Imf::PixelType type, const PartSize& size, const ChannelNames& names);
 
-/// Of parts that viewers show.
+/// Channel names of parts that viewers show.
 ChannelNames shown_names(uint64_t channels);
-/// Of packs and of parts that the first one does not cover: Blender 3.4 leaves out channels of names that it does not
-/// know. In the order of the alphabet, in which they are stored.
+/// Channel names of packs and of parts that the first one does not cover: Blender 3.4 ignores channels with unknown
+/// names. In alphabetical order, in which they are stored.
 ChannelNames hidden_names(uint64_t channels);
 
 }  // namespace velour

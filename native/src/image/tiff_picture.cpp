@@ -1,4 +1,4 @@
-// TIFF files, by libtiff.
+// Reads TIFF files with libtiff.
 #include <Imath/half.h>
 #include <tiffio.h>
 
@@ -16,9 +16,9 @@
 namespace velour {
 namespace {
 
-constexpr uint64_t kMostLibraryBytes = uint64_t{1} << 30;  // of one allocation of libtiff's
+constexpr uint64_t kMostLibraryBytes = uint64_t{1} << 30;  // maximum size of an allocation by libtiff
 
-/// What libtiff reads from.
+/// Memory stream for libtiff.
 struct Source {
   std::span<const uint8_t> bytes;
   uint64_t position = 0;
@@ -42,7 +42,7 @@ struct Source {
   static toff_t size(thandle_t handle) { return of(handle).bytes.size(); }
 };
 
-/// The first sentence of libtiff about a file.
+/// Keeps libtiff's first error message about a file.
 struct Complaint {
   std::string text;
   static int keep(TIFF*, void* user, const char* /*module*/, const char* format, va_list arguments) {
@@ -64,11 +64,11 @@ struct Storage {
   uint32_t width = 0, height = 0;
   uint16_t samples = 1, bits = 1, format = SAMPLEFORMAT_UINT, photometric = PHOTOMETRIC_MINISBLACK;
   uint16_t compression = COMPRESSION_NONE;
-  bool is_planar = false;  // a plane a sample
+  bool is_planar = false;  // one plane per sample
   bool is_cmyk = false, is_palette = false;
-  bool by_rgba = false;  // libtiff makes 8 bits of RGB of it
+  bool by_rgba = false;  // libtiff converts it to 8-bit RGB
   size_t planes() const { return is_planar ? samples : 1; }
-  /// In a pixel of a plane.
+  /// Samples per pixel of a plane.
   size_t samples_together() const { return is_planar ? 1 : samples; }
 };
 
@@ -99,7 +99,7 @@ Storage storage_of(TIFF* tiff) {
   return s;
 }
 
-/// -1: none. Four samples without a word about the last are RGB and alpha.
+/// Alpha channel; -1: none. Unless the file says otherwise, the 2nd of two or the 4th of four or more channels.
 int alpha_of(TIFF* tiff, const Storage& s, int channels) {
   if (s.is_cmyk || s.is_palette) return -1;
   int alpha = channels == 2 ? 1 : channels >= 4 ? 3 : -1;
@@ -116,8 +116,8 @@ int alpha_of(TIFF* tiff, const Storage& s, int channels) {
   return alpha;
 }
 
-/// Samples of a row of one plane as numbers. Integers are shares of the largest; odd numbers of bits are first made 8,
-/// 16 or 32 of them.
+/// Decodes the samples of a row of one plane. Integers become fractions of the largest; those of unusual bit depths are
+/// first scaled to 8, 16 or 32 bits.
 class Samples {
  public:
   explicit Samples(const Storage& storage) : bits_(storage.bits), format_(storage.format) {}
@@ -137,7 +137,7 @@ class Samples {
     return static_cast<float>(code / static_cast<double>(highest));
   }
 
-  /// An unsigned integer as it is stored.
+  /// An unsigned integer as stored.
   uint64_t stored(const uint8_t* row, size_t i) const {
     if (bits_ == 8) return row[i];
     if (bits_ == 16) return number<uint16_t>(row, i);
@@ -149,7 +149,7 @@ class Samples {
     return code;
   }
 
-  /// The largest integer that a sample is made into.
+  /// Largest integer after scaling to 8, 16 or 32 bits.
   uint64_t largest() const { return bits_ <= 8 ? 0xff : bits_ <= 16 ? 0xffff : 0xffffffff; }
 
  private:
@@ -236,7 +236,7 @@ class ByLibtiff : public OpenPicture {
 
   void read_rgba(std::span<float> values) {
     std::vector<uint32_t> pixels(size_t{storage_.width} * storage_.height);
-    // Asked for the orientation that the file has, libtiff leaves the rows as they are.
+    // If the file's own orientation is requested, libtiff leaves the rows in stored order.
     const int as_stored = static_cast<int>(header_.orientation);
     if (TIFFReadRGBAImageOriented(tiff_.get(), storage_.width, storage_.height, pixels.data(), as_stored, 1) == 0) {
       refuse();
@@ -286,7 +286,7 @@ class ByLibtiff : public OpenPicture {
     }
   }
 
-  /// `count` pixels of a plane, the first of which is pixel `first` of the picture.
+  /// Decodes `count` pixels of a plane into the picture, from pixel `first` on.
   void keep_row(const uint8_t* row, uint32_t count, size_t plane, size_t first, std::span<float> values) const {
     const Samples samples(storage_);
     const auto channels = static_cast<size_t>(header_.channels);
@@ -316,7 +316,7 @@ class ByLibtiff : public OpenPicture {
     return static_cast<float>(palette_[channel][code] / 257) / 255.0f;
   }
 
-  /// Each ink takes from the paper what it covers.
+  /// Converts CMYK to RGB: each ink absorbs in proportion to its coverage.
   static void add_ink(const Samples& samples, const uint8_t* row, size_t i, float* to) {
     const float paper = 1.0f - samples.value(row, 4 * i + 3);
     const auto highest = static_cast<float>(samples.largest());

@@ -1,4 +1,4 @@
-// Values that no light can have, and what takes their place.
+// Values that are invalid for light, and their replacements.
 #pragma once
 
 #include <cmath>
@@ -10,17 +10,17 @@
 namespace velour {
 
 struct ValueFaults {
-  size_t infinite = 0, no_number = 0, negative = 0;  // of the values that were looked at; no_number: NaN and -infinity
-  float brightest = 65504;                           // of the finite ones, and at least the largest half float
+  size_t infinite = 0, no_number = 0, negative = 0;  // numbers of such values; no_number: NaN and -infinity
+  float brightest = 65504;                           // largest finite value, at least the largest half float
 
-  /// Infinity says "brighter than could be stored": nothing is brighter afterwards. What is no number becomes 0.
+  /// Infinity means "brighter than could be stored" and becomes the brightest value; NaN and -infinity become 0.
   float finite(float v) const { return std::isfinite(v) ? v : (v > 0 ? brightest : 0.0f); }
 };
 
-/// Looks at the first `used` of every `stride` values.
+/// Examines the first `used` of every `stride` values.
 ValueFaults find_value_faults(std::span<const float> values, size_t stride = 1, size_t used = 1);
 
-/// "SUBJECT: 12 values are infinite and count as 65504.", a sentence for each kind that there is.
+/// "SUBJECT: 12 values are infinite and count as 65504.", one sentence for each kind that occurs.
 std::vector<std::string> fault_sentences(const ValueFaults& faults, const std::string& subject);
 
 }  // namespace velour

@@ -7,16 +7,16 @@
 namespace velour {
 namespace {
 
-constexpr int kLevel = 6, kWindowBits = 15, kMemoryLevel = 8;  // written out: the same bytes give the same stream
+constexpr int kLevel = 6, kWindowBits = 15, kMemoryLevel = 8;  // explicit: the same bytes must give the same stream
 constexpr size_t kStep = 1 << 16;
 
-/// Its counters are of 32 bits.
+/// zlib's counters have 32 bits.
 uInt counted(uint64_t bytes) {
   if (bytes <= UINT32_MAX) return static_cast<uInt>(bytes);
   throw Error(Status::invalid_argument, "More than 4 GiB cannot be packed at once.");
 }
 
-/// zlib reads through pointers to what may change, and does not change it.
+/// zlib takes non-const pointers, but only reads through them.
 Bytef* source(std::span<const uint8_t> bytes) { return const_cast<Bytef*>(bytes.data()); }
 
 }  // namespace
@@ -48,7 +48,7 @@ void Deflater::run(int flush) {
 }
 
 void Deflater::change_to(int strategy) {
-  run(Z_BLOCK);  // what is left of the last block, for which deflateParams would need room
+  run(Z_BLOCK);  // flushes the last block, for which deflateParams would need room
   make_room();
   if (deflateParams(&stream_, kLevel, strategy) != Z_OK) throw Error(Status::unknown, "zlib cannot pack.");
   strategy_ = strategy;

@@ -1,4 +1,4 @@
-// Bytes in fewer bytes: streams of zlib [RFC1950], which end with a checksum.
+// Compression with zlib streams [RFC1950], which end with a checksum.
 #pragma once
 
 #include <zlib.h>
@@ -9,7 +9,7 @@
 
 namespace velour {
 
-/// No byte of a stream stands for more than this many.
+/// Maximum number of bytes that one byte of a stream expands to.
 constexpr uint64_t kMostInflated = 1032;
 
 class Deflater {
@@ -19,11 +19,11 @@ class Deflater {
   Deflater(const Deflater&) = delete;
   Deflater& operator=(const Deflater&) = delete;
 
-  /// What repeats itself, as texts do.
+  /// For data with repetitions, such as text.
   void write(std::span<const uint8_t> bytes) { write(bytes, Z_DEFAULT_STRATEGY); }
-  /// What does not, but for runs: its bytes differ in how often they are.
+  /// For residuals, which repeat only in runs and compress by the frequencies of their bytes.
   void write_rests(std::span<const uint8_t> bytes) { write(bytes, Z_RLE); }
-  /// The stream; nothing is written after it.
+  /// Ends and returns the stream; nothing can be written afterwards.
   std::vector<uint8_t> take();
 
  private:
@@ -39,15 +39,15 @@ class Deflater {
 
 class Inflater {
  public:
-  /// `bytes` must outlive it; what follows the stream in them is not looked at.
+  /// `bytes` must outlive the Inflater; data after the stream's end are ignored.
   explicit Inflater(std::span<const uint8_t> bytes);
   ~Inflater();
   Inflater(const Inflater&) = delete;
   Inflater& operator=(const Inflater&) = delete;
 
-  /// False where there are not as many more.
+  /// Fills `to`. Returns false if the stream is damaged or has fewer bytes left.
   bool read(std::span<uint8_t> to);
-  /// Whether that was all, and the checksum is right.
+  /// Whether the stream has ended and its checksum is right.
   bool finish();
 
  private:

@@ -1,4 +1,4 @@
-// The one exception type that crosses folders. The C boundary turns it into a status and a sentence.
+// The only exception type that crosses folders. The C API turns it into a status and a message.
 #pragma once
 
 #include <stdexcept>
@@ -6,7 +6,7 @@
 
 namespace velour {
 
-/// Values are those of vlr_status in velour.h; append only.
+/// Same values as vlr_status in velour.h; append only.
 enum class Status : int {
   ok = 0,
   unknown = 1,
@@ -20,7 +20,7 @@ enum class Status : int {
   version_mismatch = 9,
 };
 
-/// `what()` is one sentence for the user: the file, the field, the value found, the remedy.
+/// `what()` is one sentence for the user: the file, the field, the value found, and the remedy.
 class Error : public std::runtime_error {
  public:
   Error(Status status, const std::string& sentence) : std::runtime_error(sentence), status_(status) {}

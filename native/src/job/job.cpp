@@ -35,13 +35,13 @@ void Job::start(const std::function<void()>& before) {
     running_jobs.fetch_sub(1);
     throw Error(Status::out_of_memory, "The system gave no thread for the job.");
   }
-  // The new run cannot end before this lock does.
+  // The new run cannot finish before this lock is released.
   progress_ = std::move(progress);
   state_ = State::running;
   error_ = nullptr;
   start_ = Clock::now();
   lock.unlock();
-  if (finished.joinable()) finished.join();  // of the run before: already past its last line
+  if (finished.joinable()) finished.join();  // thread of the previous run, which has already finished
 }
 
 void Job::run(const std::shared_ptr<Progress>& progress) {

@@ -1,4 +1,4 @@
-// A task on a thread of its own, with a state that any thread may ask for.
+// A task that runs on its own thread and whose state any thread may query.
 #pragma once
 
 #include <chrono>
@@ -19,32 +19,33 @@ class Job {
 
   struct Snapshot {
     State state;
-    double fraction;      // never falls within a run; 1 only when done
-    double seconds;       // since the start; stops with the task
-    double seconds_left;  // negative while unknown
-    const char* stage;    // a literal
+    double fraction;      // never decreases during a run; 1 only when done
+    double seconds;       // since the start; stops when the task ends
+    double seconds_left;  // estimated; negative while unknown
+    const char* stage;    // a string literal
   };
 
-  /// `task` runs on the job's thread; it throws Error(cancelled) through Progress::check().
+  /// `task` runs on the job's thread; Progress::check() makes it throw Error(cancelled).
   explicit Job(std::function<void(Progress&)> task) : task_(std::move(task)) {}
-  /// Cancels and waits.
+  /// Cancels the task and waits for it to end.
   ~Job();
   Job(const Job&) = delete;
   Job& operator=(const Job&) = delete;
 
-  /// Throws Error(invalid_state) while running. A finished job runs anew from nothing. `before` is called once it is
-  /// certain that no run is under way, ahead of the new one, which what it throws prevents; it calls nothing of the
-  /// job.
+  /// Throws Error(invalid_state) while running. A finished job restarts from the beginning. `before` is called once no
+  /// run is in progress, while the job is locked, so it must not call the job; if it throws, the new run does not
+  /// start.
   void start(const std::function<void()>& before = {});
   void cancel();
   Snapshot poll() const;
 
-  /// True when the task has ended within `seconds` (negative, or more than 1e9: waits for ever).
+  /// Waits at most `seconds` (negative, or more than 1e9: forever) for the task to end. Returns whether it has ended.
   bool wait_for(double seconds) const;
-  /// Rethrows what a failed or cancelled task ended with; Error(invalid_state) when it never ran or still runs.
+  /// Rethrows the exception that ended a failed or cancelled task. Throws Error(invalid_state) if the task never ran or
+  /// is still running.
   void rethrow() const;
 
-  /// Jobs of the whole process whose task runs now.
+  /// Number of jobs in the process whose task is running.
   static int running_count();
 
  private:

@@ -1,4 +1,4 @@
-// Independent pieces of work over threads.
+// Parallel loops over independent pieces of work.
 #pragma once
 
 #include <oneapi/tbb/parallel_for.h>
@@ -12,26 +12,26 @@
 
 namespace velour {
 
-/// Calls `work()`, whose pieces on as many threads all share one arena: many small loops in turn find its threads
-/// awake.
+/// Calls `work()` in an arena shared by all parallel loops inside it that use the same number of threads, so that a
+/// sequence of small loops finds its threads awake.
 template <class Work>
 void in_one_arena(int threads, const Work& work) {
   if (inside_arena_of(threads)) return work();
   oneapi::tbb::task_arena(arena_concurrency(threads)).execute(work);
 }
 
-/// Calls `work(i)` for i in [0, count) on the threads of the caller's arena. For tables that are made where they are
-/// needed, which may be inside of another loop: all pieces are done or an exception comes out, even if the loop around
-/// it is cancelled, and the waiting thread takes no task from outside, so that the caller may hold a lock.
+/// Calls `work(i)` for i in [0, count) on the threads of the caller's arena. Meant for tables built on demand, possibly
+/// inside another loop: either all pieces are done or an exception is thrown, even if the surrounding loop is
+/// cancelled, and the waiting thread takes no outside task, so the caller may hold a lock.
 template <class Work>
 void parallel_fill(size_t count, const Work& work) {
   oneapi::tbb::task_group_context context(oneapi::tbb::task_group_context::isolated);
   oneapi::tbb::this_task_arena::isolate([&] { oneapi::tbb::parallel_for(size_t{0}, count, work, context); });
 }
 
-/// Calls `work(i)` for i in [0, count) on `threads` threads (0: all), and stops at a cancel. An exception of any piece
-/// ends the others and comes out of here. Pieces may have pieces of their own: all share the same threads, and a thread
-/// that waits for its own may do any other in the meantime, so a piece that has some must hold no lock.
+/// Calls `work(i)` for i in [0, count) on `threads` threads (0: all) and stops on cancellation. An exception in any
+/// piece ends the others and is rethrown. Pieces may run nested loops: all share the same threads, and a thread waiting
+/// for its own pieces may run any other piece meanwhile, so a piece with a nested loop must not hold a lock.
 template <class Work>
 void parallel_pieces(size_t count, int threads, const Progress& progress, const Work& work) {
   const auto piece = [&](size_t i) {
@@ -42,16 +42,15 @@ void parallel_pieces(size_t count, int threads, const Progress& progress, const 
     for (size_t i = 0; i < count; ++i) piece(i);
     return;
   }
-  // With a context of its own: an error in a loop around this one would else end this one, without an exception in
-  // here, and the caller would go on with pieces that were never done.
+  // Uses an isolated context. Otherwise an error in a surrounding loop would end this one without an exception here,
+  // and the caller would continue with pieces that were never done.
   oneapi::tbb::task_group_context context(oneapi::tbb::task_group_context::isolated);
   in_one_arena(threads,
                [&] { oneapi::tbb::parallel_for(size_t{0}, count, piece, oneapi::tbb::simple_partitioner(), context); });
 }
 
-/// Calls `work(i)` for i in [0, count) on `threads` threads (0: all), reports progress and stops at a cancel. An
-/// exception of any piece ends the others and comes out of here. Pieces must not depend on one another: then the result
-/// does not depend on the threads.
+/// Like parallel_pieces(), and reports progress. The pieces must be independent; then the result does not depend on the
+/// number of threads.
 template <class Work>
 void parallel_for_each(size_t count, int threads, Progress& progress, const Work& work) {
   std::atomic<size_t> done{0};

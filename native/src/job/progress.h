@@ -1,4 +1,4 @@
-// Progress and cancel of a long task. One writer side (the task, any of its threads), one reader side (a poller).
+// Progress and cancellation of a long task. One writer (the task, from any of its threads), one reader (a poller).
 #pragma once
 
 #include <atomic>
@@ -10,8 +10,8 @@ namespace velour {
 
 class Progress {
  public:
-  /// While it lives, stages cover parts of [begin, end] of the whole, or of the span around it: what is a whole task
-  /// elsewhere becomes a part of this one.
+  /// During its lifetime, stages are relative to [begin, end] of the enclosing span or of the whole task, so that code
+  /// written as a whole task can run as a part of another.
   class Span {
    public:
     Span(Progress& progress, double begin, double end)
@@ -31,8 +31,8 @@ class Progress {
     const double first_, extent_;
   };
 
-  /// Starts a named part of the task that covers [begin, end] of the whole, or of the innermost Span, 0 <= begin <= end
-  /// <= 1. `stage` must be a string literal: the poller reads the pointer from another thread.
+  /// Starts a stage that covers [begin, end] of the innermost Span, or of the whole task; 0 <= begin <= end <= 1.
+  /// `name` must be a string literal: the poller reads the pointer from another thread.
   void stage(const char* name, double begin, double end) {
     stage_.store(name, std::memory_order_relaxed);
     begin_.store(first_ + extent_ * begin, std::memory_order_relaxed);
@@ -40,13 +40,13 @@ class Progress {
     advance_to(first_ + extent_ * begin);
   }
 
-  /// Fraction done of the current stage, in [0, 1]; the overall fraction never falls. Thread-safe.
+  /// Sets the completed fraction of the current stage, in [0, 1]; the overall fraction never decreases. Thread-safe.
   void update(double fraction) {
     const double begin = begin_.load(std::memory_order_relaxed);
     advance_to(begin + fraction * (end_.load(std::memory_order_relaxed) - begin));
   }
 
-  /// Throws Error(cancelled) when a cancel was asked for. Call it at least every 50 ms of work.
+  /// Throws Error(cancelled) if cancellation was requested. Call it at least every 50 ms of work.
   void check() const {
     if (cancelled()) throw Error(Status::cancelled, "Cancelled.");
   }
@@ -63,7 +63,7 @@ class Progress {
     }
   }
 
-  double first_ = 0, extent_ = 1;  // of the innermost span; the task's own thread alone uses them
+  double first_ = 0, extent_ = 1;  // innermost span; only the task's own thread uses them
   std::atomic<bool> cancelled_{false};
   std::atomic<double> fraction_{0.0}, begin_{0.0}, end_{1.0};
   std::atomic<const char*> stage_{"starting"};

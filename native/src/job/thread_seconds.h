@@ -1,11 +1,11 @@
-// Processor time.
+// CPU time.
 #pragma once
 
 #include <time.h>
 
 namespace velour {
 
-/// Of the calling thread, since some fixed time: what other programs on the machine hardly change.
+/// CPU time of the calling thread, in seconds from an arbitrary origin. Hardly affected by other programs.
 inline double thread_seconds() {
   timespec now;
   clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);

@@ -11,16 +11,15 @@
 namespace velour {
 namespace {
 
-// By the variance of even light over places and views of a glossy weave and of gravel: of 6 to 13, 45 to 60 degrees,
-// the least or next to it for both. Nineteen lobes gain a tenth more and cost three times the evaluations.
+// Best or second best by variance under uniform light for both a glossy weave and gravel, among bandwidths of 6 to 13
+// and tilts of 45 to 60 degrees. Nineteen lobes gain another tenth at three times the evaluations.
 constexpr float kBandwidth = 8.0f, kTilt = 0.85f;
 constexpr int kBroad = BtfLook::kBroad, kHalf = kBroad, kLobes = kBroad + 1;
-constexpr float kMinReliefCosine =
-    0.05f;  // of the view to the relief's normal: below it there is no highlight to speak of
+constexpr float kMinReliefCosine = 0.05f;  // between view and relief normal; no visible highlight below it
 
 struct BroadLobes {
   std::array<Vec3, kBroad> center;
-  std::array<float, kBroad> share;  // of its own value at its centre in that of all lobes, were they equally strong
+  std::array<float, kBroad> share;  // own value at its center over the sum of all lobes there, at equal strengths
 
   BroadLobes() {
     center[0] = Vec3(0, 0, 1);
@@ -51,7 +50,7 @@ void set_lobe(WarpedMixture& m, int j, const Vec3& center, float bandwidth, bool
   m.r[j] = m.g[j] = m.b[j] = 0;
 }
 
-/// How much light each lobe brings, by estimates.
+/// Estimated integral of each lobe.
 std::array<float, kLobes> masses(const BtfLook& look, float half_bandwidth) {
   std::array<float, kLobes> mass;
   const Vec3 mirror = BtfDraws::mirror(look.wv, look.normal);
@@ -66,7 +65,7 @@ std::array<float, kLobes> masses(const BtfLook& look, float half_bandwidth) {
   const float cosine = glm::dot(look.wv, look.normal);
   if (half_bandwidth > 0 && cosine > kMinReliefCosine) {
     const float beyond = std::max(look.mirror - broad, 0.0f);
-    mass[kHalf] = beyond * 4 * cosine * (2 * kPi / half_bandwidth);  // method of half-vector lobes: docs/equations.md
+    mass[kHalf] = beyond * 4 * cosine * (2 * kPi / half_bandwidth);  // Jacobian of half-vector lobes: docs/equations.md
   }
   return mass;
 }
@@ -81,7 +80,7 @@ void fill_mixture(const BtfLook& look, const std::array<float, kLobes>& mass, fl
   m.turn_sin = 0;
   m.wv = look.wv;
   m.list_all();
-  // Where nothing is seen under any of the lights asked for, the cosine alone.
+  // Plain cosine sampling where all queried values are 0.
   const float cosine = all > 0 ? cosine_share : 1.0f;
   m.sums[WarpedMixture::kSums - 2] = 0;
   m.sums[WarpedMixture::kSums - 1] = cosine;
@@ -108,7 +107,7 @@ std::vector<Vec3> spread_by_cosine() {
   return lights;
 }
 
-/// Variance of a sample of even light over the square of its mean, plus 1; its logarithm, summed over the examples.
+/// Sum over the examples of the log of (1 + relative variance) of one sample under uniform light.
 double cost_of(const std::vector<BtfDraws::Example>& examples, float half_bandwidth, float cosine_share) {
   const std::vector<Vec3>& lights = BtfDraws::even_lights();
   double cost = 0;
@@ -173,7 +172,7 @@ void BtfDraws::propose(const WarpedMixture& mixture, ProposalLobes& lobes) {
   const Vec3 normal(mixture.draw_x[kHalf], mixture.draw_y[kHalf], mixture.draw_z[kHalf]);
   const float cosine = glm::dot(normal, mixture.wv);
   if (!(mixture.density[kHalf] > 0)) return;
-  // About the mirror direction a half vector turns by half of what the light does, and solid angles shrink alike.
+  // Near the mirror direction the half vector turns by half the light's angle, and solid angles shrink by 4 cosine.
   lobes.lobe[lobes.count++] = {2 * cosine * normal - mixture.wv, mixture.draw_bandwidth[kHalf] / (4 * cosine),
                                mixture.density[kHalf] / (4 * cosine)};
 }

@@ -1,9 +1,9 @@
-// Where the light of a BTF's material comes from.
+// Which side of the surface a BTF material is lit from.
 #pragma once
 
 namespace velour {
 
-/// Materials of BTFs give f of light from one side of the surface; of the other side they know its directions mirrored.
+/// f is given for light from one side of the surface. For other_side, light directions are mirrored (z > 0).
 enum class BtfLight { viewers_side, other_side };
 
 }  // namespace velour

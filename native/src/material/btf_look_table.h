@@ -1,4 +1,4 @@
-// What BtfDraws asks of a BTF, tabulated.
+// Table of the BTF values that BtfDraws needs.
 #pragma once
 
 #include <array>
@@ -10,31 +10,31 @@
 
 namespace velour {
 
-/// f cos of a side of a BTF under the broad lights that BtfDraws asks for, over cells of the tile, their pyramid, and
-/// views. Asking the BTF itself takes seven evaluations of it a point, where a path takes few lights from each: two
-/// fifths of a render's time, for a variance that is 2 to 4 % less. The mirror direction is not tabulated: highlights
-/// are too narrow for cells, and what misses one is a firefly. Memory: at most 0.6 MB. Immutable; thread-safe.
+/// f cos of one side of a BTF in the broad light directions of BtfDraws, over a pyramid of cells of the tile and over
+/// views. Without it each point costs seven BTF evaluations although a path samples few lights there: two fifths of the
+/// render time for 2 to 4 % less variance. The mirror direction is not tabulated: highlights are narrower than cells,
+/// and missing one causes a firefly. Memory: at most 0.6 MB. Immutable; thread-safe.
 class BtfLookTable {
  public:
   using Broad = std::array<float, BtfLook::kBroad>;
-  /// BtfLook::broad at a place, at a level of the BTF's pyramid, seen from `wv`. Called by several threads at once.
+  /// Evaluates BtfLook::broad at `uv` on a level of the BTF's pyramid, seen from `wv`. Called concurrently.
   using Ask = std::function<Broad(const Vec2& uv, float level, const Vec3& wv)>;
 
-  /// Holds nothing.
+  /// An empty table.
   BtfLookTable() = default;
-  /// `texels`: of the BTF, along both axes of the tile.
+  /// `texels`: resolution of the BTF along both axes of the tile.
   BtfLookTable(const Vec2& texels, const Ask& ask);
 
-  /// At the nearest cell, within 4 %. `level`: of the footprint.
+  /// Value of the nearest cell, quantized to within 4 %. `level`: mip level of the footprint.
   Broad look_up(const Vec2& uv, float level, const Vec3& wv) const;
 
  private:
-  using Strengths = std::array<uint8_t, BtfLook::kBroad>;  // logarithms
+  using Strengths = std::array<uint8_t, BtfLook::kBroad>;  // logarithmic
 
   size_t first_of(uint32_t level) const;
 
-  uint32_t cells_ = 0;                // along both axes of the tile, of the finest level; a power of 2
-  float finest_ = 0;                  // level of the BTF's pyramid whose texels are as large as those
+  uint32_t cells_ = 0;                // per axis of the tile, at the finest level; a power of 2
+  float finest_ = 0;                  // level of the BTF's pyramid whose texels are as large as these cells
   std::vector<Strengths> strengths_;  // [level][row][column][view]
 };
 

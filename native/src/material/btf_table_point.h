@@ -1,4 +1,4 @@
-// A BTF's rows of lights at a hit.
+// Rows of an uncompressed BTF at a hit.
 #pragma once
 
 #include <array>
@@ -8,9 +8,9 @@
 
 namespace velour {
 
-/// What the site and the view decide of an uncompressed BTF: which rows of lights are blended, and how.
+/// Rows of lights of an uncompressed BTF to blend for a site and a view, and their weights.
 struct BtfTablePoint {
-  /// Taps of the footprint, two levels, four texels, three views.
+  /// Maximum number of rows: footprint taps, two levels, four texels, three views.
   static constexpr int kMost = FootprintTaps::kMost * 2 * 4 * 3;
   struct Row {
     const HalfBits* lights;  // [light][channel]
@@ -18,7 +18,7 @@ struct BtfTablePoint {
   };
   std::array<Row, kMost> row;
   int count;
-  bool back;  // of a BTF with two sides, seen from below
+  bool back;  // a two-sided BTF seen from below
 };
 
 }  // namespace velour

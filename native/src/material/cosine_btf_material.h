@@ -1,4 +1,4 @@
-// What materials of BTFs that know no lobes share: their samples have the density of the cosine.
+// Base class of BTF materials without lobes: cosine-weighted sampling.
 #pragma once
 
 #include "material/btf_light.h"
@@ -7,7 +7,7 @@
 
 namespace velour {
 
-/// A material that varies over a tile and gives f of one direction after the other.
+/// A spatially varying material that evaluates one direction at a time.
 class CosineBtfMaterial : public Material {
  public:
   explicit CosineBtfMaterial(BtfLight light) : beyond_(light == BtfLight::other_side) {}
@@ -30,9 +30,9 @@ class CosineBtfMaterial : public Material {
   /// f, 0 where wl.z <= 0.
   virtual Rgb value(const PreparedBrdf& point, const Vec3& wl) const = 0;
 
-  /// As a BTF with two sides, seen from below, knows it.
+  /// `w` in the frame of a two-sided BTF; `back`: seen from below.
   static Vec3 turned(const Vec3& w, bool back) { return {w.x, w.y, back ? -w.z : w.z}; }
-  /// The same of a light.
+  /// turned() of a light direction, which BtfLight::other_side mirrors once more.
   Vec3 turned_light(const Vec3& wl, bool back) const { return turned(wl, back != beyond_); }
 
  private:

@@ -49,7 +49,7 @@ class FactoredMaterial final : public CosineBtfMaterial {
   Vec2 texels() const override { return Vec2(btf_->grid.width, btf_->grid.height); }
 
  private:
-  /// Components of an axis stand together; each axis begins at a whole vector.
+  /// Components of an axis are contiguous; each axis starts at a multiple of kFactoredPadding.
   void place_components() {
     uint32_t begin = 0;
     for (uint32_t a = 0; a < 3; ++a) {
@@ -59,7 +59,7 @@ class FactoredMaterial final : public CosineBtfMaterial {
     }
   }
 
-  /// Row `number` of halves to its padded place among floats.
+  /// Copies row `number` of half floats to its padded place in `floats`.
   void spread(const std::vector<HalfBits>& halves, uint64_t number, std::vector<float>& floats) const {
     float row[FactoredBtf::kMaxComponents];
     const size_t components = btf_->components();
@@ -89,10 +89,10 @@ class FactoredMaterial final : public CosineBtfMaterial {
   std::shared_ptr<const FactoredBtf> btf_;
   PairInterpolation between_;
   bool two_sided_;
-  std::vector<uint32_t> place_;                  // of each component in a padded row
-  std::array<uint32_t, 3> end_{};                // of each axis in a padded row
+  std::vector<uint32_t> place_;                  // index of each component in a padded row
+  std::array<uint32_t, 3> end_{};                // end of each axis in a padded row
   std::vector<float> pair_value_;                // [pair][padded]
-  std::vector<std::vector<float>> texel_value_;  // a level: [texel][padded]
+  std::vector<std::vector<float>> texel_value_;  // per level: [texel][padded]
 };
 
 }  // namespace

@@ -1,4 +1,4 @@
-// A BTF as a sum of products, evaluated at a site of a surface.
+// Material of a BTF factored into a sum of products.
 #pragma once
 
 #include <memory>
@@ -9,8 +9,8 @@
 
 namespace velour {
 
-/// Texture coordinates are in tiles: the BTF repeats with every whole number. Samples have the density of the cosine: a
-/// factorisation knows no lobes to draw from.
+/// Texture coordinates are in tiles: the BTF repeats at every integer. Sampling is cosine-weighted, since a
+/// factorization has no lobes to sample.
 std::shared_ptr<const Material> make_factored_material(std::shared_ptr<const FactoredBtf> btf,
                                                        BtfLight light = BtfLight::viewers_side);
 

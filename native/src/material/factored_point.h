@@ -1,4 +1,4 @@
-// A BTF's texels and view at a hit.
+// Texels and views of a factored BTF at a hit.
 #pragma once
 
 #include <array>
@@ -6,14 +6,14 @@
 
 namespace velour {
 
-/// What the site and the view decide of a factored BTF: its components' coefficients, blended over texels, padded axis
-/// by axis to whole vectors; and the views about the direction.
+/// State of a factored BTF for a site and a view: component coefficients, blended over texels and padded per axis to
+/// whole vectors, and the views around the direction.
 struct FactoredPoint {
   static constexpr int kMost = 512 + 3 * 16;  // components and padding
   alignas(64) float value[kMost];
-  std::array<uint32_t, 3> view;  // numbers of rows of the first light; of views, where components serve a view
-  std::array<float, 3> weight;   // 0 everywhere: nothing is seen
-  bool back;                     // of a BTF with two sides, seen from below
+  std::array<uint32_t, 3> view;  // rows of each view's first light; with by_view(), indices of the views
+  std::array<float, 3> weight;   // all 0: the view is not covered
+  bool back;                     // a two-sided BTF seen from below
 };
 
 }  // namespace velour

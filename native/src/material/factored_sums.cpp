@@ -14,7 +14,7 @@ namespace HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
-/// Rows outside, components inside: each row is read once, from end to end.
+/// The outer loop runs over rows and the inner one over components, so each row is read once, sequentially.
 float sum_of_range(const float* value, const WeightedRow* rows, size_t count, uint32_t begin, uint32_t end) {
   const hn::CappedTag<float, kFactoredPadding> d;
   auto sum = hn::Zero(d);

@@ -1,4 +1,4 @@
-// The inner loop of BTFs as sums of products.
+// Inner loop of factored BTFs.
 #pragma once
 
 #include <array>
@@ -9,10 +9,10 @@
 
 namespace velour {
 
-/// Lengths are multiples of this: whole vectors of every instruction set.
+/// Row lengths are multiples of this: whole vectors of every instruction set.
 inline constexpr uint32_t kFactoredPadding = 16;
 
-/// A row of functions of a direction pair and its weight.
+/// A row of component values for a direction pair, and its weight.
 struct WeightedRow {
   const float* row;
   float weight;

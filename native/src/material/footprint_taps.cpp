@@ -6,9 +6,9 @@
 namespace velour {
 namespace {
 
-/// Length and width of a parallelogram: the singular values of its sides, which are the sides of a rectangle.
+/// Length and width of a parallelogram: the singular values of the matrix of its sides.
 struct Extent {
-  Vec2 along;  // as long as the length
+  Vec2 along;  // major axis, of length `length`
   float length, width;
 };
 
@@ -19,7 +19,7 @@ Extent extent_of(const Mat2& sides) {
   const float length_sq = 0.5f * (xx + yy) + root;
   if (!(length_sq > 0.0f)) return {Vec2(0.0f), 0.0f, 0.0f};
   const float length = std::sqrt(length_sq);
-  // Of the two forms of the eigenvector, the one that does not cancel.
+  // The eigenvector has two forms; this one does not cancel.
   const Vec2 along = xx >= yy ? Vec2(length_sq - yy, xy) : Vec2(xy, length_sq - xx);
   const float size = glm::length(along);
   return {size > 0.0f ? along * (length / size) : Vec2(length, 0.0f), length, std::abs(a.x * b.y - a.y * b.x) / length};

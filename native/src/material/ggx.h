@@ -10,24 +10,24 @@
 
 namespace velour {
 
-/// A mirror's density is no function; below this a lobe is as sharp as any light we have.
+/// Minimum slope roughness: a mirror's density is not a function, and below this a lobe is as sharp as any light.
 inline constexpr float kMinGgxAlpha = 1e-3f;
 
-/// How facets of GGX shadow each other, and what becomes of light that they send to each other.
+/// How GGX facets shadow each other, and whether light between them is accounted for.
 enum class GgxLobe {
-  whole,      // height-correlated; what single scattering loses is given back by scaling it: Multiscatter GGX of 4.0
+  whole,      // height-correlated, scaled to restore the energy lost by single scattering: Multiscatter GGX of 4.0
   single,     // height-correlated: GGX of Blender 3.5 and newer
   separable,  // both directions shadowed independently: GGX of Blender 3.4 and older
 };
 
-// Here of one number; sources that Highway compiles include the same for several.
+// Scalar versions; sources that Highway compiles include the same formulas for vectors.
 #include "material/ggx_formulas-inl.h"
 
 inline float ggx_brdf_without_fresnel(const DirectionPair& w, const Vec3& h, const Vec2& alpha) {
   return ggx_brdf_without_fresnel(w.wv, w.wl, h, alpha);
 }
 
-/// Derivatives of log(ggx_brdf_without_fresnel) by log(alpha.x) and log(alpha.y).
+/// Derivatives of log(ggx_brdf_without_fresnel) with respect to log(alpha.x) and log(alpha.y).
 inline Vec2 ggx_log_slope(const DirectionPair& w, const Vec3& h, const Vec2& alpha) {
   const float length_v = ggx_projected_length(w.wv, alpha), length_l = ggx_projected_length(w.wl, alpha);
   const float bottom = w.wl.z * length_v + w.wv.z * length_l;
@@ -41,7 +41,7 @@ inline Vec2 ggx_log_slope(const DirectionPair& w, const Vec3& h, const Vec2& alp
           1 - 2 * (facing + along_x - along_y) / spread - masking(alpha.y, w.wv.y, w.wl.y)};
 }
 
-/// A normal drawn from the normals visible from `wv` (Heitz 2018, Listing 1).
+/// Samples a microfacet normal visible from `wv` (Heitz 2018, Listing 1).
 inline Vec3 sample_ggx_visible_normal(const Vec3& wv, const Vec2& alpha, const Vec2& u) {
   const Vec3 stretched = glm::normalize(Vec3(alpha.x * wv.x, alpha.y * wv.y, wv.z));
   const float across_sq = stretched.x * stretched.x + stretched.y * stretched.y;

@@ -13,9 +13,9 @@
 namespace velour {
 namespace {
 
-constexpr size_t kEntries = 32;      // of albedos, along roughness and along cosine
-constexpr size_t kRiseEntries = 16;  // of reflectances, along these and along the index
-constexpr float kLeast = 1e-4f;      // at the first entries: of a mirror, and of a view along the surface
+constexpr size_t kEntries = 32;      // of albedo tables, along roughness and along cosine
+constexpr size_t kRiseEntries = 16;  // of mean-rise tables, along roughness, cosine and index
+constexpr float kLeast = 1e-4f;      // roughness and cosine at the first entries, in place of 0
 
 float at(size_t entry, size_t entries) {
   return std::max(static_cast<float>(entry) / static_cast<float>(entries - 1), kLeast);
@@ -30,11 +30,11 @@ float white_albedo(float roughness, float cosine) {
   return std::min(static_cast<float>(sum), 1.0f);
 }
 
-/// Where an argument falls among a table's `size` entries, to interpolate linearly.
+/// Linear interpolation of an argument in [0, 1] between a table's `size` entries.
 template <size_t size>
 struct Place {
   size_t low, high;
-  float share;  // of the high one
+  float share;  // weight of `high`
 
   explicit Place(float x) {
     const float place = std::clamp(x, 0.0f, 1.0f) * (size - 1);
@@ -45,7 +45,7 @@ struct Place {
   float between(float a, float b) const { return (1 - share) * a + share * b; }
 };
 
-/// Entry [cosine][roughness].
+/// Indexed [cosine][roughness].
 template <size_t size>
 using Table = std::array<std::array<float, size>, size>;
 
@@ -79,10 +79,10 @@ const White& white() {
   return table;
 }
 
-/// The mean rises of one index of refraction.
+/// mean_rise() for one index of refraction.
 using Rises = Table<kRiseEntries>;
 
-/// The fourth root of the reflectance at normal incidence: all indices from 1 to infinity, the usual ones finely.
+/// Fourth root of the reflectance at normal incidence: maps [1, infinity) to [0, 1), densest at common indices.
 float place_of_index(float eta) { return std::sqrt(std::abs(eta - 1) / (eta + 1)); }
 
 float index_at(size_t entry) {

@@ -1,21 +1,21 @@
-// What rough surfaces of GGX microfacets reflect of all light from one side: tables that every such material shares.
+// Tables of the albedo of rough GGX surfaces, shared by all materials.
 #pragma once
 
 namespace velour {
 
-/// Reflected energy by roughness (alpha = roughness^2) and cosine of the view. The tables are as coarse as those of
-/// Blender since 4.0, and linear between entries, so that what lies under a layer gets the light that it gets in
-/// Blender; a hit takes no integral. Arguments are clamped to [0, 1]. Thread-safe; made at the first use, the
-/// reflectances an index at a time.
+/// Reflected energy over roughness (alpha = roughness^2) and view cosine, so that no hit computes an integral. The
+/// tables have the resolution and the linear interpolation of Blender 4.0 and newer, so that a layer passes as much
+/// light to the ones below as in Blender. Arguments are clamped to [0, 1]. Thread-safe; built at first use, the
+/// mean_rise() tables one index at a time.
 namespace ggx_albedo {
 
-/// Albedo of the lobe whose facets reflect all light, in (0, 1]: the rest is lost between facets.
+/// Albedo of the lobe with perfectly reflecting facets, in (0, 1]: the remainder is lost between facets.
 float of_white(float roughness, float cosine);
-/// Its mean over a hemisphere of light, 2 int albedo(mu) mu dmu.
+/// Cosine-weighted mean of of_white() over the hemisphere, 2 int albedo(mu) mu dmu.
 float mean_of_white(float roughness);
 
-/// How far a dielectric's reflectance is from its value at normal incidence towards 1, in the mean over the facets that
-/// the view sees. `eta` >= 1.
+/// Mean over visible facets of (F - F0) / (1 - F0) of a dielectric: how far its reflectance rises from the value at
+/// normal incidence towards 1. `eta` >= 1.
 float mean_rise(float roughness, float cosine, float eta);
 
 }  // namespace ggx_albedo

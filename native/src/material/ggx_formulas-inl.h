@@ -1,10 +1,9 @@
-// Formulas of the GGX distribution and of Fresnel's reflectance. Included inside a namespace: by ggx.h for one number,
-// and by sources that Highway compiles, for several side by side. `W` is a direction of either (Vec3, LanesVec3), `T` a
-// number.
+// GGX and Fresnel formulas. Included inside a namespace: by ggx.h for scalars, and by sources that Highway compiles for
+// vectors. `W` is a direction of either (Vec3, LanesVec3), `T` a number.
 
 /// |v|^2 in the space where the microsurface is a sphere, times alpha.x alpha.y: D = alpha.x alpha.y / (pi
-/// spread(h)^2). Homogeneous of degree 2, so that a half vector need not be normalised: see pdf_ggx_reflection. In
-/// sines, not in 1 - cosine squared, which loses a sharp peak.
+/// spread(h)^2). Homogeneous of degree 2, so a half vector need not be normalized (see ggx_mixture_pdf). Uses sines,
+/// since 1 - cosine squared loses a sharp peak to rounding.
 template <class W = Vec3>
 inline auto ggx_spread(const W& v, const Vec2& alpha) {
   const float ratio = alpha.y / alpha.x, inverse = alpha.x / alpha.y;
@@ -32,14 +31,14 @@ inline auto ggx_brdf_without_fresnel(const Vec3& wv, const W& wl, const W& h, co
   return 0.5f * ggx_distribution(h, alpha) / bottom;
 }
 
-/// The same as if both directions were shadowed independently, G1 G1 in the place of G2 [WMLT07, Eq. 23].
+/// ggx_brdf_without_fresnel() with independent shadowing of both directions, G1 G1 in place of G2 [WMLT07, Eq. 23].
 template <class W = Vec3>
 inline auto ggx_brdf_of_independent_shadows(const Vec3& wv, const W& wl, const W& h, const Vec2& alpha) {
   return ggx_distribution(h, alpha) /
          ((wv.z + ggx_projected_length(wv, alpha)) * (wl.z + ggx_projected_length(wl, alpha)));
 }
 
-/// Of unit directions; 0 for opposed ones: no facet mirrors them.
+/// Half vector of unit directions; 0 for opposite ones, which no facet mirrors.
 template <class W = Vec3>
 inline W half_vector(const Vec3& wv, const W& wl) {
   const auto x = wl.x + wv.x, y = wl.y + wv.y, z = wl.z + wv.z;
@@ -48,19 +47,19 @@ inline W half_vector(const Vec3& wv, const W& wl) {
   return {x * scale, y * scale, z * scale};
 }
 
-/// The part of pdf_ggx_reflection that the view alone decides: times 1 / ggx_spread(h)^2, it is that density.
+/// View-dependent factor of pdf_ggx_reflection(), which is this times 1 / ggx_spread(h)^2.
 inline float pdf_ggx_reflection_scale(const Vec3& wv, const Vec2& alpha) {
   return 0.5f * alpha.x * alpha.y / (kPi * (wv.z + ggx_projected_length(wv, alpha)));
 }
 
-/// Density, per solid angle of the mirrored wl, of a visible normal h: G1 D / (4 wv.z).
+/// Density of sampling a visible normal h, per solid angle of the mirrored wl: G1 D / (4 wv.z).
 template <class W = Vec3>
 inline auto pdf_ggx_reflection(const Vec3& wv, const W& h, const Vec2& alpha) {
   const auto spread = ggx_spread(h, alpha);
   return select(h.z > 0.0f, pdf_ggx_reflection_scale(wv, alpha) / (spread * spread), 0.0f);
 }
 
-/// Unpolarised reflectance of a smooth dielectric of relative index `eta` >= 1 from outside, `cosine` in [0, 1].
+/// Unpolarized reflectance of a smooth dielectric of relative index `eta` >= 1 from outside, `cosine` in [0, 1].
 template <class T>
 inline T dielectric_fresnel(T cosine, float eta) {
   if (eta <= 1) return 0.0f;
@@ -70,15 +69,15 @@ inline T dielectric_fresnel(T cosine, float eta) {
   return 0.5f * (parallel * parallel + perpendicular * perpendicular);
 }
 
-/// (1 - cosine)^5: the share of the reflectance at grazing incidence in Schlick's formula.
+/// (1 - cosine)^5: weight of the grazing reflectance in Schlick's formula.
 template <class T>
 inline T schlick_share(T cosine) {
   const T m = 1.0f - cosine, m_sq = m * m;
   return m_sq * m_sq * m;
 }
 
-/// A metal's reflectance, per colour: Schlick's, bent down to `tint` times it at 82 degrees, where metals dip before
-/// they rise to 1 ([KHE21], "F82-tint"). Never negative.
+/// Reflectance of a metal, per color channel: Schlick's, scaled by `tint` at 82 degrees, where metals dip before they
+/// rise to 1 ([KHE21], "F82-tint"). Never negative.
 template <class T>
 inline T tinted_metal_fresnel(float f0, float tint, T cosine) {
   constexpr float kShare = 0.46266436f, kBottom = 0.056652779f;  // (1 - c)^5 and c (1 - c)^6 at c = 1 / 7
@@ -87,7 +86,7 @@ inline T tinted_metal_fresnel(float f0, float tint, T cosine) {
   return larger(0.0f, f0 + (1 - f0) * share - cosine * share * (1.0f - cosine) * depth);
 }
 
-/// Its mean over a hemisphere of light, 2 int F mu dmu, as the polynomial that it is.
+/// Cosine-weighted mean of tinted_metal_fresnel() over the hemisphere, 2 int F mu dmu, in closed form.
 inline float mean_tinted_metal_fresnel(float f0, float tint) {
   constexpr float kShare = 0.46266436f, kBottom = 0.056652779f;  // as above
   const float depth = (1 - tint) / kBottom * (f0 + (1 - f0) * kShare);

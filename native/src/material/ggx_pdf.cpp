@@ -28,7 +28,7 @@ HWY_INLINE void pdf_of_vector(D d, const GgxPoint& point, const Vec3& spread_of,
                               hn::MulAdd(hn::Set(d, spread_of.y), yy, hn::Mul(hn::Set(d, spread_of.z), zz)));
   const V ratio = hn::Div(length_sq, spread);
   const V lobe = hn::Mul(hn::Set(d, point.lobe_scale), hn::Mul(ratio, ratio));
-  const V visible = hn::IfThenElseZero(hn::Gt(sz, hn::Zero(d)), lobe);  // also drops 0 / 0, opposed directions
+  const V visible = hn::IfThenElseZero(hn::Gt(sz, hn::Zero(d)), lobe);  // also drops 0 / 0 of opposite directions
   const V cosine = hn::Max(z, hn::Zero(d));
   hn::Store(hn::MulAdd(hn::Set(d, point.cosine_share / kPi), cosine, visible), d, pdf.v + at);
 }

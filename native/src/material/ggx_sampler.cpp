@@ -33,7 +33,7 @@ GgxSampler::GgxSampler(const GgxParameters& p)
       along_x_(albedo_along_x(p, alpha_, specular_)),
       along_y_(alpha_.x == alpha_.y ? along_x_ : albedo_along_x(p, {alpha_.y, alpha_.x}, specular_)) {}
 
-/// Exact in the planes of the axes; between them it only has to be close: it sets a probability.
+/// Exact in the xz and yz planes, approximate between them, which suffices for a sampling probability.
 float GgxSampler::specular_albedo(const Vec3& wv) const {
   const float across_sq = wv.x * wv.x + wv.y * wv.y;
   const float x = along_x_.at(wv.z);

@@ -1,4 +1,4 @@
-// Surfaces of microfacets that reflect one colour at every angle: Blender's Glossy BSDF.
+// Blender's Glossy BSDF: microfacets that reflect one color at every angle.
 #pragma once
 
 #include <memory>
@@ -10,13 +10,13 @@ namespace velour {
 
 struct GlossyParameters {
   Rgb color{0.8f};
-  float roughness = 0.5f;  // alpha of GGX: its square; at least kMinRoughness is rendered
+  float roughness = 0.5f;  // GGX alpha is its square; clamped to at least kMinRoughness
   GgxLobe lobe = GgxLobe::whole;
   TextureSlot<Rgb> color_texture{};
   TextureSlot<float> roughness_texture{};
 };
 
-/// color G2 D / (4 cos cos), and what the lobe makes of it. Samples are drawn from visible normals.
+/// f = color G2 D / (4 cos cos), scaled by the lobe's Interreflection. Samples the visible normals.
 std::shared_ptr<const Material> make_glossy_material(const GlossyParameters& parameters);
 
 }  // namespace velour

@@ -1,4 +1,4 @@
-// A BTF of open structure over a surface whose rays find the structure's holes for themselves.
+// Material of a BTF with an open structure, on a surface whose rays intersect the structure's silhouette themselves.
 #pragma once
 
 #include <memory>
@@ -7,9 +7,9 @@
 
 namespace velour {
 
-/// f of what is there, from a BTF whose values are means with what is not. What its texels hold beyond an outline is
-/// light of the structure inside: it is folded back over the outline, so that the rays that meet the structure gather
-/// all of it and no more.
+/// f of the solid part, from a BTF whose values average solid and empty parts. Texels beyond a silhouette hold light of
+/// the structure inside; it is folded back over the silhouette, so that rays that hit the structure gather exactly all
+/// of it.
 class HoledBtfMaterial final : public Material {
  public:
   explicit HoledBtfMaterial(std::shared_ptr<const Material> btf) : btf_(std::move(btf)) {}

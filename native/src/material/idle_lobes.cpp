@@ -9,7 +9,7 @@ namespace velour {
 
 namespace {
 
-/// What is lost without a lobe, in units of what may be.
+/// Error from dropping a lobe, relative to the limits of idle_lobes.h.
 struct Loss {
   double albedo = 0, norm = 0, value = 0;
 

@@ -1,4 +1,4 @@
-// Light between the facets of a rough surface.
+// Interreflection between the facets of a rough surface.
 #pragma once
 
 #include "material/ggx.h"
@@ -6,8 +6,8 @@
 
 namespace velour {
 
-/// What facets that send light to each other make of a lobe seen at a cosine: factors of it, 1 unless it is
-/// GgxLobe::whole. The shape stays that of one bounce, so it is not reciprocal; Blender's, since 4.0.
+/// Factors by which interreflection between facets scales a lobe at a view cosine; 1 unless it is GgxLobe::whole. The
+/// shape remains that of one bounce, so f is not reciprocal. Follows Blender since 4.0.
 class Interreflection {
  public:
   Interreflection(GgxLobe lobe, float roughness, float cosine) {
@@ -16,13 +16,13 @@ class Interreflection {
     mean_ = ggx_albedo::mean_of_white(roughness);
   }
 
-  /// By the facets' reflectance in the mean over a hemisphere, 2 int F mu dmu: the albedo is that of one bounce or more
-  /// [KC17, appendix].
+  /// Makes the albedo that of one or more bounces [KC17, appendix]. `mean_fresnel`: mean reflectance of the facets over
+  /// a hemisphere, 2 int F mu dmu.
   Rgb gain(const Rgb& mean_fresnel) const {
     const Rgb more = mean_fresnel * mean_ / (1.0f - mean_fresnel * (1 - mean_));
     return 1.0f + more * ((1 - albedo_) / albedo_);
   }
-  /// The same over the gain of facets that reflect all light, which makes the albedo 1.
+  /// gain() relative to that of perfectly reflecting facets, which makes the albedo 1.
   Rgb gain_of_whole(const Rgb& mean_fresnel) const { return gain(mean_fresnel) * albedo_; }
 
  private:

@@ -12,7 +12,7 @@ namespace {
 constexpr int kZeniths = 8, kAzimuths = 8;
 static_assert(kZeniths * kAzimuths == DirectionBatch::kCapacity);
 
-/// The same lobes in their own frame, from each of which, and from the cosine, come as many samples.
+/// The lobes of `mixture` in their own frame; each lobe and the cosine get the same number of samples.
 WarpedMixture evenly_sampled(const WarpedMixture& mixture) {
   WarpedMixture even = mixture;
   even.turn_cos = 1;
@@ -62,7 +62,7 @@ LightPoints::LightPoints(const WarpedMixture& mixture) {
 
 void LightPoints::add(const WarpedMixture& even, const DirectionBatch& wl) {
   DirectionBatch padded = wl;
-  while (padded.count <= 2) padded.push(wl.get(0));  // so few would be asked of all lobes, listed or not
+  while (padded.count <= 2) padded.push(wl.get(0));  // eval_warped() ignores the lobe list for one or two directions
   padded.pad();
   RgbBatch f;
   ScalarBatch density;

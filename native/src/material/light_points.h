@@ -1,4 +1,4 @@
-// A quadrature over light directions that suits a mixture of warped lobes.
+// Quadrature over light directions adapted to a mixture of warped lobes.
 #pragma once
 
 #include <span>
@@ -8,11 +8,11 @@
 
 namespace velour {
 
-/// Evenly spread samples of every lobe and of the cosine, in the lobes' frame, and what each lobe sees of them. Good to
-/// a few per cent.
+/// Stratified samples of every lobe and of the cosine, in the lobes' frame, with each lobe's kernel at each sample.
+/// Accurate to a few per cent.
 class LightPoints {
  public:
-  /// The value of `mixture` alone is used.
+  /// Uses only the value of `mixture`, not its density.
   explicit LightPoints(const WarpedMixture& mixture);
 
   size_t size() const { return light_.size(); }

@@ -3,10 +3,10 @@
 
 namespace velour {
 
-/// Effect of Cycles' Filter Glossy and Reflective Caustics on microfacet lobes. Both bias the picture. Measured
-/// materials have no such lobes, and keep all that they reflect.
+/// Effect of Cycles' Filter Glossy and Reflective Caustics on microfacet lobes. Both bias the image. Measured materials
+/// have no such lobes and are unaffected.
 struct LobeFilter {
-  float min_alpha = 0;  // lobes are at least as rough; how bright they are stays as it was without
+  float min_alpha = 0;  // minimum alpha of lobes; does not change their brightness
   bool diffuse_only = false;
 };
 

@@ -1,4 +1,4 @@
-// The run-time evaluator. On a prepared point: eval and sample, one virtual call a batch of directions.
+// Run-time evaluator: eval and sample at a prepared point, one virtual call per batch of directions.
 #pragma once
 
 #include <algorithm>
@@ -27,39 +27,39 @@ namespace velour {
 struct PreparedBrdf;
 class TableSampler;
 
-/// One of the layers that a material is mixed of, at a point.
+/// A layer of a mixed material at a point.
 struct PreparedLayer {
   std::unique_ptr<PreparedBrdf> point;
-  Rgb weight{0.0f};  // of its f; black: it is not there, and `point` is not set up
-  float share = 0;   // of samples that are drawn from it; all add up to 1
+  Rgb weight{0.0f};  // factor of its f; black: the layer is absent and `point` is not prepared
+  float share = 0;   // probability of sampling this layer; all sum to 1
 
   bool is_there() const { return weight != Rgb(0.0f); }
 };
 
-/// What a material sets up once a camera ray and uses for every light direction of it. A material fills only what it
-/// needs; the struct is scratch memory of the thread, reused from hit to hit.
+/// State that a material prepares once per hit and uses for all its light directions. A material fills only what it
+/// needs; the struct is per-thread scratch memory, reused from hit to hit.
 struct PreparedBrdf {
   Vec3 wv;                               // local, unit, wv.z > 0
   LobeMixture lobes;                     // SRBF materials: the value
-  TablePoint table;                      // where samples are drawn from tables: those of the view
-  LobeMixture draws;                     // where `interpolated_draws`: what is drawn from, and its density
-  WarpedMixture warped;                  // parametric models: value and density
-  float parameter[8];                    // analytic materials: what they derive from wv
-  GgxPoint ggx;                          // of the fitted GGX lobe, where one is the material or draws its samples
-  PrincipledPoint principled;            // Principled materials: those of the site and the view
-  FactoredPoint factored;                // BTFs as sums of products: those of the site and the view
-  SrbfPoint srbf;                        // BTFs of multivariate SRBFs: the same
-  TensorPoint tensor;                    // BTFs of clustered tensors: the same
-  std::unique_ptr<PreparedBrdf> beyond;  // BTFs of open structure: the same beyond its outline, where `folded`
-  bool value_only = false;               // set before prepare(): nothing is drawn, and densities are 0
-  bool interpolated_draws = false;       // set before prepare(): scattered models draw as the dissertation does
+  TablePoint table;                      // materials sampled from tables: those of the view
+  LobeMixture draws;                     // per-view models without tables or with `interpolated_draws`: density
+  WarpedMixture warped;                  // parametric models: value and density; sided BTFs: density
+  float parameter[8];                    // analytic materials: values derived from wv
+  GgxPoint ggx;                          // the fitted GGX lobe, as the material or as its proposal
+  PrincipledPoint principled;            // Principled materials: values at the site and view
+  FactoredPoint factored;                // factored BTFs: values at the site and view
+  SrbfPoint srbf;                        // BTFs of multivariate SRBFs: values at the site and view
+  TensorPoint tensor;                    // BTFs of clustered tensors: values at the site and view
+  std::unique_ptr<PreparedBrdf> beyond;  // HoledBtfMaterial: the point beyond the silhouette, if `folded`
+  bool value_only = false;               // set before prepare(): no sampling; densities are 0
+  bool interpolated_draws = false;       // set before prepare(): per-view models sample as in [T09]
   LobeFilter filter;                     // set before prepare()
   bool folded = false;
-  BtfTablePoint btf_table;                // BTFs themselves: what is blended at the site for the view
-  std::unique_ptr<PreparedBrdf> through;  // where light comes through: the same for light from the other side
-  float through_share = 0;                // of samples that are drawn from it
-  Frame relief;                           // of materials with a normal map: about the mapped normal
-  std::vector<PreparedLayer> layers;      // of materials that are mixed of others
+  BtfTablePoint btf_table;                // uncompressed BTFs: rows to blend at the site and view
+  std::unique_ptr<PreparedBrdf> through;  // ThroughMaterial: the point for light from the other side
+  float through_share = 0;                // probability of sampling `through`
+  Frame relief;                           // normal-mapped materials: frame about the mapped normal
+  std::vector<PreparedLayer> layers;      // mixed materials
 };
 
 /// Directions are in the local shading frame. Thread-safe; no allocation, no lock.
@@ -67,29 +67,28 @@ class Material {
  public:
   virtual ~Material() = default;
 
-  /// Must be called before the others with this `point`; `wv.z > 0`.
+  /// Must be called before the other members with this `point`. Requires wv.z > 0.
   virtual void prepare(const Vec3& wv, const SurfaceSite& site, PreparedBrdf& point) const = 0;
-  /// The same averaged over the whole surface: all there is of a uniform material.
+  /// Prepares the average over the whole surface, which is exact for a uniform material.
   void prepare(const Vec3& wv, PreparedBrdf& point) const { prepare(wv, SurfaceSite::everywhere(), point); }
 
-  /// False for a uniform material: it does not look at the site, and whoever asks need not find it out.
+  /// False for a uniform material, which ignores the site, so callers need not determine it.
   virtual bool varies() const { return false; }
-  /// How many texels along both coordinates a pyramid over the tile has at its finest; (1, 1) where there is none.
+  /// Texels along both coordinates at the finest level of a pyramid over the tile; (1, 1) without one.
   virtual Vec2 texels() const { return Vec2(1.0f); }
 
   /// True where alpha() is 1 everywhere.
   virtual bool opaque() const { return true; }
-  /// The share of `site` that is there, in [0, 1]; through the rest one sees what lies behind. f is that of what is
-  /// there.
+  /// Opacity of `site`, in [0, 1]. f describes only the opaque part.
   virtual float alpha(const SurfaceSite& /*site*/) const { return 1.0f; }
-  /// Whether light that passes through the rest changes: passing() may be other than 1.
+  /// Whether light passing through the transparent part changes: passing() may differ from 1.
   virtual bool tints() const { return false; }
-  /// What light that passes is multiplied with, in the space that f is in; it may be above 1.
+  /// Factor of light passing through the transparent part, in the color space of f; may exceed 1.
   virtual Rgb passing(const SurfaceSite& /*site*/) const { return Rgb(1.0f); }
 
-  /// Whether emission() may be other than 0.
+  /// Whether emission() may be nonzero.
   virtual bool glows() const { return false; }
-  /// Radiance that what is there sends to every side, in the working space.
+  /// Radiance emitted by the opaque part, equal in all directions, in the working space.
   virtual Rgb emission(const SurfaceSite& /*site*/) const { return Rgb(0.0f); }
 
   /// True where f may be above 0 for light from the other side of the surface, wl.z < 0; the cosine is |wl.z|.
@@ -99,12 +98,12 @@ class Material {
   /// density of `sample`, per solid angle, of each direction of the batch. The batch is padded.
   virtual void eval(const PreparedBrdf& point, const DirectionBatch& wl, RgbBatch& f, ScalarBatch& pdf) const = 0;
 
-  /// Draws a wl for each of up to 64 `u` with the density that `eval` reports as pdf. It may lie below the horizon: a
-  /// zero contribution unless it transmits, which gives (0, 0, 0) where a draw has no direction. The batch is not
-  /// padded.
+  /// Samples a wl for each of up to 64 `u` with the density that `eval` reports as pdf. A wl may lie below the horizon,
+  /// with zero contribution unless the material transmits; a transmitting material gives (0, 0, 0) for a sample without
+  /// a direction. The batch is not padded.
   virtual void sample(const PreparedBrdf& point, std::span<const Vec2> u, DirectionBatch& wl) const = 0;
 
-  /// The same of one direction, without the memory of a batch.
+  /// Result of eval_one(), which evaluates one direction without the memory of a batch.
   struct Reflection {
     Rgb f;
     float pdf;
@@ -124,18 +123,18 @@ class Material {
     return wl.get(0);
   }
 
-  /// The probability that `wl`, drawn with density `pdf`, is diffuse light, which Cycles calls what a lobe of no
-  /// microfacets has drawn. Here the share of the density that a cosine would have, for materials without such lobes.
+  /// Probability that `wl`, sampled with density `pdf`, counts as diffuse, Cycles' term for samples of lobes without
+  /// microfacets. The default suits materials without microfacet lobes: the cosine density over `pdf`.
   virtual float diffuse_share(const PreparedBrdf& /*point*/, const Vec3& wl, float pdf) const {
     return std::min(std::abs(wl.z) / (kPi * pdf), 1.0f);
   }
 
-  /// Few Gaussians in light space that resemble f cos at the prepared `point`: what `product` multiplies with the sky.
-  /// They steer sampling alone, so lobes of another space may be given as the nearest Gaussians here. False: the
-  /// material has none.
+  /// A few Gaussians over light directions that approximate f cos at the prepared `point`; `product` sampling
+  /// multiplies them with the environment. They only steer sampling, so lobes of another space may be approximated.
+  /// False: the material has none.
   virtual bool proposal_lobes(const PreparedBrdf& /*point*/, ProposalLobes& /*lobes*/) const { return false; }
 
-  /// Tables that the material draws from itself; null: none, and `table` makes them.
+  /// Tables that the material itself samples from; null: none, and `table` sampling makes them.
   virtual std::shared_ptr<const TableSampler> tables() const { return nullptr; }
 
   /// True when f depends on the azimuth difference alone (tables of it need one meridian of views).

@@ -1,4 +1,4 @@
-// A BTF itself, evaluated at a site of a surface: reference mode.
+// Material of an uncompressed BTF: reference mode.
 #pragma once
 
 #include <memory>
@@ -9,9 +9,9 @@
 
 namespace velour {
 
-/// f of the table: barycentric between views and between lights, bilinear between texels, trilinear between levels
-/// along the footprint [Wil83, MPFJ99], all in f; negative sums are 0. Texture coordinates count tiles. Samples have
-/// the density of the cosine.
+/// f interpolated from the table: barycentric between views and between lights, bilinear between texels, trilinear
+/// between levels along the footprint [Wil83, MPFJ99], all linear in f; negative sums become 0. Texture coordinates are
+/// in tiles. Sampling is cosine-weighted.
 std::shared_ptr<const Material> make_measured_btf_material(std::shared_ptr<const BtfTable> table,
                                                            BtfLight light = BtfLight::viewers_side);
 

@@ -6,8 +6,8 @@
 namespace velour {
 namespace {
 
-constexpr float kMinNormalCosine = 1e-6f;  // of the surface's own normal: f is finite
-constexpr float kLeastViewCosine = 1e-3f;  // of a viewer with the mapped normal
+constexpr float kMinNormalCosine = 1e-6f;  // of the light with the surface normal; keeps f finite
+constexpr float kLeastViewCosine = 1e-3f;  // of the view with the mapped normal
 
 class NormalMappedMaterial final : public Material {
  public:
@@ -58,7 +58,7 @@ class NormalMappedMaterial final : public Material {
     return map_.correction != ReliefCorrection::none && is_lobe;
   }
 
-  /// About the normal of a lobe, or of what is diffuse.
+  /// Frame about the mapped normal of a lobe, or of the diffuse part.
   Frame frame_of(bool is_lobe, const Vec3& wv, const SurfaceSite& site) const {
     Vec3 map = 2.0f * map_.texture.at(site, Rgb(0.5f, 0.5f, 1.0f)) - 1.0f;
     map = {map_.strength * map.x, map_.strength * map.y, 1 + (map.z - 1) * std::clamp(map_.strength, 0.0f, 1.0f)};
@@ -76,9 +76,9 @@ class NormalMappedMaterial final : public Material {
 
 }  // namespace
 
-/// In the plane of both normals with angle t from `ground`, the mirrored direction's cosine with `ground` is
-/// r cos(2 t - phi), r and phi the polar coordinates of wv's part in that plane: too low beyond the end of an interval
-/// of t that holds 0.
+/// In the plane of both normals, a normal at angle t from `ground` mirrors wv to a cosine of r cos(2 t - phi) with
+/// `ground`, where r and phi are the polar coordinates of wv's projection onto that plane. The cosine is large enough
+/// within an interval of t that contains 0; beyond its end the normal is moved to that end.
 Vec3 with_mirror_above(const Vec3& normal, const Vec3& ground, const Vec3& wv) {
   const float up = glm::dot(wv, ground), least = std::min(0.01f, 0.9f * up);
   if (2 * glm::dot(wv, normal) * glm::dot(normal, ground) - up >= least) return normal;

@@ -18,7 +18,7 @@ class ParametricMaterial : public Material {
  public:
   explicit ParametricMaterial(const ParametricBrdf& brdf) : values_(brdf), nodes_(values_), table_(values_, nodes_) {}
 
-  /// Once, before it is used.
+  /// Must be called once, before first use.
   void tabulate_draws() {
     const auto tables = std::make_shared<const TableSampler>(isotropic(), [this](const Vec3& wv, auto wl, auto f_cos) {
       WarpedMixture mixture;
@@ -72,7 +72,7 @@ class ParametricMaterial : public Material {
     values_.evaluate(wv, ViewPlace(wv), mixture);
   }
 
-  /// f, by the lobes at `wv`.
+  /// f from `mixture`, the lobes at `wv`.
   virtual void value(const Vec3& /*wv*/, const WarpedMixture& mixture, const DirectionBatch& wl, RgbBatch& f) const {
     eval_warped(mixture, wl, f);
   }
@@ -81,8 +81,8 @@ class ParametricMaterial : public Material {
   }
 
  private:
-  /// At views between those of the tables. Lobes narrower than a table's cells are rare but for models made by hand,
-  /// and drawn from as they are.
+  /// Whether the tables resolve all lobes, tested at views between their nodes. Lobes narrower than a table's cells are
+  /// rare except in models made by hand; those are sampled directly.
   bool serves(const TableSampler& tables) const {
     constexpr int kViews = 24, kTurns = 8;
     for (int i = 0; i < kViews; ++i) {
@@ -119,7 +119,7 @@ class ParametricMaterial : public Material {
   std::shared_ptr<const TableSampler> tables_;
 };
 
-/// f is the mean of both orders of a pair.
+/// f is averaged over both orders of a direction pair.
 class SymmetricMaterial final : public ParametricMaterial {
  public:
   using ParametricMaterial::ParametricMaterial;
@@ -142,7 +142,7 @@ class SymmetricMaterial final : public ParametricMaterial {
   }
 };
 
-/// f of a measurement, samples of a model.
+/// f of a measurement, sampled from a model.
 class MeasuredParametricMaterial final : public Material {
  public:
   MeasuredParametricMaterial(std::shared_ptr<const Measurement> measurement, std::shared_ptr<const Material> proposal)

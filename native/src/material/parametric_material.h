@@ -1,4 +1,4 @@
-// Materials whose samples are drawn from a parametric model: the model itself, or a raw measurement.
+// Materials sampled from a parametric model: the model itself, or a raw measurement.
 #pragma once
 
 #include <memory>

@@ -14,7 +14,7 @@ namespace {
 
 constexpr int kRadiusCells = 64, kSquareCells = 16;
 
-/// Each lobe's part of f cos becomes the Gaussian of the same mass and mean direction; these are joined until a
+/// Replaces each lobe's part of f cos by the Gaussian of the same mass and mean direction, and merges these until a
 /// proposal holds them.
 ProposalLobes few_lobes(const WarpedMixture& lobes, const LightPoints& points) {
   GaussianLobes gaussians;

@@ -11,7 +11,7 @@
 
 namespace velour {
 
-/// The lobes of a mixture's value, as scalar code has them, in its frame.
+/// The lobes of a mixture's value as WarpedLobes, in the mixture's frame.
 std::vector<WarpedLobe> lobes_of(const WarpedMixture& mixture);
 
 /// Immutable; thread-safe; no allocation after construction.
@@ -19,11 +19,11 @@ class ParametricNodes {
  public:
   explicit ParametricNodes(const ParametricValues& values);
 
-  /// Light-space Gaussians that resemble f cos at `wv`, in the surface's frame: the moments of each lobe's part of it
-  /// at the nearest node, joined to few, turned with the mirror direction of the view.
+  /// Gaussians over light directions that approximate f cos at `wv`, in the surface's frame. They match the moments of
+  /// each lobe's part at the nearest node, are merged to a few, and rotate with the view's mirror direction.
   void propose(const Vec3& wv, ProposalLobes& lobes) const;
 
-  /// A bit for each lobe that matters (idle_lobes.h) at any node from the one before `first` to the one behind `last`,
+  /// Bit mask of the lobes that matter (idle_lobes.h) at any node from the one before `first` to the one after `last`,
   /// on a meridian of an isotropic model.
   uint32_t matter_between(const ViewPlace& first, const ViewPlace& last) const;
 
@@ -32,8 +32,8 @@ class ParametricNodes {
 
   bool isotropic_;
   ViewNodes nodes_;
-  std::vector<ProposalLobes> proposals_;  // of each node, in the lobes' frame
-  std::vector<uint32_t> matter_;          // of each node
+  std::vector<ProposalLobes> proposals_;  // per node, in the lobes' frame
+  std::vector<uint32_t> matter_;          // per node
 };
 
 }  // namespace velour

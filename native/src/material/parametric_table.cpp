@@ -19,7 +19,7 @@ namespace HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
-/// With the padded number of lobes known to the compiler every address is a constant.
+/// The padded number of lobes is a template argument so that every address offset is a constant.
 template <int kPadded>
 HWY_INLINE void mix_rows(const TableRows& rows, const ViewTapsOf<float>& taps, WarpedMixture& m) {
   using T = ParametricTable;
@@ -51,7 +51,7 @@ HWY_INLINE void mix_rows(const TableRows& rows, const ViewTapsOf<float>& taps, W
   }
 }
 
-/// The view's place without a division to wait for; away from the normal 1 - z has all the digits that z gives it.
+/// Avoids the latency of a division. Away from the normal 1 - z loses no precision.
 void evaluate_simd(const TableRows& rows, const Vec3& wv, WarpedMixture& m) {
   const hn::CappedTag<float, 1> one;
   const float z = std::max(wv.z, 0.0f), sine_sq = std::max(wv.x * wv.x + wv.y * wv.y, 1e-30f);
@@ -60,7 +60,7 @@ void evaluate_simd(const TableRows& rows, const Vec3& wv, WarpedMixture& m) {
   m.turn_sin = inverse * wv.y;
   m.wv = Vec3(inverse * sine_sq, 0, wv.z);
   ViewTapsOf<float> taps = rows.spline.at(PolarView<float>{polar_angle(std::sqrt(1 - z), z), m.turn_cos, m.turn_sin});
-  while (taps.count < SplineRows::kIsotropicTaps) taps.add(0, 0, 0);  // beside the normal
+  while (taps.count < SplineRows::kIsotropicTaps) taps.add(0, 0, 0);  // fewer taps next to the normal
   const LobeList& list = rows.lists[taps.node[0]];
   m.listed = list.lobe;
   m.listed_count = list.count;
@@ -83,12 +83,12 @@ HWY_EXPORT(evaluate_simd);
 
 namespace {
 
-constexpr double kFadeEnd = 0.2;  // radians; the stretches' fade is 1 there, in float
-constexpr int kIntervals = 320;   // at least, of the table
+constexpr double kFadeEnd = 0.2;  // radians; beyond it the stretch fade is 1 in float
+constexpr int kIntervals = 320;   // minimum of the table
 
 Vec3 view_of(double theta) { return Vec3(Vec3d(std::sin(theta), 0, std::max(std::cos(theta), 0.0))); }
 
-/// Where a column comes from.
+/// Source of a table column.
 struct Source {
   ParametricTable::Column column;
   float (WarpedMixture::*array)[WarpedMixture::kCapacity];
@@ -126,7 +126,7 @@ void ParametricTable::fill(const ParametricValues& values) {
       for (size_t i = 0; i < sites.size(); ++i) control[i] = static_cast<double>((mixtures[i].*array)[j]);
       const double least = column == kX || column == kZ ? -1 : *std::min_element(control.begin(), control.end()) / 2;
       spline_.interpolate(control, odd);
-      // Where coefficients fall steeply an interpolation may swing below 0.
+      // The interpolation may overshoot below 0 where coefficients fall steeply.
       for (size_t i = 0; i < sites.size(); ++i) at(i, column, j) = static_cast<float>(std::max(control[i], least));
     }
   }
@@ -138,7 +138,7 @@ void ParametricTable::leave_out_idle(const ParametricNodes& nodes) {
   const auto place = [](double theta) { return ViewPlace(view_of(std::clamp(theta, 0.0, kPiD / 2))); };
   std::vector<uint32_t> matter;
   for (const double site : sites) {
-    // Where the table ends, beside the normal, it has all lobes, as the model has them beyond.
+    // Next to the normal, where the table ends, keep all lobes, as the model does beyond.
     const bool at_the_end = site < kFadeEnd + 2 * step;
     matter.push_back(at_the_end ? ~0u : nodes.matter_between(place(site - 1.5 * step), place(site + 1.5 * step)));
   }

@@ -17,7 +17,7 @@ namespace HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
-/// Parameters of the lobes from `at` on.
+/// Parameter `which` of the lobes from index `at` on.
 template <int kTaps, class D, class V = hn::Vec<D>>
 HWY_INLINE V parameter(D d, const SplineRows& rows, const float* weight, int which, int at) {
   const float* from = rows.control + which * rows.stride + at;
@@ -28,14 +28,14 @@ HWY_INLINE V parameter(D d, const SplineRows& rows, const float* weight, int whi
   return sum;
 }
 
-/// sin(x) / x of x >= 0, and of sinh.
+/// sin(x) / x or sinh(x) / x for x >= 0, from `sine` and x.
 template <class D, class V = hn::Vec<D>>
 HWY_INLINE V over(D d, V sine, V x) {
   const auto tiny = hn::Lt(x, hn::Set(d, 1e-6f));
   return hn::IfThenElse(tiny, hn::Set(d, 1.0f), hn::Div(sine, x));
 }
 
-/// tilted_normal and stretch_from in the plane of incidence.
+/// tilted_normal() and stretch_from() in the plane of incidence.
 template <class D, class V = hn::Vec<D>>
 HWY_INLINE void store_shape_on_meridian(D d, V tilt, V stretch, int at, WarpedMixture& m) {
   V sine, cosine;
@@ -49,7 +49,7 @@ HWY_INLINE void store_shape_on_meridian(D d, V tilt, V stretch, int at, WarpedMi
   hn::Store(grown, d, m.s_yy + at);
 }
 
-/// The same anywhere.
+/// tilted_normal() and stretch_from() in general.
 template <class D, class V = hn::Vec<D>>
 HWY_INLINE void store_shape(D d, V tilt_x, V tilt_y, V a, V b, int at, WarpedMixture& m) {
   const V angle = hn::Sqrt(hn::MulAdd(tilt_x, tilt_x, hn::Mul(tilt_y, tilt_y)));
@@ -76,7 +76,7 @@ HWY_INLINE void evaluate_lobes(const SplineRows& rows, WarpedMixture& m) {
   for (int at = 0; at < m.padded; at += static_cast<int>(hn::Lanes(d))) {
     hn::Store(hn::LoadU(d, rows.half + at), d, m.half + at);
     const auto of = [&](int which) { return parameter<kTaps>(d, rows, rows.taps.weight, which, at); };
-    const auto exp_of = [&](int which) { return exp2_clamped(d, of(which)); };  // kept as logarithms to base 2
+    const auto exp_of = [&](int which) { return exp2_clamped(d, of(which)); };  // stored as logarithms to base 2
     hn::Store(exp_of(P::kLogBandwidth), d, m.bandwidth + at);
     hn::Store(exp_of(P::kLogRed), d, m.r + at);
     hn::Store(exp_of(P::kLogGreen), d, m.g + at);
@@ -107,7 +107,7 @@ HWY_EXPORT(evaluate_simd);
 
 namespace {
 
-/// Of what fills up the lanes: its exponential is 0.
+/// Log coefficient of padding lobes; its exponential is 0.
 constexpr float kNoCoefficient = -1000;
 
 float stored(int parameter, float value) {
@@ -150,7 +150,7 @@ void ParametricValues::evaluate(const Vec3& wv, const ViewPlace& place, WarpedMi
                   spline_.at(PolarView<float>{place.theta, place.cos_phi, place.sin_phi})};
   // Beyond 11 degrees the fade is 1 in float.
   if (place.theta < 0.2f) rows.stretch = static_cast<float>(pole_fade(static_cast<double>(place.theta)));
-  while (rows.taps.count < SplineRows::kIsotropicTaps) rows.taps.add(0, 0, 0);  // beside the normal
+  while (rows.taps.count < SplineRows::kIsotropicTaps) rows.taps.add(0, 0, 0);  // fewer taps next to the normal
   mixture.count = count_;
   mixture.padded = padded_;
   mixture.list_all();

@@ -9,8 +9,8 @@
 
 namespace velour {
 
-/// The model's coefficients, laid out for lanes over lobes: what ParametricTable is made from, and what evaluates where
-/// no table is. Immutable; thread-safe; no allocation.
+/// The model's coefficients, laid out for SIMD over lobes. ParametricTable is built from them; views that it does not
+/// cover are evaluated here. Immutable; thread-safe; no allocation.
 class ParametricValues {
  public:
   /// Throws Error(invalid_argument) when there are more lobes than WarpedMixture::kCapacity.
@@ -20,14 +20,14 @@ class ParametricValues {
   const ViewSpline& spline() const { return spline_; }
   int count() const { return count_; }
   int padded_count() const { return padded_; }
-  /// 1 for lobes of half space, of the padded number.
+  /// 1 for half-vector lobes, else 0; padded_count() entries.
   const std::vector<float>& half() const { return half_; }
   uint64_t bytes() const { return sizeof(float) * (control_.size() + half_.size()); }
 
-  /// Fills in the frame, the parameterisations and the lobes of the value (not those of the density) at unit `wv`,
-  /// which is at `place`, above or on the horizon. Lobes of isotropic models lie in the view's frame: x along its
-  /// azimuth. Run-time dispatched SIMD. Relative to lobes_at: 1e-5 in bandwidths and coefficients, 1e-6 radians in
-  /// centres, where the model's splines change by a few units a cell.
+  /// Sets the frame, the parameterizations and the lobes of the value (not of the density) at unit `wv`, on or above
+  /// the horizon; `place` is ViewPlace(wv). Lobes of isotropic models are in the view's frame: x along its azimuth.
+  /// SIMD, dispatched at run time. Deviates from lobes_at by 1e-5 (relative) in bandwidths and coefficients and 1e-6
+  /// radians in centers, for splines that change by a few units per cell.
   void evaluate(const Vec3& wv, const ViewPlace& place, WarpedMixture& mixture) const;
 
  private:

@@ -1,24 +1,24 @@
-// Principled materials as a formula. Included inside a namespace, after ggx_formulas-inl.h: by sources that Highway
-// compiles, for several directions side by side.
+// Formulas of the Principled BSDF. Included inside a namespace, after ggx_formulas-inl.h: by principled_point.cpp for
+// scalars, and by sources that Highway compiles for vectors.
 
-/// What multiplies point.diffuse: 1 but in Disney's formula [Bur12, Sec. 5.3].
+/// Factor of point.diffuse: 1 except in Disney's formula [Bur12, Sec. 5.3].
 template <class W>
 inline auto principled_base(const PrincipledPoint& point, const Vec3& wv, const W& wl) {
   using T = decltype(dot(wv, wl));
   if (point.formula != PrincipledFormula::disney) return T(1.0f);
   const T light_rise = schlick_share(smaller(larger(wl.z, 0.0f), 1.0f));
-  const T retro = point.roughness * (dot(wv, wl) + 1.0f);  // 2 roughness cos^2 of half the angle between both
+  const T retro = point.roughness * (dot(wv, wl) + 1.0f);  // 2 roughness cos^2 of half the angle between wv and wl
   return (1 - 0.5f * point.view_rise) * (1.0f - 0.5f * light_rise) +
          retro * (light_rise + point.view_rise + light_rise * point.view_rise * (retro - 1.0f));
 }
 
-/// What the facets' reflectances share, at the cosine between wv and h.
+/// (F - F0) / (1 - F0) of the dielectric at the cosine between wv and h, shared by all channels.
 template <class T>
 inline T principled_rise(const PrincipledPoint& point, T cosine) {
   return (dielectric_fresnel(cosine, point.eta) - point.f0) * (1 / (1 - point.f0));
 }
 
-/// The facets' reflectance, one channel, with all weights: what multiplies the lobe.
+/// Weighted reflectance of the facets in one channel: the factor of the lobe.
 template <class T>
 inline T principled_reflectance(const PrincipledPoint& point, T cosine, T rise, int c) {
   const T dielectric = point.at_normal[c] + point.rise[c] * rise;
@@ -26,7 +26,7 @@ inline T principled_reflectance(const PrincipledPoint& point, T cosine, T rise, 
   return dielectric + point.metal[c] * tinted_metal_fresnel(point.base_color[c], point.metal_tint(c), cosine);
 }
 
-/// What all channels of f share at a direction.
+/// Terms of f shared by all channels.
 template <class T>
 struct PrincipledParts {
   T base, lobe, rise, coat, cosine;

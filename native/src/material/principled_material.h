@@ -1,4 +1,4 @@
-// The material of a scene's other objects: Blender's Principled BSDF, uniform or by pictures.
+// Blender's Principled BSDF, uniform or textured.
 #pragma once
 
 #include <memory>
@@ -17,11 +17,11 @@ struct PrincipledTextures {
   bool any() const { return varies() || alpha.given(); }
 };
 
-/// Samples the cosine, the visible normals of the lobe or those of the coat, in proportion to their albedos. Isotropic.
+/// Samples the cosine or the visible normals of the lobe or the coat, in proportion to their albedos. Isotropic.
 class PrincipledMaterial final : public Material {
  public:
-  /// Parameters are averaged over the footprint, each by itself: exact for the base colour of what is far away, while
-  /// the mean of rough and smooth is shown as one roughness between them. `alpha` holds where it has no texture.
+  /// Each parameter is averaged over the footprint separately. This is exact for the base color of distant surfaces,
+  /// but a mean of rough and smooth is rendered as one roughness in between. `alpha` applies if it has no texture.
   explicit PrincipledMaterial(const PrincipledParameters& parameters, const PrincipledTextures& textures = {},
                               float alpha = 1);
 
@@ -41,7 +41,7 @@ class PrincipledMaterial final : public Material {
   const float alpha_;
 };
 
-/// f and the density of the samples of `point`, of each direction; the batch is padded. Run-time dispatched SIMD.
+/// f and sampling density at `point` of each direction; the batch is padded. SIMD, dispatched at run time.
 void eval_principled(const PrincipledPoint& point, const Vec3& wv, const DirectionBatch& wl, RgbBatch& f,
                      ScalarBatch& pdf);
 

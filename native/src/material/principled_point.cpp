@@ -31,14 +31,13 @@ Interreflection facets_of_coat(const PrincipledParameters& p, float cosine) {
 
 float index_of_coat(const PrincipledParameters& p) { return std::max(p.coat_index, 1.0f); }
 
-/// The weight of the coat's lobe.
 float weight_of_coat(const PrincipledParameters& p, float cosine) {
   const float eta = index_of_coat(p);
   if (!(p.coat > 0) || eta <= 1) return 0;
   return std::min(p.coat, 1.0f) * facets_of_coat(p, cosine).gain(Rgb(mean_fresnel(eta))).r;
 }
 
-/// Share of the light.
+/// Share of the light that the coat reflects.
 float albedo_of_coat(const PrincipledParameters& p, float cosine) {
   const float eta = index_of_coat(p), normal = dielectric_fresnel(1.0f, eta);
   if (eta <= 1) return 0;
@@ -119,7 +118,7 @@ void PrincipledPoint::set_disney(const PrincipledParameters& p, float cosine, co
   metal = Rgb(0);
   const float normal = 0.08f * std::max(p.specular, 0.0f);
   const Rgb color = within_one(glm::mix(normal * specular_tint, base_color, metallic));
-  // Cycles' random walk between the facets takes place on the rougher surface.
+  // Cycles simulates the random walk between facets with the filtered roughness.
   const float walked = std::max(roughness, std::sqrt(filter.min_alpha));
   const Rgb gain = Interreflection(lobe, walked, cosine).gain(glm::mix(color, Rgb(1), mean_rise()));
   at_normal = gain * color;
@@ -127,7 +126,7 @@ void PrincipledPoint::set_disney(const PrincipledParameters& p, float cosine, co
   diffuse = base_color * ((1 - metallic) / kPi);
 }
 
-/// How well they are known decides the noise alone: the albedo of a metal is taken for that of a smooth one.
+/// The shares affect only the noise, so a metal's albedo is approximated by that of a smooth one.
 void PrincipledPoint::set_shares(float cosine) {
   const float albedo = ggx_albedo::of_white(roughness, cosine);
   const float gained = eta > 1 ? ggx_albedo::mean_rise(roughness, cosine, eta) : 0.0f;

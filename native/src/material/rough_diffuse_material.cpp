@@ -8,16 +8,16 @@
 namespace velour {
 namespace {
 
-constexpr float kWhole = 0.5f * kPi - 2.0f / 3;  // of uneven_albedo: at the horizon
+constexpr float kWhole = 0.5f * kPi - 2.0f / 3;  // uneven_albedo at the horizon
 
-/// The integral of s / t of the header times the cosine, over the hemisphere of light.
+/// Integral over the hemisphere of light of s / t (see the header) times the cosine.
 float uneven_albedo(float cosine) {
   if (cosine < 1e-6f) return kWhole - cosine;
   const float sine = std::sqrt(std::max(1 - cosine * cosine, 0.0f));
   return sine * (std::acos(std::min(cosine, 1.0f)) - 2.0f / 3 - sine * cosine) +
          2.0f / 3 * (sine / cosine) * (1 - sine * sine * sine);
 }
-constexpr float kMeanUnevenAlbedo = (2 * kPi - 5.6f) / 3;  // weighted by the cosine
+constexpr float kMeanUnevenAlbedo = (2 * kPi - 5.6f) / 3;  // cosine-weighted
 
 class RoughDiffuseMaterial final : public Material {
   enum Parameter { kRed, kGreen, kBlue, kEven, kUneven, kManyRed, kManyGreen, kManyBlue };
@@ -60,12 +60,12 @@ class RoughDiffuseMaterial final : public Material {
   bool isotropic() const override { return true; }
 
  private:
-  /// 1 - E of a white surface: A pi + B (pi/2 - 2/3) is 1, so that nothing cancels where it is nearly smooth.
+  /// 1 - E of a white surface. A pi + B (pi/2 - 2/3) is 1, so a nearly smooth surface causes no cancellation.
   static float one_minus_albedo(const PreparedBrdf& point, float uneven) {
     return point.parameter[kUneven] * (kWhole - uneven);
   }
 
-  /// All of it that the light has no part in.
+  /// Factor of the interreflection lobe that does not depend on the light.
   static Rgb interreflected(const PreparedBrdf& point, const Rgb& color) {
     const float lost = one_minus_albedo(point, kMeanUnevenAlbedo);                              // 1 - m
     const float of_mean = (kWhole - uneven_albedo(point.wv.z)) / (kWhole - kMeanUnevenAlbedo);  // (1 - E) / (1 - m)

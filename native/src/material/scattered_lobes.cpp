@@ -15,7 +15,7 @@ constexpr int kDissertationNeighbors = 4;
 
 Vec3 mirror(const Vec3& w) { return {-w.x, -w.y, w.z}; }
 
-/// wv as a view of the meridian phi = 0, and the azimuth by which the slices turn. At the pole the azimuth is 0.
+/// wv as a view on the meridian phi = 0, and the azimuth by which slices rotate. At the pole the azimuth is 0.
 struct Meridian {
   float sin_theta, cos_theta, sin_phi, cos_phi;
 
@@ -28,7 +28,7 @@ struct Meridian {
   float theta() const { return std::atan2(sin_theta, cos_theta); }
   Vec3 view() const { return {sin_theta, 0, cos_theta}; }
 
-  /// Turns a slice of a view of this meridian: about y, so that the view's mirror direction falls on ours, then by phi.
+  /// Rotates a slice of `view` on the meridian: about y, to align its mirror direction with ours, then by phi.
   Mat3 rotation_from(const Vec3& view, bool align) const {
     const float c = align ? cos_theta * view.z + sin_theta * view.x : 1;
     const float s = align ? sin_theta * view.z - cos_theta * view.x : 0;
@@ -36,8 +36,8 @@ struct Meridian {
   }
 };
 
-/// The lobes of a view as Gaussians of luminance. An Abel-Poisson lobe, the Henyey-Greenstein density, counts as the
-/// Gaussian of its mean cosine, which is its bandwidth.
+/// The lobes of a view as Gaussians of luminance. An Abel-Poisson lobe (the Henyey-Greenstein density) becomes the
+/// Gaussian of the same mean cosine, which is the lobe's bandwidth.
 GaussianLobes gaussians_of(const ScatteredBrdf& brdf, size_t view) {
   GaussianLobes lobes;
   for (size_t j = brdf.first_lobe[view]; j < brdf.first_lobe[view + 1]; ++j) {

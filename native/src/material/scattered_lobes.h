@@ -1,4 +1,4 @@
-// The lobes of a scattered model at any view: neighbours found, turned into the view's frame, weighted.
+// The lobes of a per-view model at any view: neighboring views are found, rotated into the view's frame and weighted.
 #pragma once
 
 #include <vector>
@@ -14,25 +14,25 @@ namespace velour {
 /// Immutable; thread-safe; no allocation after construction.
 class ScatteredLobes {
  public:
-  /// `neighbors` views are mixed, 0: the model's default. Throws Error(invalid_argument) when there are more than
+  /// Mixes `neighbors` views; 0: the model's default. Throws Error(invalid_argument) when there are more than
   /// kMaxNeighbors or when their lobes exceed LobeMixture::kCapacity.
   ScatteredLobes(const ScatteredBrdf& brdf, int neighbors);
 
   bool isotropic() const { return isotropic_; }
 
-  /// The stored views that stand for one asked for, and how their slices turn to it.
+  /// The stored views to mix for a query, and the rotations of their slices.
   struct Placement {
     ViewNeighbors views;
     Mat3 rotation[kMaxNeighbors];
   };
   Placement place(const Vec3& wv) const;
-  /// The same of the dissertation's K nearest views [T09 7.3]: `neighbors`, or four as far as their lobes fit a
-  /// mixture.
+  /// Placement by the K nearest views, as in the dissertation [T09 7.3]: K is `neighbors` or, if that is 0, four or as
+  /// many as fit in a mixture with their lobes.
   Placement place_nearest(const Vec3& wv) const;
 
   /// The mixture of f cos, with a cosine share that keeps its density positive wherever f may be.
   void gather(const Placement& placed, LobeMixture& mixture) const;
-  /// The nearest view's f cos in as many lobes as a proposal holds.
+  /// The nearest view's f cos, merged to as many lobes as a proposal holds.
   void propose(const Placement& placed, ProposalLobes& lobes) const;
 
  private:
@@ -42,10 +42,10 @@ class ScatteredLobes {
   bool isotropic_, align_views_;
   int neighbors_;
   std::vector<Vec3> views_;
-  ViewSearch search_, nearest_;  // of the model's neighbours, and of the dissertation's
-  std::vector<float> theta_;     // of the views, radians
+  ViewSearch search_, nearest_;  // for the model's neighbors and for the dissertation's
+  std::vector<float> theta_;     // polar angles of the views, radians
   ViewLobes lobes_;
-  std::vector<ProposalLobes> proposals_;  // of each view
+  std::vector<ProposalLobes> proposals_;  // per view
 };
 
 }  // namespace velour

@@ -36,7 +36,7 @@ bool resolve(const TableSampler& tables, const ScatteredBrdf& brdf, const Scatte
   return true;
 }
 
-/// Tables of the model's f cos; null where they would not serve.
+/// Tables of the model's f cos; null if they do not resolve its lobes.
 std::shared_ptr<const TableSampler> tables_of(const ScatteredBrdf& brdf, const ScatteredLobes& lobes) {
   const auto tables = std::make_shared<const TableSampler>(lobes.isotropic(), [&](const Vec3& wv, auto wl, auto f_cos) {
     const auto mixture = std::make_unique<LobeMixture>();
@@ -51,8 +51,8 @@ std::shared_ptr<const TableSampler> tables_of(const ScatteredBrdf& brdf, const S
   return resolve(*tables, brdf, lobes) ? tables : nullptr;
 }
 
-/// What the two materials share: samples of the model and their density. Where tables do not serve, all lobes of the
-/// nearest views are drawn from.
+/// Base class of both materials: samples the model and gives their density. Without usable tables it samples all lobes
+/// of the nearest views.
 class LobeSampledMaterial : public Material {
  public:
   LobeSampledMaterial(const ScatteredBrdf& brdf, int neighbors)
@@ -102,8 +102,8 @@ class ScatteredMaterial final : public LobeSampledMaterial {
     eval_mixture(point.lobes, wl, f, pdf);  // its density is overwritten
     pdf_of_draws(point, wl, pdf);
     for (int i = 0; i < wl.count; ++i) {
-      // The lobes hold f cos, which stays finite at the horizon where f does not: the floor keeps the quotient finite,
-      // and f times the cosine is the lobes' value down to cosines far below what a float direction can hold.
+      // The lobes hold f cos, which is finite at the horizon where f is not. The floor keeps the quotient finite, and f
+      // times the cosine equals the lobes' value down to cosines far below the precision of a float direction.
       const float scale = wl.z[i] > 0 ? 1 / std::max(wl.z[i], 1e-20f) : 0;
       f.r[i] = std::max(f.r[i], 0.0f) * scale;
       f.g[i] = std::max(f.g[i], 0.0f) * scale;

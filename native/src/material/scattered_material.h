@@ -1,5 +1,5 @@
-// Materials whose samples are drawn from a scattered SRBF model: the model itself, or a raw measurement with the model
-// as its proposal (reference mode).
+// Materials sampled from a per-view SRBF model: the model itself, or a raw measurement with the model as its proposal
+// (reference mode).
 #pragma once
 
 #include <memory>

@@ -12,7 +12,7 @@ constexpr uint32_t kAlbedoViews = 32, kAlbedoDraws = 32;
 
 float brightest(const Rgb& c) { return std::max({c.r, c.g, c.b, 0.0f}); }
 
-/// Luminance, of random views all over the surface, by the material's own samples.
+/// Mean albedo (luminance) over random views of the whole surface, estimated with the material's own samples.
 float mean_albedo(const Material& material) {
   const auto point = std::make_unique<PreparedBrdf>();
   double sum = 0;
@@ -124,7 +124,7 @@ class LayeredMaterial final : public Material {
     const float through = brightest(color);
     if (!(through > 0)) return Rgb(1.0f);
     const Rgb passed = color * ((stopping(site) + through) / through);
-    return glm::distance(passed, Rgb(1.0f)) < 1e-5f ? Rgb(1.0f) : passed;  // of what white is mixed in with: rounding
+    return glm::distance(passed, Rgb(1.0f)) < 1e-5f ? Rgb(1.0f) : passed;  // rounding errors of mixes with white
   }
 
   bool glows() const override { return !layers_.glowing.empty(); }
@@ -144,14 +144,14 @@ class LayeredMaterial final : public Material {
     for (const ColorLayer& l : layers_.transparent) sum += l.at(site);
     return sum;
   }
-  /// What decides how many rays meet the surface; a lamp need not stop more than a wall does.
+  /// Decides how many rays meet the surface. An emissive layer need not stop more rays than a wall does.
   float stopping(const SurfaceSite& site) const {
     float sum = 0;
     for (const ReflectingLayer& l : layers_.reflecting) sum += l.weight.at(site);
     for (const ColorLayer& l : layers_.glowing) sum += std::min(l.weight.at(site), 1.0f);
     return sum;
   }
-  /// alpha(), or 1 where nothing is there that could be asked for.
+  /// alpha(), or 1 where it is 0 and the layers are not evaluated.
   float there(const SurfaceSite& site) const {
     if (opaque()) return 1.0f;
     const float a = alpha(site);
@@ -165,7 +165,7 @@ class LayeredMaterial final : public Material {
     }
   }
 
-  /// Those of `u` whose first number lies in `range`.
+  /// Samples the layer for those `u` whose first coordinate lies in `range`.
   void sample_layer(const PreparedBrdf& point, size_t layer, const Vec2& range, std::span<const Vec2> u,
                     DirectionBatch& wl) const {
     Vec2 some[DirectionBatch::kCapacity];
@@ -183,7 +183,7 @@ class LayeredMaterial final : public Material {
   }
 
   const ShaderLayers layers_;
-  std::vector<float> albedo_;  // of reflecting layers, in the mean; only steers sampling
+  std::vector<float> albedo_;  // mean albedo of each reflecting layer; only steers sampling
 };
 
 }  // namespace

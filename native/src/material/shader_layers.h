@@ -1,4 +1,4 @@
-// Materials that are mixed and added of others, with what lets light through and what glows.
+// Materials mixed and added from reflecting, transparent and emissive layers.
 #pragma once
 
 #include <memory>
@@ -11,18 +11,18 @@
 
 namespace velour {
 
-/// One of the numbers whose product is the weight of a layer.
+/// One factor of a layer's weight.
 struct LayerFactor {
-  /// Of a mix, its factor or 1 minus that, within [0, 1]; or any number that is not negative.
+  /// share: factor of a mix, in [0, 1]; rest: 1 minus that; gain: any non-negative number.
   enum class Kind : int { share = 0, rest = 1, gain = 2 };  // values of velour.h
   Kind kind = Kind::share;
   float value = 1;
-  TextureSlot<float> texture{};  // in its place
+  TextureSlot<float> texture{};  // replaces `value`
 
   float at(const SurfaceSite& site) const;
 };
 
-/// Empty: 1.
+/// Product of the factors; 1 if empty.
 struct LayerWeight {
   std::vector<LayerFactor> factors{};
 
@@ -30,16 +30,16 @@ struct LayerWeight {
   bool varies() const;
 };
 
-/// What reflects; its own alpha and emission are not looked at.
+/// A reflecting layer. The alpha and emission of its material are ignored.
 struct ReflectingLayer {
   std::shared_ptr<const Material> material;
   LayerWeight weight{};
-  /// Below the coat of these parameters, which dims it as seen from the surface's own normal, however a normal map
-  /// turns the material.
+  /// Parameters of a coat above the layer. The coat dims it about the surface normal, regardless of a normal map on the
+  /// material.
   std::optional<PrincipledParameters> coated{};
 };
 
-/// What lets light through with a colour, or glows with a radiance.
+/// A transparent layer with a color, or an emissive layer with a radiance.
 struct ColorLayer {
   Rgb color{1.0f};
   TextureSlot<Rgb> texture{};
@@ -49,17 +49,17 @@ struct ColorLayer {
   bool varies() const { return texture.given() || weight.varies(); }
 };
 
-/// Sums: mixes are layers whose weights add up to 1.
+/// A sum of layers; the weights of a mix add up to 1.
 struct ShaderLayers {
   std::vector<ReflectingLayer> reflecting{};
   std::vector<ColorLayer> transparent{}, glowing{};
 };
 
-/// f is the weighted sum of the layers', and samples are drawn from one of them, with a probability of its weight times
-/// its mean albedo: value, density and sample are those of one material. With T, the brightest channel of what is let
-/// through, and W, the sum of the other weights, a ray meets the surface with probability W / (W + T) - what is there
-/// is as much brighter, and what passes is changed to have the colour and the mean that the layers give it. Where white
-/// is mixed in, W + T is 1, and what passes is not changed. There are no proposal lobes: `product` is `mis` here.
+/// f is the weighted sum of the layers' f. Samples come from one layer, with a probability proportional to its weight
+/// times its mean albedo; value, density and sample describe the whole material. Let T be the brightest channel of the
+/// transmitted color and W the sum of the other weights. A ray meets the surface with probability W / (W + T); f and
+/// emission are brightened accordingly, and passing light is scaled to the color and mean that the layers give it. In a
+/// mix with white, W + T is 1 and passing light is unchanged. There are no proposal lobes: `product` acts as `mis`.
 std::shared_ptr<const Material> make_layered_material(ShaderLayers layers);
 
 }  // namespace velour

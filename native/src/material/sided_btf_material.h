@@ -1,4 +1,4 @@
-// A model of a BTF that is made of sides, as a material: whatever its evaluator.
+// Material of a BTF model that consists of sides, for any evaluator.
 #pragma once
 
 #include <memory>
@@ -14,7 +14,7 @@
 
 namespace velour {
 
-/// Looks at one side of a BTF for BtfDraws.
+/// Evaluates the looks of one side of a BTF for BtfDraws.
 template <typename Evaluator>
 class BtfLooks {
  public:
@@ -30,12 +30,12 @@ class BtfLooks {
     }
     return broad;
   }
-  /// BtfLook::mirror.
+  /// BtfLook::mirror at a finished point.
   static float mirror(const Evaluator& evaluator, const typename Evaluator::Point& point, const Vec3& normal) {
     return radiance(evaluator, point, BtfDraws::mirror(point.wv, normal));
   }
 
-  /// Random places and views of `side`.
+  /// Examples at random points and views of `side`.
   std::vector<BtfDraws::Example> examples(const Evaluator& evaluator, uint32_t side) const {
     constexpr uint32_t kPlaces = 48;
     std::vector<BtfDraws::Example> examples;
@@ -55,7 +55,7 @@ class BtfLooks {
   }
 
  private:
-  /// f cos of luminance.
+  /// Luminance of f cos.
   static float radiance(const Evaluator& evaluator, const typename Evaluator::Point& point, const Vec3& wl) {
     return wl.z > 0 ? luminance(evaluator.value(point, wl)) * wl.z : 0.0f;
   }
@@ -63,9 +63,9 @@ class BtfLooks {
   std::array<typename Evaluator::Light, BtfLook::kBroad> broad_;
 };
 
-/// `Evaluator`: SrbfEvaluator or one of the same members; `kPoint`: where its points are. Texture coordinates are in
-/// tiles: the BTF repeats with every whole number. Of light from the other side it is asked with wl.z > 0, as if
-/// mirrored.
+/// `Evaluator`: SrbfEvaluator or a class with the same members; `kPoint`: its point in PreparedBrdf. Texture
+/// coordinates are in tiles: the BTF repeats at every integer. Light directions on the other side are passed mirrored,
+/// with wl.z > 0.
 template <typename Evaluator, typename Evaluator::Point PreparedBrdf::*kPoint>
 class SidedBtfMaterial final : public Material {
  public:
@@ -144,7 +144,7 @@ class SidedBtfMaterial final : public Material {
     BtfLookTable table;  // empty unless draws.asks()
   };
 
-  /// A BTF of one side shows it from behind as well.
+  /// A one-sided BTF shows the same side from behind.
   const std::optional<Side>& side_of(const SurfaceSite& site) const {
     return sides_[site.back && (sides_[1] || light_ == BtfLight::other_side)];
   }
@@ -153,7 +153,7 @@ class SidedBtfMaterial final : public Material {
     return wl.z > 0 ? evaluator_.value(point.*kPoint, wl) : Rgb(0.0f);
   }
 
-  /// The mixture's value, 0, is to be overwritten.
+  /// Sets f to the mixture's value, 0; the caller overwrites it.
   static void eval_density(const PreparedBrdf& point, const DirectionBatch& wl, RgbBatch& f, ScalarBatch& pdf) {
     if (!point.value_only) return eval_warped(point.warped, wl, f, pdf);
     std::fill_n(pdf.v, wl.count, 0.0f);

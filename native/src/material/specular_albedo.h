@@ -15,7 +15,7 @@ using Fresnel = std::function<float(float cosine)>;
 class SpecularAlbedo {
  public:
   SpecularAlbedo() = default;
-  /// Albedo of the GGX lobe of roughness `alpha` by quadrature, for views along x.
+  /// Albedo of the GGX lobe of roughness `alpha` by quadrature, for views in the xz plane.
   SpecularAlbedo(const Vec2& alpha, const Fresnel& fresnel);
   float at(float cosine) const;
 

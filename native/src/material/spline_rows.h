@@ -1,4 +1,4 @@
-// The rows of a parametric model's coefficients that a view mixes.
+// Rows of a parametric model's coefficients that are mixed for a view.
 #pragma once
 
 #include "sphere/view_spline.h"
@@ -7,10 +7,10 @@ namespace velour {
 
 inline constexpr float kLog2E = 1.44269504f;
 
-/// What the SIMD kernel reads: rows of [parameter][lobe], and how they are mixed.
+/// Input of the SIMD kernel: rows of [parameter][lobe] and their weights.
 struct SplineRows {
   static constexpr int kIsotropicTaps = 3;
-  const float* half;     // of the lobes
+  const float* half;     // 1 for half-vector lobes, else 0
   const float* control;  // the first row
   int stride;            // from one parameter to the next
   int row;               // from one row to the next

@@ -1,4 +1,4 @@
-// A BTF as sums of multivariate SRBFs, as a material.
+// Material of a BTF modeled as sums of multivariate SRBFs.
 #pragma once
 
 #include <memory>
@@ -9,7 +9,7 @@
 
 namespace velour {
 
-/// Texture coordinates are in tiles: the BTF repeats with every whole number.
+/// Texture coordinates are in tiles: the BTF repeats at every integer.
 std::shared_ptr<const Material> make_srbf_btf_material(std::shared_ptr<const SrbfBtf> btf,
                                                        BtfLight light = BtfLight::viewers_side);
 

@@ -1,4 +1,4 @@
-// Where on a surface, and over how much of it, a material is asked for.
+// Position and footprint on a surface at which a material is evaluated.
 #pragma once
 
 #include <array>
@@ -8,39 +8,37 @@
 
 namespace velour {
 
-/// A place of a picture: `uv`, and the sides of the parallelogram about it that the ray stands for.
+/// Texture coordinates and ray footprint: `uv`, and the sides of the parallelogram about it that the ray covers.
 struct SitePlace {
   Vec2 uv{0.0f};
   Mat2 footprint{0.0f};
 };
 
-/// Of a material that varies over the surface (Material::varies); uniform ones do not look at it.
+/// Input of materials that vary over the surface (Material::varies); uniform ones ignore it.
 struct SurfaceSite {
-  Vec2 uv{0.0f};  // the first coordinate along the local frame's +x; +y is the side that the second grows to
-  /// Columns: the sides of the parallelogram about `uv` that the ray stands for, in texture coordinates. Zero: a point.
-  /// Seen at a grazing angle it is long, but finite.
+  Vec2 uv{0.0f};  // u grows along the local frame's +x; +y is on the side to which v grows
+  /// Ray footprint: sides (columns) of a parallelogram about `uv`, in texture coordinates. Zero: a point. At a grazing
+  /// angle it is long, but finite.
   Mat2 footprint{0.0f};
-  /// The same on other sets of texture coordinates, of materials that look at several (place()).
+  /// Places on further sets of texture coordinates, for materials that use several (place()).
   static constexpr size_t kMostSets = 4;  // `uv` included
   std::array<SitePlace, kMostSets - 1> others{};
-  /// Colours of the mesh's corners, interpolated; of materials that look at them. Nothing is averaged over a footprint.
+  /// Interpolated corner colors of the mesh, for materials that use them. Not averaged over the footprint.
   static constexpr size_t kMostColorSets = 4;
   std::array<Rgb, kMostColorSets> colors{};
-  /// Of BTFs of open structure whose outlines rays find for themselves (HoledBtfMaterial): from `uv` to its mirror
-  /// image at an outline that is near enough for texels to reach over it; else zero.
+  /// For HoledBtfMaterial: offset from `uv` to its mirror image at a silhouette close enough for texels to reach over
+  /// it; else zero.
   Vec2 beyond_outline{0.0f};
-  /// Of surfaces with a normal map (SurfaceMaterial::relief), local: tangent, bitangent and normal that the map's
-  /// components are along, not normalised; zero where there are none. And the geometric normal, on the viewer's side.
+  /// For normal-mapped surfaces (SurfaceMaterial::relief), local: tangent, bitangent and normal for the map's
+  /// components, not normalized; zero if there are none. `ground` is the geometric normal, on the viewer's side.
   Mat3 relief{0.0f};
   Vec3 ground{0, 0, 1};
-  bool back =
-      false;  // seen from the side that the mesh's normal does not point to; uv and +x, +y are those of the front
+  bool back = false;  // seen from behind the mesh normal; uv, +x and +y are those of the front
 
-  /// On a set of texture coordinates, below kMostSets; 0: `uv`.
+  /// Place on a set of texture coordinates below kMostSets; 0: `uv`.
   SitePlace place(size_t set) const { return set == 0 ? SitePlace{uv, footprint} : others[set - 1]; }
 
-  /// All of a texture that repeats, and grey in the place of a mesh's colours: what a table or a fit for a whole
-  /// material looks at.
+  /// The average of a repeating texture, and gray in place of a mesh's colors: for tables and fits of a whole material.
   static SurfaceSite everywhere() {
     SurfaceSite site{.uv = Vec2(0.5f), .footprint = Mat2(1.0f)};
     site.others.fill(site.place(0));

@@ -12,8 +12,8 @@
 #define VELOUR_MATERIAL_TABLE_LAYOUT
 namespace velour {
 
-/// A node's table: densities of d at the rows' edges and the masses up to them, densities per (d, azimuth) at the
-/// corners of cells, and their integrals over the columns up to and with each, which are linear in d.
+/// Layout of a node's table: densities of d at the row edges and the masses up to them, densities per (d, azimuth) at
+/// the cell corners, and their integrals over the columns up to and including each, which are linear in d.
 struct TableLayout {
   using G = TableGrid;
   static constexpr int kCorners = (G::kRows + 1) * G::kColumns;
@@ -46,7 +46,7 @@ namespace hn = hwy::HWY_NAMESPACE;
 using G = TableGrid;
 using L = TableLayout;
 
-constexpr float kColumnWidth = 4.0f / G::kColumns;  // the square's way round is 4
+constexpr float kColumnWidth = 4.0f / G::kColumns;  // the azimuth runs from 0 to 4 around the square
 
 /// The mixture's mass up to each row.
 template <int kNodes>
@@ -72,7 +72,7 @@ HWY_INLINE V mix(V a, V b, V t) {
   return hn::MulAdd(t, hn::Sub(b, a), a);
 }
 
-/// Density of the mixture at a corner of each lane.
+/// Density of the mixture at one corner per lane.
 template <int kNodes, class D, class V = hn::Vec<D>, class I>
 HWY_INLINE V mixed(D d, const TablePoint& point, I corner) {
   V sum = hn::Mul(hn::Set(d, point.weight[0]), hn::GatherIndex(d, point.table[0] + L::kValue, corner));
@@ -82,7 +82,7 @@ HWY_INLINE V mixed(D d, const TablePoint& point, I corner) {
   return sum;
 }
 
-/// The place in [0, 1] that the integral of the line from `a` to `b` reaches `mass` at: a t + (b - a) t^2 / 2.
+/// t in [0, 1] where the integral of the line from `a` to `b`, a t + (b - a) t^2 / 2, reaches `mass`.
 template <class D, class V = hn::Vec<D>>
 HWY_INLINE V line_inverse(D d, V a, V b, V mass) {
   const V twice = hn::Mul(hn::Set(d, 2.0f), hn::Max(mass, hn::Zero(d)));
@@ -126,7 +126,7 @@ HWY_INLINE hn::Vec<D> density(D d, const TablePoint& point, hn::Vec<D> x, hn::Ve
   return hn::Mul(mix<D>(between(0), between(1), t), hn::Max(round, hn::Set(d, 0.5f)));
 }
 
-/// How many of `count` rising numbers are at most x.
+/// Number of entries at most x among `count` increasing numbers.
 HWY_INLINE int count_up_to(const float* numbers, int count, float x) {
   const hn::CappedTag<float, 16> d;
   size_t found = 0;
@@ -136,15 +136,15 @@ HWY_INLINE int count_up_to(const float* numbers, int count, float x) {
   return static_cast<int>(found);
 }
 
-/// Draws on their way, a lane each.
+/// Samples in progress, one per lane.
 struct alignas(64) TableDraws {
   static constexpr int kLanes = DirectionBatch::kCapacity;
   float u[kLanes], v[kLanes];
   float low[kLanes], height[kLanes], inverse_height[kLanes];  // of the row, in d
   float first[kLanes], last[kLanes];                          // densities at the ends of the row, then of the cell
-  float rest[kLanes];                                         // mass up to the draw in the row, then in the cell
+  float rest[kLanes];                                         // mass up to the sample in the row, then in the cell
   float fall[kLanes];                                         // d
-  float share[kLanes], target[kLanes];  // of the row's end, and the integral over the columns up to the draw
+  float share[kLanes], target[kLanes];  // weight of the row's end; integral over the columns up to the sample
   float column[kLanes];
   int row[kLanes];
 };
@@ -167,7 +167,7 @@ HWY_INLINE void choose_row(const TablePoint& point, const float (&below)[G::kRow
   draws.rest[i] = draws.u[i] - below[row];
 }
 
-/// d in the row, and what the column is chosen by.
+/// Computes d in the row, and the target integral that selects the column.
 template <class D>
 HWY_INLINE void place_in_rows(D d, int at, TableDraws& draws) {
   const auto first = hn::Load(d, draws.first + at), last = hn::Load(d, draws.last + at);
@@ -304,14 +304,14 @@ namespace {
 using G = TableGrid;
 using L = TableLayout;
 
-constexpr int kRadiusCells = 64, kSquareCells = 16;  // of the nodes
-constexpr float kLowestNode = 0.01f;                 // cosine of the last node's view
-constexpr float kMargin = 0.02f;                     // of the defensive cosine: views between nodes have other horizons
-constexpr float kNoMass = 1e-20f;                    // of a black node: gives way to any other
+constexpr int kRadiusCells = 64, kSquareCells = 16;  // cells of the nodes
+constexpr float kLowestNode = 0.01f;                 // minimum view cosine of a node
+constexpr float kMargin = 0.02f;                     // raises the defensive cosine: horizons differ between the nodes
+constexpr float kNoMass = 1e-20f;                    // mass of a black node, negligible beside any other
 
 Vec3 mirror(const Vec3& w) { return {-w.x, -w.y, w.z}; }
 
-/// The frame about the mirror direction, turned there from that about the normal without rotation about it.
+/// Frame about the mirror direction: the frame about the normal, rotated there without twist.
 void set_frame(const Vec3& wv, TablePoint& point) {
   const Vec3 m = point.axis = mirror(wv);
   const float a = 1 / (1 + m.z), b = -m.x * m.y * a;
@@ -319,20 +319,19 @@ void set_frame(const Vec3& wv, TablePoint& point) {
   point.bitangent = {b, 1 - m.y * m.y * a, -m.y};
 }
 
-/// The same, and then turned about the mirror direction so that the view's azimuth does not show.
+/// Frame about the mirror direction whose tangent lies in the plane of incidence, so that it turns with the view.
 void set_frame_of_plane(const Vec3& wv, const ViewPlace& place, TablePoint& point) {
   point.axis = mirror(wv);
   point.tangent = {wv.z * place.cos_phi, wv.z * place.sin_phi, place.sine};
   point.bitangent = {-place.sin_phi, place.cos_phi, 0};
 }
 
-/// Where the way round the square is `way`, in the frame's plane; on the square.
+/// Point of the square |x| + |y| = 1 at azimuth coordinate `way`, in the frame's plane.
 Vec2 on_square(float way) {
   const float along = way < 2 ? 1 - way : way - 3;
   return {along, way < 2 ? 1 - std::abs(along) : std::abs(along) - 1};
 }
 
-/// Direction of a corner.
 Vec3 corner_direction(const TablePoint& frame, int row, int column) {
   const Vec2 q = glm::normalize(on_square(4.0f * static_cast<float>(column) / G::kColumns));
   const float d = G::row_edge(row), sine = std::sqrt(std::max(d * (2 - d), 0.0f));
@@ -403,7 +402,7 @@ void TableSampler::fill_node(const Luminance& luminance, int node) {
   const auto reflected = [&](int row, int column) {
     const size_t i = place(row, column);
     const float f = at(f_cos, i).v[i % DirectionBatch::kCapacity];
-    return f > 0 ? std::min(f, 1e20f) : 0.0f;  // not of a NaN
+    return f > 0 ? std::min(f, 1e20f) : 0.0f;  // NaN counts as 0
   };
   const float mass = std::max(fill(reflected), kNoMass);
   const float defence = mass * kDefensiveShare / (1 - kDefensiveShare) / (kPi * (1 + kMargin) * (1 + kMargin));

@@ -1,4 +1,4 @@
-// A BTF as clustered tensors, as a material.
+// Material of a BTF modeled as clustered tensors.
 #pragma once
 
 #include <memory>
@@ -9,7 +9,7 @@
 
 namespace velour {
 
-/// Texture coordinates are in tiles: the BTF repeats with every whole number.
+/// Texture coordinates are in tiles: the BTF repeats at every integer.
 std::shared_ptr<const Material> make_tensor_btf_material(std::shared_ptr<const TensorBtf> btf,
                                                          BtfLight light = BtfLight::viewers_side);
 

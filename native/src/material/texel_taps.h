@@ -1,4 +1,4 @@
-// Which texels of a repeating tile's pyramid a site of the surface is made of.
+// Texels of a repeating tile's pyramid that a site of the surface covers.
 #pragma once
 
 #include <algorithm>
@@ -10,7 +10,7 @@
 
 namespace velour {
 
-/// Calls `visit(level, texel, weight)` for the four texels about `uv` of one level, `weight` in all.
+/// Calls `visit(level, texel, weight)` for the four texels around `uv` on one level; weights sum to `weight`.
 template <typename Levels, typename Visit>
 void visit_bilinear(const Vec2& uv, const Levels& levels, size_t level, float weight, const Visit& visit) {
   const Vec2 place = std::isfinite(uv.x + uv.y) ? uv : Vec2(0.0f);
@@ -18,7 +18,7 @@ void visit_bilinear(const Vec2& uv, const Levels& levels, size_t level, float we
   for (size_t corner = 0; corner < 4; ++corner) visit(level, texels.index[corner], weight * texels.weight[corner]);
 }
 
-/// The same of the two levels about `level`.
+/// visit_bilinear() on the two levels around `level`.
 template <typename Levels, typename Visit>
 void visit_trilinear(const Vec2& uv, const Levels& levels, float level, float weight, const Visit& visit) {
   const float place = std::clamp(level, 0.0f, static_cast<float>(levels.size() - 1));
@@ -28,8 +28,8 @@ void visit_trilinear(const Vec2& uv, const Levels& levels, float level, float we
   if (part > 0) visit_bilinear(uv, levels, fine + 1, weight * part, visit);
 }
 
-/// The same of all that a site's footprint covers, 1 in all. `levels`: a sequence of what has a width and a height, the
-/// finest first. Texture coordinates count tiles.
+/// Visits all texels under a site's footprint; weights sum to 1. `levels`: a sequence of objects with a width and a
+/// height, finest first. Texture coordinates are in tiles.
 template <typename Levels, typename Visit>
 void visit_texels(const SurfaceSite& site, const Levels& levels, const Visit& visit) {
   const FootprintTaps taps = footprint_taps(site.footprint, Vec2(levels[0].width, levels[0].height));

@@ -13,14 +13,14 @@
 namespace velour {
 namespace {
 
-/// Of small numbers; std::floor is a call where no newer instruction set is named.
+/// Floor of a small number; std::floor is a library call on the baseline instruction set.
 int floor_of(float v) {
   const int whole = static_cast<int>(v);
   return whole - (v < static_cast<float>(whole) ? 1 : 0);
 }
 
 float usable(float v, const ValueFaults& faults) { return faults.finite(v); }
-/// A color with a channel that is no number is none.
+/// A color with a NaN channel becomes black.
 Rgb usable(const Rgb& c, const ValueFaults& faults) {
   if (std::isnan(c.r + c.g + c.b)) return Rgb(0.0f);
   return {faults.finite(c.r), faults.finite(c.g), faults.finite(c.b)};
@@ -53,7 +53,7 @@ typename Texture<T>::Level Texture<T>::half(const Level& level) {
   return next;
 }
 
-/// For `i` from -1 to size of a place that is reduced() to the picture.
+/// Texel index for `i` in [-1, size], from a position after reduced(); -1: outside the image.
 template <class T>
 int Texture<T>::wrapped(int i, int size) const {
   switch (options_.wrap) {
@@ -61,7 +61,7 @@ int Texture<T>::wrapped(int i, int size) const {
       return i < 0 ? i + size : (i >= size ? i - size : i);
     case TextureWrap::clip:
       return i < 0 || i >= size ? -1 : i;
-    case TextureWrap::mirror:  // at the border both sides are alike
+    case TextureWrap::mirror:  // the border texel repeats, as with extend
     case TextureWrap::extend:
       break;
   }
@@ -81,7 +81,7 @@ Vec2 Texture<T>::reduced(const Vec2& uv) const {
   if (options_.wrap == TextureWrap::repeat) return given - glm::floor(given);
   if (options_.wrap == TextureWrap::mirror) return 1.0f - glm::abs(given - 2.0f * glm::floor(0.5f * given) - 1.0f);
   if (options_.wrap == TextureWrap::extend) return glm::clamp(given, Vec2(0.0f), Vec2(1.0f));
-  return glm::clamp(given, Vec2(-2.0f), Vec2(3.0f));  // whole numbers of texels, and still outside
+  return glm::clamp(given, Vec2(-2.0f), Vec2(3.0f));  // limits texel indices; what is outside stays outside
 }
 
 template <class T>

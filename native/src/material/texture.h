@@ -1,4 +1,4 @@
-// Pictures on surfaces, averaged over what a ray stands for.
+// Textures, averaged over ray footprints.
 #pragma once
 
 #include <cstdint>
@@ -9,9 +9,9 @@
 
 namespace velour {
 
-/// What lies beyond the picture: itself again, its border, nothing (zero), itself mirrored. Blender's extensions.
+/// Values beyond the image: repeated, border texels, zero, mirrored. Blender's extension modes.
 enum class TextureWrap : int { repeat = 0, extend = 1, clip = 2, mirror = 3 };  // values of velour.h
-/// Between texels, where they are larger than the ray's footprint; smaller ones are averaged whatever it says.
+/// Interpolation of texels that are larger than the ray's footprint; smaller ones are always averaged.
 enum class TextureFilter : int { closest = 0, linear = 1 };  // values of velour.h
 
 struct TextureOptions {
@@ -19,18 +19,18 @@ struct TextureOptions {
   TextureFilter filter = TextureFilter::linear;
 };
 
-/// An immutable picture of T (float or Rgb, float32, linear) and its mip levels: each half as large as the one below,
-/// rounded down, its texels exact means of the areas that they cover, so that every level has the picture's mean.
-/// (0, 0) is the picture's lower left corner, (1, 1) its upper right. Thread-safe; no allocation after construction.
+/// An immutable image of T (float or Rgb, float32, linear) and its mip levels. Each level is half as large as the one
+/// below, rounded down, and its texels are exact means of the areas they cover, so every level has the image's mean.
+/// (0, 0) is the lower left corner of the image, (1, 1) the upper right. Thread-safe; no allocation after construction.
 template <class T>
 class Texture {
  public:
   /// `texels`: width x height, row 0 at the bottom; NaN counts as 0, infinity as the largest finite value. Throws
-  /// Error(invalid_argument) when there are none, or not that many.
+  /// Error(invalid_argument) if there are none or their number differs.
   Texture(int width, int height, std::vector<T> texels, const TextureOptions& options);
 
-  /// About the mean over the parallelogram of the sides `footprint` (columns) about `uv`, both in texture coordinates:
-  /// trilinear look-ups at the places of footprint_taps. A coordinate that is not finite counts as 0.
+  /// Approximate mean over the parallelogram with sides `footprint` (columns) about `uv`, both in texture coordinates,
+  /// from trilinear look-ups at footprint_taps(). A coordinate that is not finite counts as 0.
   T look_up(const Vec2& uv, const Mat2& footprint) const;
 
   int width() const { return levels_[0].width; }

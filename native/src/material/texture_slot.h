@@ -1,4 +1,4 @@
-// A picture, or a mesh's own colours, in the place of a number or a colour of a material.
+// A texture or a mesh's own colors in place of a number or a color of a material.
 #pragma once
 
 #include <algorithm>
@@ -12,15 +12,15 @@
 
 namespace velour {
 
-/// With neither the parameter's own value holds.
+/// If empty, the parameter's own value applies.
 template <class T>
 struct TextureSlot {
   std::shared_ptr<const Texture<T>> texture;
-  TextureMap map;           // of the surface's coordinates to the picture's
-  size_t set;               // which of them (SurfaceSite::place), or of the mesh's colours
-  bool of_corners = false;  // the mesh's colours (SurfaceSite::colors); a number is their first channel
+  TextureMap map;           // from the surface's coordinates to the image's
+  size_t set;               // set of coordinates (SurfaceSite::place) or of mesh colors
+  bool of_corners = false;  // use the mesh's colors (SurfaceSite::colors); a number takes the first channel
 
-  // Not an aggregate: of those in braced lists GCC 12 warns of members that were not initialised.
+  // Not an aggregate: GCC 12 warns about uninitialized members of aggregates in braced lists.
   TextureSlot(std::shared_ptr<const Texture<T>> picture = nullptr, const TextureMap& to_picture = {},
               size_t of_surface = 0) noexcept
       : texture(std::move(picture)), map(to_picture), set(of_surface) {}
@@ -48,7 +48,7 @@ struct TextureSlot {
   }
 };
 
-/// How many sets of a mesh's texture coordinates, and of its corners' colours, a material looks at.
+/// Number of texture coordinate sets and corner color sets of a mesh that a material uses.
 struct MeshSets {
   uint8_t uvs = 0, colors = 0;
 

@@ -11,7 +11,7 @@ namespace {
 
 constexpr uint32_t kPlaces = 64, kLights = 64;
 
-/// Under an even sky over random places and views, in the mean: luminance.
+/// Luminance reflected under uniform light, summed over random points and views.
 double mean_albedo(const Material& material, bool back) {
   const auto point = std::make_unique<PreparedBrdf>();
   double sum = 0;
@@ -48,7 +48,7 @@ void ThroughMaterial::prepare(const Vec3& wv, const SurfaceSite& site, PreparedB
   point.through_share = share_[site.back];
 }
 
-/// Each knows nothing but 0 on its other side, and the density of what it draws there.
+/// Each material gives f = 0 on its other side, and the density of its samples there.
 void ThroughMaterial::eval(const PreparedBrdf& point, const DirectionBatch& wl, RgbBatch& f, ScalarBatch& pdf) const {
   DirectionBatch beyond = wl;
   for (int i = 0; i < wl.count; ++i) beyond.z[i] = -wl.z[i];

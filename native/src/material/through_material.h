@@ -1,4 +1,4 @@
-// Light that comes through a surface to its viewer, beside light that the surface sends back.
+// Material that transmits light in addition to reflecting it.
 #pragma once
 
 #include <memory>
@@ -7,10 +7,10 @@
 
 namespace velour {
 
-/// f of `reflected` where the light is on the viewer's side, of `through` where it is on the other one. Both are asked
-/// with directions of z > 0: those of `through` are mirrored in the surface. A sample is drawn from `through` with the
-/// probability of its share of what both give under even light from everywhere, seen from the same side of the surface:
-/// at least kLeastShare, at most 1 - kLeastShare. There are no proposal lobes: `product` is `mis` here.
+/// f of `reflected` for light on the viewer's side, of `through` for light on the other side. Both are evaluated with
+/// directions of z > 0; those of `through` are mirrored in the surface. `through` is sampled with the probability of
+/// its share of the albedo of both under uniform light, seen from the same side of the surface: at least kLeastShare,
+/// at most 1 - kLeastShare. There are no proposal lobes: `product` acts as `mis`.
 class ThroughMaterial final : public Material {
  public:
   ThroughMaterial(std::shared_ptr<const Material> reflected, std::shared_ptr<const Material> through);
@@ -26,7 +26,7 @@ class ThroughMaterial final : public Material {
   bool varies() const override { return true; }
   Vec2 texels() const override { return reflected_->texels(); }
   bool isotropic() const override { return false; }
-  /// Of samples, seen from the front and from behind.
+  /// Probability of sampling `through`, seen from the front or from behind.
   float share(bool back) const { return share_[back]; }
 
  private:

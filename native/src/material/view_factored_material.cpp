@@ -25,7 +25,7 @@ class ViewFactoredMaterial final : public CosineBtfMaterial {
     }
   }
 
-  /// The views' components one after the other, each times the weight of its view.
+  /// Stores the components of the views one after another, each times the weight of its view.
   void prepare(const Vec3& wv, const SurfaceSite& site, PreparedBrdf& point) const override {
     point.wv = wv;
     FactoredPoint& p = point.factored;
@@ -76,7 +76,7 @@ class ViewFactoredMaterial final : public CosineBtfMaterial {
             expanded(btf_->companding, color.b)};
   }
 
-  /// Of the components of a view and an axis.
+  /// Sum over the components of one view and axis.
   float sum_of(const ComponentRanges::Range& range, const PairInterpolation::Corners& lights,
                const float* coefficient) const {
     float sum = 0;
@@ -94,7 +94,7 @@ class ViewFactoredMaterial final : public CosineBtfMaterial {
   ComponentRanges ranges_;
   bool two_sided_;
   std::vector<float> light_value_;               // [light][component]
-  std::vector<std::vector<float>> texel_value_;  // a level: [texel][component]
+  std::vector<std::vector<float>> texel_value_;  // per level: [texel][component]
 };
 
 }  // namespace

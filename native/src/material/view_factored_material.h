@@ -1,4 +1,4 @@
-// A BTF whose components serve a view each, evaluated at a site of a surface.
+// Material of a factored BTF whose components belong to one view each.
 #pragma once
 
 #include <memory>
@@ -9,8 +9,8 @@
 
 namespace velour {
 
-/// As make_factored_material, of a BTF with by_view(): of all components only those of the views about a direction,
-/// three at most, are looked at.
+/// Like make_factored_material, for a BTF with by_view(): evaluates only the components of the views around a
+/// direction, three at most.
 std::shared_ptr<const Material> make_view_factored_material(std::shared_ptr<const FactoredBtf> btf,
                                                             BtfLight light = BtfLight::viewers_side);
 

@@ -1,4 +1,4 @@
-// The lobes of many views, kept the way a LobeMixture takes them up.
+// The lobes of many views, in the layout that LobeMixture appends.
 #pragma once
 
 #include <vector>
@@ -7,7 +7,7 @@
 
 namespace velour {
 
-/// Views one after another: add() their lobes, then end_view(). Structure of arrays.
+/// Built view by view: add() the lobes, then end_view(). Structure of arrays.
 class ViewLobes {
  public:
   explicit ViewLobes(Kernel kernel) : kernel_(kernel) {}
@@ -16,8 +16,8 @@ class ViewLobes {
   /// `diffuse`: coefficient of the clipped cosine.
   void end_view(const Rgb& diffuse);
 
-  /// Adds a view's lobes, turned by `rotation` and times `weight`, to `mixture`. The diffuse part belongs to the
-  /// normal: it does not turn with the highlight.
+  /// Appends a view's lobes, rotated and times `weight`, to `mixture`. The diffuse part is tied to the normal and does
+  /// not rotate with the highlight.
   void append_to(LobeMixture& mixture, size_t view, const Mat3& rotation, float weight) const;
   Kernel kernel() const { return kernel_; }
 

@@ -9,21 +9,21 @@ namespace velour {
 
 namespace {
 
-/// Of unit directions. The chord keeps small angles that a dot product would lose.
+/// Angle between unit directions, from the chord, which keeps small angles that a dot product would lose.
 float angle_between(const Vec3& a, const Vec3& b) { return 2 * std::asin(std::min(0.5f * glm::distance(a, b), 1.0f)); }
 
-/// The floor is below the rounding of a float direction and stands for a hit.
+/// The floor is below the rounding of a float direction and represents an exact hit.
 float inverse_angle(const Vec3& a, const Vec3& b) {
   constexpr float kHit = 1e-8f;
   return 1 / std::max(angle_between(a, b), kHit);
 }
 
-/// Drops what cannot be seen, which makes a hit exact and saves its neighbours' lobes, and scales the sum to 1.
+/// Drops negligible weights, which makes a hit exact and saves its neighbors' lobes, and scales the sum to 1.
 void normalize(ViewNeighbors& set) {
   constexpr float kNegligible = 1e-5f;
   float total = 0;
   for (int i = 0; i < set.count; ++i) total += set.weight[i];
-  if (total <= 0) {  // every candidate equally far: nothing tells them apart
+  if (total <= 0) {  // all candidates are equally far
     std::fill_n(set.weight, set.count, 1.0f);
     total = static_cast<float>(set.count);
   }
@@ -67,9 +67,9 @@ ViewSearch::ViewSearch(std::span<const Vec3> views, int k) : views_(views.begin(
   for (int cell = 0; cell < kSide * kSide; ++cell) fill_cell(cell);
 }
 
-/// Let r be the cell's radius about its centre c and v the view that is the last of the k + 1 nearest to c. From any
-/// direction of the cell, k + 1 views are within angle(c, v) + r, so the k + 1 nearest are, and those are within
-/// angle(c, v) + 2 r of c. The farthest of a cell are its corners: it is a convex polygon, or two with its corners.
+/// Let r be the cell's radius about its center c, and v the last of the k + 1 views nearest to c. From any direction in
+/// the cell, k + 1 views are within angle(c, v) + r, so the k + 1 nearest are as well, and these are within angle(c, v)
+/// + 2 r of c. A cell is a convex polygon, or two that share its corners, so its farthest points are corners.
 void ViewSearch::fill_cell(int cell) {
   constexpr float kRounding = 1e-3f;
   const Vec3 center = octahedral_cell_center(cell, kSide);

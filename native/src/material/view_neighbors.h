@@ -1,4 +1,4 @@
-// Which sampled views stand for a view direction, and with what weight (method 6.4).
+// The sampled views that are mixed for a view direction, and their weights (method 6.4).
 #pragma once
 
 #include <cstdint>
@@ -18,14 +18,14 @@ struct ViewNeighbors {
   float weight[kMaxNeighbors];
 };
 
-/// The two polar angles of sorted `theta` (radians) that enclose `theta_v`, with linear weights; the end alone beyond.
+/// Linear weights of the two polar angles of sorted `theta` (radians) around `theta_v`; beyond an end, that end alone.
 ViewNeighbors bracketing_views(std::span<const float> theta, float theta_v);
 
-/// The nearest of a set of views. Which can be among them is tabulated by direction, so that a search reads a dozen
+/// Search for the nearest of a set of views. Candidates are tabulated by direction, so that a search tests a dozen
 /// views instead of all. Immutable; thread-safe.
 class ViewSearch {
  public:
-  /// For the `k` <= kMaxNeighbors nearest of `views`.
+  /// Searches for the `k` <= kMaxNeighbors nearest of `views`.
   ViewSearch(std::span<const Vec3> views, int k);
 
   /// The k nearest views of unit `wv` with weight 1/angle_i - 1/angle_(k+1), so that a view's weight has fallen to 0
@@ -34,11 +34,11 @@ class ViewSearch {
 
  private:
   void fill_cell(int cell);
-  static constexpr int kSide = 32;  // octahedral cells: even, so that no cell has a fold of the map inside
+  static constexpr int kSide = 32;  // octahedral cells per side; even, so that no fold of the map crosses a cell
 
   std::vector<Vec3> views_;
   int k_;
-  std::vector<uint32_t> candidates_, first_;  // candidates of cell c: from first_[c] to first_[c + 1], rising
+  std::vector<uint32_t> candidates_, first_;  // candidates of cell c: [first_[c], first_[c + 1]), increasing
 };
 
 }  // namespace velour

@@ -7,7 +7,7 @@ namespace velour {
 
 namespace {
 
-/// Of a coordinate in [0, cells]: the interval and the place in it.
+/// Interval of a coordinate in [0, cells], and the position in it.
 struct Interval {
   int low;
   float share;

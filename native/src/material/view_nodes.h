@@ -1,11 +1,11 @@
-// Where tables over view directions have their nodes, and how a view is placed between them.
+// Nodes of tables over view directions, and the interpolation between them.
 #pragma once
 
 #include "material/view_place.h"
 
 namespace velour {
 
-/// The nodes about a view, linear weights of sum 1, and the node nearest to it.
+/// The nodes around a view, linear weights that sum to 1, and the node nearest to the view.
 struct NodeWeights {
   int count;
   int node[4];
@@ -13,15 +13,15 @@ struct NodeWeights {
   int nearest;
 };
 
-/// Nodes on the disk of Lambert's equal-area map, (x, y) / sqrt(1 + z): it needs one root, has no pole, and is even in
-/// solid angle. Isotropic: `cells` intervals along the radius at azimuth 0; otherwise `cells` over each side of the
-/// square about the disk.
+/// Nodes on the disk of Lambert's equal-area map, (x, y) / sqrt(1 + z), which needs one root, has no pole and is
+/// uniform in solid angle. Isotropic: `cells` intervals along the radius at azimuth 0; otherwise `cells` along each
+/// side of the square around the disk.
 class ViewNodes {
  public:
   ViewNodes(bool isotropic, int cells) : isotropic_(isotropic), cells_(cells) {}
 
   int count() const { return isotropic_ ? cells_ + 1 : (cells_ + 1) * (cells_ + 1); }
-  /// The view of a node, unit. Nodes outside the disk have that of the horizon's nearest point.
+  /// The unit view of a node. Nodes outside the disk have the nearest view on the horizon.
   Vec3 view(int node) const;
   NodeWeights at(const ViewPlace& place) const;
 

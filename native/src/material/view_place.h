@@ -1,4 +1,4 @@
-// A view direction in the coordinates that tables and splines over views use, computed once a view.
+// A view direction in the coordinates of tables and splines over views, computed once per view.
 #pragma once
 
 #include <algorithm>
@@ -8,8 +8,8 @@
 
 namespace velour {
 
-/// arccos z = sqrt(1 - z) times a polynomial: Abramowitz & Stegun 4.4.46; `radius` is the root. z >= 0. By pairs, which
-/// is half as long to wait for.
+/// arccos z = sqrt(1 - z) times a polynomial (Abramowitz & Stegun 4.4.46), for z >= 0; `radius` is the root. Terms are
+/// evaluated in pairs, which halves the latency.
 inline float polar_angle(float radius, float z) {
   const float z2 = z * z, z4 = z2 * z2;
   const float a = 1.5707963050f - 0.2145988016f * z, b = 0.0889789874f - 0.0501743046f * z;
@@ -17,14 +17,14 @@ inline float polar_angle(float radius, float z) {
   return radius * ((a + b * z2) + (c + d * z2) * z4);
 }
 
-/// Float is enough here: a spline of the view changes by parts of itself over a tenth of a radian.
+/// Float precision suffices: a spline of the view changes by a fraction of itself over a tenth of a radian.
 struct ViewPlace {
   float sine;              // of the polar angle
   float cos_phi, sin_phi;  // 1, 0 at the normal
   float radius;            // of Lambert's equal-area map, sqrt(1 - cos theta), without cancellation
   float theta;             // radians, absolute error below 3e-7
 
-  /// Of unit `wv` on or above the horizon.
+  /// Requires unit `wv` on or above the horizon.
   explicit ViewPlace(const Vec3& wv) {
     const float z = std::max(wv.z, 0.0f), sine_sq = wv.x * wv.x + wv.y * wv.y;
     sine = std::sqrt(sine_sq);

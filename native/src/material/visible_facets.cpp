@@ -12,11 +12,11 @@ namespace {
 constexpr int kRadii = 24, kTurns = 24;
 static_assert(kRadii * kTurns == VisibleFacets::kCount);
 
-/// Points of the half disk of visible normals that lies to one side of the plane of incidence: the other side is its
-/// mirror image. As arrays, so that the compiler computes several at once.
+/// Points on the half of the disk of visible normals to one side of the plane of incidence; the other half is its
+/// mirror image. Arrays let the compiler vectorize.
 struct DiskPoints {
   static constexpr int kCount = VisibleFacets::kCount;
-  float radius[kCount], sine[kCount];   // p2 of Heitz 2018, Listing 1, is made of these
+  float radius[kCount], sine[kCount];   // for p2 of Heitz 2018, Listing 1
   float along[kCount], beside[kCount];  // p1, and sqrt(1 - p1^2)
   double weight[kCount];
 
@@ -41,7 +41,7 @@ const DiskPoints& disk_points() {
 
 }  // namespace
 
-/// sample_ggx_visible_normal() at all points.
+/// Evaluates sample_ggx_visible_normal() at all points.
 VisibleFacets::VisibleFacets(const Vec3& wv, const Vec2& alpha) {
   const DiskPoints& points = disk_points();
   const Vec3 stretched = glm::normalize(Vec3(alpha.x * wv.x, 0, wv.z));

@@ -1,4 +1,4 @@
-// What the model files of all BTFs share.
+// Parts shared by the model files of all BTFs.
 #pragma once
 
 #include <string>
@@ -9,7 +9,7 @@
 
 namespace velour {
 
-/// What is known of a BTF beside its coefficients.
+/// Description of a BTF without its coefficients.
 struct BtfFrame {
   PairLayout layout;
   TexelGrid grid;
@@ -18,19 +18,19 @@ struct BtfFrame {
 };
 
 void write_btf_frame(const BtfFrame& frame, TensorFile& file);
-/// Refuses layouts that leave out pairs.
+/// Throws Error(bad_data) for layouts that leave out pairs.
 BtfFrame read_btf_frame(const ModelFields& fields);
 
-/// Refuses `tensor`, a part of the file, unless it has this shape.
+/// Throws Error(bad_data) unless `tensor`, a part of the file, has this shape.
 void expect_shape(const ModelFields& fields, const std::string& part, const Tensor& tensor,
                   const std::vector<uint64_t>& shape);
-/// A part of this shape as half floats, all finite.
+/// Reads a part of this shape as half floats, all of which must be finite.
 std::vector<HalfBits> shaped_halves(const ModelFields& fields, const std::string& part,
                                     const std::vector<uint64_t>& shape);
-/// A part of half floats.
+/// Makes a part of half floats.
 Tensor tensor_of(const std::vector<HalfBits>& halves, const std::vector<uint64_t>& shape);
 
-/// [from][to] to [to][from].
+/// Transposes [from][to] to [to][from].
 template <class Value>
 std::vector<Value> transposed(const std::vector<Value>& values, size_t to) {
   std::vector<Value> out(values.size());
@@ -41,7 +41,7 @@ std::vector<Value> transposed(const std::vector<Value>& values, size_t to) {
   return out;
 }
 
-/// Values [texel][coefficient] as a part of pictures, one a coefficient, and back.
+/// Converts values [texel][coefficient] to a part with one image per coefficient, and back.
 Tensor maps_tensor(const std::vector<HalfBits>& values, uint64_t coefficients, uint32_t width, uint32_t height);
 std::vector<HalfBits> read_maps(const ModelFields& fields, const std::string& part, uint64_t coefficients,
                                 uint32_t width, uint32_t height);

@@ -1,4 +1,4 @@
-// How well a fitted BTF agrees with what it was made of.
+// Quality of a fitted BTF relative to its source.
 #pragma once
 
 #include <array>
@@ -12,9 +12,9 @@
 
 namespace velour {
 
-/// One of the fits by which a size was looked for.
+/// One fit of the search for a size.
 struct SizeTrial {
-  int coefficients = 0;  // a texel's, of the side that has most; components of an SVD
+  int coefficients = 0;  // per texel, of the side with the most; for an SVD, components
   uint64_t parameter_bytes = 0;
   double expected = 0;     // relative L2 error before the fit
   double relative_l2 = 0;  // measured
@@ -25,27 +25,27 @@ struct SizeTrial {
 /// A shape of clustered tensors that was tried before the fit.
 struct ShapeTrial {
   uint32_t clusters = 0, members = 0;
-  std::array<uint32_t, 4> rank{};  // of texels, views, lights, colours
+  std::array<uint32_t, 4> rank{};  // of texels, views, lights, colors
   uint64_t parameter_bytes = 0;
-  double expected = 0;  // relative L2 error, of the texels that it was judged by
+  double expected = 0;  // relative L2 error, over the texels of the trial
 
   bool operator==(const ShapeTrial&) const = default;
 };
 
 struct BtfRecord {
   std::string method;                                  // "svd", "srbf", "tucker", "cta", "kcta"
-  double psnr = 0;                                     // dB, over all pairs that were fitted (docs/conventions.md)
-  std::optional<double> psnr_held_out = std::nullopt;  // of pairs that no fit has seen
-  double ser = 0;                                      // squared error of f cos(theta_l) over its squares
-  double p99 = 0;                     // the 99th percentile of the measurement's f, 1/sr: white of `psnr`
-  uint64_t raw_bytes = 0;             // of the measurement as half floats
+  double psnr = 0;                                     // dB, over all fitted pairs (docs/conventions.md)
+  std::optional<double> psnr_held_out = std::nullopt;  // dB, over held-out pairs
+  double ser = 0;                                      // squared error of f cos(theta_l) over its sum of squares
+  double p99 = 0;                     // 99th percentile of the measurement's f, 1/sr: the white of `psnr`
+  uint64_t raw_bytes = 0;             // size of the measurement as half floats
   double seconds = 0;                 // wall clock of the fit
-  double evaluations_per_second = 0;  // of processor time of one thread, random places, directions; 0: nobody measured
+  double evaluations_per_second = 0;  // per CPU second of one thread, at random places and directions; 0: not measured
   uint64_t seed = 0;
   std::vector<std::string> warnings;  // sentences
-  double relative_l2 = 0;             // of companded values over all pairs that were fitted; 0: nobody measured
-  double tolerance = 0;               // of relative_l2 that was asked for; 0: none
-  OrderCurve order;                   // error against size: `lobes` are coefficients of a texel, or components
+  double relative_l2 = 0;             // of companded values over all fitted pairs; 0: not measured
+  double tolerance = 0;               // requested maximum of relative_l2; 0: none
+  OrderCurve order;                   // error over size; `lobes` are coefficients per texel, or components
   std::vector<SizeTrial> search;      // in the order of the fits
   std::vector<ShapeTrial> shapes;     // of clustered tensors, in the order of the trials
 };

@@ -1,4 +1,4 @@
-// What the model files of BTFs that are made of sides share.
+// Parts shared by the model files of BTFs that consist of sides.
 #pragma once
 
 #include "btf/sides.h"
@@ -7,7 +7,7 @@
 
 namespace velour {
 
-/// "btf.side.S.": what the names of a side's parts begin with.
+/// "btf.side.S.", the prefix of the names of a side's parts.
 std::string side_prefix(size_t number);
 
 /// The parts btf.sides and btf.shared.
@@ -20,10 +20,10 @@ struct SideTable {
 };
 
 void write_side_table(const SideTable& table, TensorFile& file);
-/// At most four sides of their own and three shared ones, which name sides that there are.
+/// Accepts at most four own sides and three shared ones, which must refer to existing sides.
 SideTable read_side_table(const ModelFields& fields);
 
-/// That of a body with `sides` and `shared`.
+/// The side table of a model body with `sides` and `shared`.
 template <typename Btf>
 SideTable side_table(const Btf& btf) {
   SideTable table{{}, btf.shared};
@@ -31,12 +31,12 @@ SideTable side_table(const Btf& btf) {
   return table;
 }
 
-/// Bytes [texel][coefficient] as a part of pictures, one a coefficient, that a viewer shows; and back.
+/// Converts bytes [texel][coefficient] to a part with one image per coefficient, which image viewers show, and back.
 Tensor byte_maps(const std::vector<uint8_t>& bytes, uint64_t coefficients, uint32_t width, uint32_t height);
 std::vector<uint8_t> read_byte_maps(const ModelFields& fields, const std::string& part, uint64_t coefficients,
                                     uint32_t width, uint32_t height);
 
-/// What bytes stand for: a part of `shape` and two numbers each, the least value and the step.
+/// The scales of bytes as a part of `shape` with two numbers each: the least value and the step.
 Tensor scales_tensor(const std::vector<ByteScale>& scales, std::vector<uint64_t> shape);
 std::vector<ByteScale> read_scales(const ModelFields& fields, const std::string& part, std::vector<uint64_t> shape);
 

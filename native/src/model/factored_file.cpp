@@ -23,7 +23,7 @@ const Tensor& limited_row(const ModelFields& fields, const char* part, size_t mo
   return tensor;
 }
 
-/// Empty where all components serve all views.
+/// View of each component; empty if all components serve all views.
 std::vector<uint16_t> read_views(const ModelFields& fields, size_t views) {
   std::vector<uint16_t> view;
   if (!fields.has(kView)) return view;
@@ -42,7 +42,7 @@ std::vector<uint16_t> read_views(const ModelFields& fields, size_t views) {
   return view;
 }
 
-/// `view`: of each component, or empty.
+/// `view`: view of each component, or empty.
 std::vector<uint8_t> read_axis_numbers(const ModelFields& fields, const std::vector<uint16_t>& view) {
   const Tensor& tensor = limited_row(fields, kAxis, view.empty() ? FactoredBtf::kMaxComponents : view.size());
   if (!view.empty()) expect_shape(fields, kAxis, tensor, {view.size()});

@@ -20,7 +20,7 @@ Json errors_json(const ErrorByViewAngle& errors) {
   return json;
 }
 
-/// Reads keys of one object and names what is wrong with them.
+/// Reads keys of one object and reports what is wrong with them.
 class FitRecordReader {
  public:
   FitRecordReader(const Json& json, std::string where) : json_(json), where_(std::move(where)) {}

@@ -23,58 +23,58 @@ namespace velour {
 /// Relative L2 error by view angle; keys "5", "30", "60", "75", "85" (degrees), nullopt where not covered.
 using ErrorByViewAngle = std::map<std::string, std::optional<double>>;
 
-/// What the fit found out; stored in the model file and shown beside the material.
+/// Results of the fit; stored in the model file and shown with the material.
 struct FitRecord {
   double relative_l2 = 0;  // mean over views weighted by cos(theta_v)
   ErrorByViewAngle by_view_angle;
   ErrorByViewAngle albedo_by_view_angle;                      // directional albedo (largest channel) at those views
   double albedo_max = 0;                                      // over all fitted views, largest channel
   double reciprocity = 0;                                     // of the model: fit/reciprocity.h
-  std::optional<double> measured_reciprocity = std::nullopt;  // of the measurement, where it has pairs
+  std::optional<double> measured_reciprocity = std::nullopt;  // of the measurement, if it covers pairs both ways
   double tolerance = 0;
   double seconds = 0;  // wall clock of the fit
   uint64_t seed = 0;
-  bool all_data = false;  // fitted without holding anything out
+  bool all_data = false;  // fitted without held-out data
   OrderCurve order;
   std::vector<std::string> warnings;  // sentences
 };
 
-/// What the model was fitted from.
+/// The data that the model was fitted to.
 struct SourceRecord {
   std::string name, format, sha256;
 };
 
-/// Kinds of model; a new kind is appended.
+/// Kinds of model. Append new kinds at the end.
 using ModelBody = std::variant<ScatteredBrdf, ParametricBrdf, FactoredBtf, SrbfBtf, TensorBtf>;
 
-/// Structure that lies over the surfaces of a material, and what is known of it.
+/// The silhouette (VOTF) of the structure over a material's surfaces.
 struct ModelShell {
   std::shared_ptr<const OcclusionVolume> volume;
   std::string source;                                    // name of what was captured
-  std::optional<OcclusionErrors> errors = std::nullopt;  // none: they were not looked for
+  std::optional<OcclusionErrors> errors = std::nullopt;  // none: not measured
 };
 
 struct Model {
   ModelBody body;
   FitRecord fit;
   SourceRecord source;
-  /// Of a model that was reduced to what scenes need: its views are those of the body.
+  /// Set for a model reduced to scene usage. The body holds the views that it covers.
   std::optional<SceneRecord> scene = std::nullopt;
-  /// Of a BTF, whose `fit` says nothing.
+  /// Set for a BTF; `fit` is then empty.
   std::optional<BtfRecord> btf = std::nullopt;
   std::optional<ModelShell> shell = std::nullopt;
 };
 
 uint64_t parameter_bytes(const ModelBody& body);
 
-/// Whether the model holds for some scenes alone. One that was fitted for scenes which need all of the full model is
-/// that full model, and holds for any.
+/// Whether the model is valid for some scenes only. A model fitted for scenes that need all of the full model is the
+/// full model, and valid for any scene.
 bool is_reduced(const Model& model);
 
-/// Whether it is of a BTF, with a BtfRecord, instead of a BRDF.
+/// Whether the model is of a BTF, with a BtfRecord, rather than of a BRDF.
 bool is_btf(const Model& model);
 
-/// Whether a kind of body is of a BTF.
+/// Bodies of BTF models.
 template <typename Body>
 concept BtfBody = requires(const Body& body) {
   body.layout;
@@ -82,7 +82,7 @@ concept BtfBody = requires(const Body& body) {
   body.companding;
 };
 
-/// Calls `use` with the body of a BTF's model, whatever its kind. Throws std::bad_variant_access for a BRDF's.
+/// Calls `use` with the body of a BTF model of any kind. Throws std::bad_variant_access for a BRDF model.
 template <typename Use>
 auto with_btf(const ModelBody& body, const Use& use) {
   using Result = decltype(use(std::get<FactoredBtf>(body)));
@@ -97,7 +97,7 @@ auto with_btf(const ModelBody& body, const Use& use) {
       body);
 }
 
-/// The texels of a BTF's model; null of a BRDF's.
+/// The texel grid of a BTF model; null for a BRDF model.
 const TexelGrid* grid_of(const Model& model);
 
 /// "scattered", "parametric", "factored-btf", "srbf-btf", "tensor-btf".

@@ -1,4 +1,4 @@
-// The fields of a decoded model file, checked as they are read: every sentence names the file and the field.
+// Checked access to the fields of a decoded model file; every message names the file and the field.
 #pragma once
 
 #include <map>
@@ -8,10 +8,10 @@
 
 namespace velour {
 
-/// All members throw Error(bad_data) where a field is missing or not as asked.
+/// All members throw Error(bad_data) if a field is missing or not as expected.
 class ModelFields {
  public:
-  /// `name` is the file's, for sentences.
+  /// `name`: the file's name, for messages.
   ModelFields(TensorFile file, std::string name) : file_(std::move(file)), name_(std::move(name)) {}
 
   const std::string& name() const { return name_; }
@@ -25,9 +25,9 @@ class ModelFields {
   int integer(const std::string& key, int least, int most) const;
 
   bool has(const std::string& part) const { return file_.tensors.contains(part); }
-  /// Of any shape.
+  /// A part of any shape.
   const Tensor& tensor(const std::string& part) const;
-  /// Of shape [n] for one column, [n, columns] for more.
+  /// A part of shape [n] for one column, [n, columns] for more.
   const Tensor& rows(const std::string& part, uint64_t columns) const;
 
  private:

@@ -24,7 +24,7 @@ constexpr char kKind[] = "model";
 constexpr char kScene[] = "velour.scene", kBtf[] = "velour.btf.record";
 constexpr uint64_t kMaxFileBytes = uint64_t{1} << 30;
 
-// One overload a kind of model.
+// One overload per kind of model.
 
 constexpr char kScattered[] = "scattered", kParametric[] = "parametric", kFactored[] = "factored-btf",
                kSrbf[] = "srbf-btf", kTensor[] = "tensor-btf";
@@ -139,7 +139,7 @@ void save_model(const Model& model, const std::string& path) { write_file(path, 
 Model load_model(const std::string& path) { return decode_model(read_file(path, kMaxFileBytes), path); }
 
 bool is_model_file(const std::string& path) {
-  // The kind stands in the header of the first part, long before any pixels.
+  // The kind is in the header of the first part, well before any pixels.
   const std::vector<uint8_t> head = read_file_head(path, size_t{1} << 20);
   if (!looks_like_exr(head)) return false;
   constexpr char kAttribute[] = "velour.kind\0string\0\5\0\0\0model";  // name, type, length, text: OpenEXR's layout

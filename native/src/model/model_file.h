@@ -11,7 +11,7 @@
 namespace velour {
 
 std::vector<uint8_t> encode_model(const Model& model);
-/// Checks every shape and range and names the field at fault. `name` is the file's name for sentences.
+/// Checks every shape and range, and names the field at fault. `name`: the file's name, for messages.
 Model decode_model(std::span<const uint8_t> bytes, const std::string& name);
 
 void save_model(const Model& model, const std::string& path);

@@ -12,7 +12,7 @@
 namespace velour {
 namespace {
 
-/// `make` of the model's body, as a pointer that shares the ownership of the model instead of copying its lobes.
+/// Calls `make` with a pointer to the model's body that shares ownership of the model, so no lobes are copied.
 template <typename Make>
 std::shared_ptr<const Material> made_of_body(const std::shared_ptr<const Model>& model, const Make& make) {
   return std::visit(
@@ -33,7 +33,7 @@ struct Either : Makes... {
 template <typename... Makes>
 Either(Makes...) -> Either<Makes...>;
 
-/// Of light from one side.
+/// Material for light from one side.
 std::shared_ptr<const Material> lit_from(BtfLight light, const std::shared_ptr<const Model>& model, int neighbors) {
   return made_of_body(model, Either{[&](const Scattered& body) { return make_scattered_material(body, neighbors); },
                                     [&](const Parametric& body) { return make_parametric_material(body); },
@@ -42,7 +42,7 @@ std::shared_ptr<const Material> lit_from(BtfLight light, const std::shared_ptr<c
                                     [&](const Tensors& body) { return make_tensor_btf_material(body, light); }});
 }
 
-/// Whether it knows of light that comes through.
+/// Whether the model includes transmitted light.
 template <typename Btf>
 bool knows_through(const Btf& btf) {
   return serving_side(btf, false, true) || serving_side(btf, true, false);

@@ -1,4 +1,4 @@
-// From a model to its run-time evaluator.
+// Makes the run-time evaluator of a model.
 #pragma once
 
 #include <memory>
@@ -9,11 +9,11 @@
 
 namespace velour {
 
-/// f and samples of the model; shares it. `neighbors`: views of a scattered model that are mixed, 0: the model's
-/// default.
+/// f and samples of the model, whose ownership it shares. `neighbors`: number of views mixed for a per-view model, 0:
+/// the model's default.
 std::shared_ptr<const Material> make_material(const std::shared_ptr<const Model>& model, int neighbors);
 
-/// The same for light from the viewer's side alone, where a model of a BTF knows more.
+/// make_material() for light from the viewer's side only, without the transmission of a BTF.
 std::shared_ptr<const Material> make_reflecting_material(const std::shared_ptr<const Model>& model, int neighbors);
 
 /// Reference mode: f of the measurement, samples of the model, unbiased whatever the model's error.

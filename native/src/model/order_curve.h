@@ -1,4 +1,4 @@
-// How the error of a fit falls as its model grows, and where the fit stopped.
+// Error of a fit over the size of its model, and the chosen size.
 #pragma once
 
 #include <cstdint>
@@ -9,10 +9,10 @@ namespace velour {
 
 /// The best fit found with at most this many lobes.
 struct OrderPoint {
-  int lobes = 0;  // scattered: of the view that has most; parametric: in all
+  int lobes = 0;  // per-view model: of the view with the most; parametric: in total
   uint64_t parameter_bytes = 0;
-  double worst = 0;  // of a fitted view: largest relative L2 over the tolerance, less what the fold took of that; at
-                     // most 1 where the fit holds
+  double worst = 0;  // largest relative L2 of a fitted view over its tolerance, which the folding error reduces; at
+                     // most 1 if the fit meets it
   double relative_l2 = 0;  // mean over the fitted views, weighted as the fit does
 
   bool operator==(const OrderPoint&) const = default;
@@ -20,7 +20,7 @@ struct OrderPoint {
 
 struct OrderCurve {
   std::vector<OrderPoint> points;  // in the order of parameter_bytes; empty: not recorded
-  std::optional<size_t> chosen;    // the point that the model is
+  std::optional<size_t> chosen;    // the point of the stored model
 
   bool operator==(const OrderCurve&) const = default;
 };

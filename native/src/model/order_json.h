@@ -1,4 +1,4 @@
-// The order curve as JSON: one list a column, as plots take it.
+// The order curve as JSON: one list per column, as for plots.
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>
@@ -8,11 +8,11 @@
 
 namespace velour {
 
-/// `value` with four digits.
+/// `value` rounded to four significant digits.
 double four_digits(double value);
 
 /// {"lobes": [], "parameter_bytes": [], "worst": [], "relative_l2": [], "chosen": index or null}. Errors keep four
-/// digits: a model file stays small, and what is read and written again stays the same.
+/// digits, so that model files stay small and reading and writing one again does not change it.
 nlohmann::ordered_json order_json(const OrderCurve& order);
 
 /// Throws Error(bad_data) with `where` (file and field) and the key at fault.

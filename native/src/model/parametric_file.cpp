@@ -6,9 +6,9 @@ namespace velour {
 namespace {
 
 constexpr char kIsotropic[] = "velour.isotropic", kCells[] = "velour.cells";
-// Whole degrees; not there in models of all views.
+// Integer degrees; absent in models of all views.
 constexpr char kFirstView[] = "velour.first_view", kLastView[] = "velour.last_view";
-constexpr char kSymmetric[] = "velour.symmetric";  // not there: false
+constexpr char kSymmetric[] = "velour.symmetric";  // absent: false
 constexpr char kSpace[] = "lobes.space", kControl[] = "lobes.control", kNone[] = "lobes.none";
 
 std::vector<LobeSpace> read_spaces(const ModelFields& fields) {
@@ -32,7 +32,7 @@ std::string range_text(const ParameterRange& range) {
   return "a " + std::string(range.name) + ", " + std::to_string(range.least) + " to " + std::to_string(range.most);
 }
 
-/// Of `brdf`, whose lobes and spline are known.
+/// The control values of `brdf`, whose lobes and spline are already set.
 std::vector<float> read_control(const ModelFields& fields, const ParametricBrdf& brdf) {
   const Tensor& t = fields.tensor(kControl);
   const auto nodes = static_cast<uint64_t>(brdf.spline().node_count());
@@ -61,7 +61,7 @@ void write_parametric(const ParametricBrdf& brdf, TensorFile& file) {
     file.attributes[kLastView] = std::to_string(brdf.views.end);
   }
   const auto lobes = static_cast<uint64_t>(brdf.lobe_count());
-  if (lobes == 0) {  // a black model: OpenEXR has neither empty parts nor files without one
+  if (lobes == 0) {  // a black model: OpenEXR allows neither empty parts nor files without parts
     file.tensors[kNone] = {{}, {0.0f}, Precision::halves};
     return;
   }

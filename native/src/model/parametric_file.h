@@ -6,7 +6,7 @@
 
 namespace velour {
 
-/// Throws Error(invalid_argument) for control values that a half float does not hold.
+/// Throws Error(invalid_argument) for control values that a half float cannot hold.
 void write_parametric(const ParametricBrdf& brdf, TensorFile& file);
 /// Checks every shape and range.
 ParametricBrdf read_parametric(const ModelFields& fields);

@@ -16,7 +16,7 @@ constexpr int kMaxGridCells = 24;  // twice as many take four times as long
 
 using P = ParametricBrdf;
 
-/// As model files hold it.
+/// Sets a control value, clamped and rounded as in model files.
 void set(ParametricBrdf& brdf, int node, int parameter, int lobe, double value) {
   const ParameterRange range = parameter_range(parameter);
   brdf.control[brdf.index(node, parameter, lobe)] =
@@ -27,7 +27,7 @@ double get(const ParametricBrdf& brdf, int node, int parameter, int lobe) {
   return static_cast<double>(brdf.control[brdf.index(node, parameter, lobe)]);
 }
 
-/// The same model on a spline of intervals of half the length.
+/// The same model on a spline with intervals of half the length.
 ParametricBrdf halved(const ParametricBrdf& brdf) {
   ParametricBrdf finer = brdf;
   finer.cells = 2 * brdf.cells;
@@ -48,15 +48,15 @@ ParametricBrdf halved(const ParametricBrdf& brdf) {
   return finer;
 }
 
-/// The same model on a finer spline: rougher lobes change with the view in ways of their own.
+/// The same model on a finer spline, since rougher lobes vary with the view in other ways.
 ParametricBrdf refined(ParametricBrdf brdf) {
   const int most = brdf.isotropic ? ViewSpline::kMaxCells : kMaxGridCells;
   while (2 * brdf.cells <= most) brdf = halved(brdf);
   return brdf;
 }
 
-/// Widens the lobe that a node's control values describe. A spline lies between its control values, so that lobes are
-/// nowhere narrower with more roughness.
+/// Widens the lobe that a node's control values describe. A spline stays between its control values, so more roughness
+/// makes no lobe narrower at any view.
 void widen(ParametricBrdf& brdf, int node, int lobe, double by) {
   LobeParameters p{};
   for (int k = 0; k < brdf.parameter_count(); ++k) p[static_cast<size_t>(k)] = get(brdf, node, k, lobe);
@@ -66,13 +66,13 @@ void widen(ParametricBrdf& brdf, int node, int lobe, double by) {
   }
 }
 
-/// Adds to the logarithms of all coefficients of a channel.
+/// Adds `by` to the log coefficient of a lobe and channel at a node.
 void brighten(ParametricBrdf& brdf, int node, int channel, int lobe, double by) {
   const int k = P::kLogRed + channel;
   set(brdf, node, k, lobe, get(brdf, node, k, lobe) + by);
 }
 
-/// What the lobes reflect at a view, of each channel.
+/// Light that each lobe reflects at a view, per channel.
 std::vector<Vec3d> lights_of(const ParametricBrdf& brdf, const Vec3d& wv) {
   std::vector<Vec3d> light;
   for (const WarpedLobe& lobe : lobes_at(brdf, wv)) light.push_back(lobe.coefficient * reflected_light(lobe, wv));
@@ -81,8 +81,8 @@ std::vector<Vec3d> lights_of(const ParametricBrdf& brdf, const Vec3d& wv) {
 
 double log_of(double light) { return std::log(std::max(light, kMinLight)); }
 
-/// Gives each lobe of `rougher` about the light that it has in `brdf`: that of the nodes' views, as control values, so
-/// that the factor of a view lies between those of its nodes.
+/// Gives each lobe of `rougher` about the light that it reflects in `brdf`. The factors at the nodes' views are added
+/// to the control values, so the factor at a view lies between those of its nodes.
 void keep_light_of_lobes(const ParametricBrdf& brdf, ParametricBrdf& rougher) {
   const ViewSpline spline = brdf.spline();
   std::vector<std::vector<double>> change(static_cast<size_t>(spline.node_count()));
@@ -99,7 +99,7 @@ void keep_light_of_lobes(const ParametricBrdf& brdf, ParametricBrdf& rougher) {
   }
 }
 
-/// A view, the nodes that it touches, and the logarithm of what is reflected there over what should be.
+/// A view, the nodes that it depends on, and the logarithm of reflected over required light there.
 struct Claim {
   ViewTaps taps;
   Vec3d excess;
@@ -111,7 +111,7 @@ struct Claim {
   }
 };
 
-/// Those of twice as many nodes, and all around near the horizon.
+/// Views of the nodes of a spline with twice as many cells; those at the horizon are raised just above it.
 std::vector<Vec3d> claimed_views(const ParametricBrdf& brdf) {
   constexpr double kLast = 1.569;  // radians: a tenth of a degree above the horizon
   const ViewSpline dense = brdf.spline().refined(2);
@@ -137,8 +137,8 @@ std::vector<Claim> claims_of(const ParametricBrdf& brdf, const ParametricBrdf& r
   return claims;
 }
 
-/// What the nodes' logarithms are to change by so that nothing is left of the claims: means of what is left about each
-/// node, in rounds; then no more than that: what is still above is taken off from all nodes that a view touches.
+/// Changes of the nodes' log coefficients that cancel the excess of the claims: each round subtracts the mean residual
+/// about each node. Finally the largest positive residual at a node is subtracted, so that no claim is exceeded.
 std::vector<double> change_of(const std::vector<Claim>& claims, size_t nodes, int c) {
   constexpr int kRounds = 60;
   std::vector<double> change(nodes, 0.0);
@@ -166,7 +166,7 @@ std::vector<double> change_of(const std::vector<Claim>& claims, size_t nodes, in
   return change;
 }
 
-/// The albedo of all lobes: as it was, of each channel.
+/// Restores the albedo of all lobes together, per channel.
 void keep_albedo(const ParametricBrdf& brdf, ParametricBrdf& rougher) {
   const std::vector<Claim> claims = claims_of(brdf, rougher);
   const int nodes = brdf.spline().node_count();

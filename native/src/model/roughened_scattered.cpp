@@ -7,10 +7,10 @@
 namespace velour {
 namespace {
 
-constexpr float kMinViewCosine = 1e-4f;  // of views
+constexpr float kMinViewCosine = 1e-4f;
 constexpr double kMinLobeLight = 1e-30;
 
-/// A lobe of f cos over light directions.
+/// Roughens a lobe of f cos over light directions.
 void roughen(Kernel kernel, double by, float cosine, float& bandwidth, Rgb& coefficient) {
   const auto before = static_cast<double>(bandwidth);
   bandwidth = std::min(bandwidth, static_cast<float>(widened_bandwidth(kernel, before, by)));

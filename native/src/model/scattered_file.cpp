@@ -34,7 +34,7 @@ std::vector<Vec3> read_directions(const ModelFields& fields, const std::string& 
     if (!(std::abs(length - 1) <= kUnitTolerance)) {
       fields.fail_at(part, i / 3, static_cast<float>(length), "a direction of length 1");
     }
-    // What is unit to rounding is left alone, so that a file that is read and written again keeps its bits.
+    // Leave vectors that are unit up to rounding alone, so that reading and writing a file again preserves its bits.
     out.push_back(std::abs(length - 1) > 1e-6 ? Vec3(Vec3d(v) / length) : v);
   }
   return out;
@@ -55,7 +55,7 @@ std::vector<float> read_bandwidths(const ModelFields& fields, Kernel kernel, siz
   return t.data;
 }
 
-/// Non-negative colours of `part`, `count` of them, as many as there are of `whose`.
+/// Reads `count` non-negative colors from `part`, as many as `whose` has entries.
 std::vector<Rgb> read_coefficients(const ModelFields& fields, const std::string& part, size_t count,
                                    const char* whose) {
   const Tensor& t = fields.rows(part, 3);
@@ -128,7 +128,7 @@ void write_scattered(const ScatteredBrdf& brdf, TensorFile& file) {
   file.tensors["views.direction"] = vectors(brdf.views);
   file.tensors["views.lobe_count"] = scalars(std::move(counts));
   if (!brdf.diffuse.empty()) file.tensors["views.diffuse"] = vectors(brdf.diffuse);
-  if (brdf.center.empty()) return;  // a black model has no lobes, and OpenEXR no empty parts
+  if (brdf.center.empty()) return;  // a black model has no lobes, and OpenEXR allows no empty parts
   file.tensors["lobes.center"] = vectors(brdf.center);
   file.tensors["lobes.bandwidth"] = scalars(brdf.bandwidth);
   file.tensors["lobes.coefficient"] = vectors(brdf.coefficient);

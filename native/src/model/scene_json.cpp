@@ -15,9 +15,9 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr uint32_t kMostTexels = 1u << 20;  // along a side of a tile: far beyond what a file holds
+constexpr uint32_t kMostTexels = 1u << 20;  // per side of a tile; far beyond what a file holds
 
-/// The bins from the first to the last that was seen.
+/// Writes the bins from the first to the last that was observed.
 void write_views(const SceneDomain& domain, Json& json) {
   size_t begin = 0, end = domain.view.size();
   while (begin < end && domain.view[begin] == 0) ++begin;
@@ -33,7 +33,7 @@ Json weights_json(const auto& weights) {
   return json;
 }
 
-/// The bins that were seen.
+/// Writes the bins that were observed.
 void write_directions(const ViewWeights& views, Json& json) {
   Json bins = Json::array(), weights = Json::array();
   for (size_t i = 0; i < views.weight.size(); ++i) {
@@ -44,7 +44,7 @@ void write_directions(const ViewWeights& views, Json& json) {
   if (!bins.empty()) json.update({{"direction_bins", bins}, {"direction_weights", weights}});
 }
 
-/// What a BTF's record has beside that of a BRDF.
+/// Writes the fields that a BTF's record has in addition to a BRDF's.
 void write_surface(const SceneRecord& record, Json& json) {
   json["full_texels"] = record.full_texels;
   if (record.seen_views_alone) json["seen_views_alone"] = true;
@@ -53,7 +53,7 @@ void write_surface(const SceneRecord& record, Json& json) {
   write_directions(record.domain.surface.views, json);
 }
 
-/// Reads keys and names what is wrong with them; none may be missing.
+/// Reads keys and reports what is wrong with them, including missing ones.
 class SceneReader {
  public:
   SceneReader(const Json& json, std::string where) : json_(json), where_(std::move(where)) {}

@@ -1,4 +1,4 @@
-// The scene record of a reduced model as the text of one attribute of its file.
+// The scene record of a scene model as the text of one attribute of its file.
 #pragma once
 
 #include <string>
@@ -7,7 +7,7 @@
 
 namespace velour {
 
-/// JSON. The weights of views keep four digits: they are kept to be looked at.
+/// JSON. Weights keep four digits.
 std::string scene_record_json(const SceneRecord& record);
 
 /// Throws Error(bad_data) with `where` (file and attribute) and the key at fault.

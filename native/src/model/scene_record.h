@@ -1,4 +1,4 @@
-// For which scenes a model was reduced, and what that cost.
+// Scene usage that a model was reduced to, and the resulting errors.
 #pragma once
 
 #include <array>
@@ -12,12 +12,12 @@ namespace velour {
 struct SceneRecord {
   SceneDomain domain;
   double picture_error = 0;       // relmse of this model
-  double full_picture_error = 0;  // of the full model that it stands in for
+  double full_picture_error = 0;  // relmse of the full model
   uint64_t full_parameter_bytes = 0;
-  /// Of a BTF: along x and y at the full model's finest level. The levels up to its own grid are left out.
+  /// For a BTF: texels along x and y at the full model's finest level. Levels finer than its own grid are dropped.
   std::array<uint32_t, 2> full_texels{};
-  /// Of a BTF: fitted to the views that were seen and those around them, with errors. Else levels were left out, no
-  /// more: the model holds for all views, and the errors are 0.
+  /// For a BTF: fitted only to the observed views and those around them, with errors. False: only levels were dropped,
+  /// the model is valid for all views, and the errors are 0.
   bool seen_views_alone = false;
 };
 

@@ -11,9 +11,9 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr char kAttribute[] = "velour.shell", kPart[] = "shell.distance";
-constexpr double kHighest = 1000;  // heights and lengths, widths of the tile
+constexpr double kHighest = 1000;  // largest height or length, in tile widths
 
-/// Reads keys of the attribute; every sentence names them.
+/// Reads keys of the attribute; every message names the key.
 class ShellJson {
  public:
   ShellJson(const ModelFields& fields, const std::string& text) : fields_(fields) {

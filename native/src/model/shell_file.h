@@ -1,4 +1,4 @@
-// The shell of a model in its file.
+// The silhouette shell (VOTF) of a model in its file.
 #pragma once
 
 #include "model/model.h"
@@ -7,7 +7,7 @@
 namespace velour {
 
 void write_shell(const ModelShell& shell, TensorFile& file);
-/// None where the file has none.
+/// Nothing if the file has no shell.
 std::optional<ModelShell> read_shell(const ModelFields& fields);
 
 }  // namespace velour

@@ -17,7 +17,7 @@ struct SrbfSideParts {
   std::string relief(size_t level) const { return prefix + "relief." + std::to_string(level); }
   std::string scales() const { return prefix + "scales"; }
   std::string bytes(size_t level) const { return prefix + "bytes." + std::to_string(level); }
-  /// In files before 1.5.
+  /// Only in files before version 1.5.
   std::string texels(size_t level) const { return prefix + "texels." + std::to_string(level); }
   std::string prefix;
 };
@@ -44,14 +44,14 @@ void write_side(const SrbfSide& side, const SrbfSideParts& part, TensorFile& fil
   }
 }
 
-/// Of a lobe; files before 1.6 have none of the phase.
+/// Numbers per lobe; files before version 1.6 lack those of the phase.
 size_t lobe_numbers(const Tensor& lobes) {
   constexpr size_t kBefore = 9;
   return lobes.shape.size() == 2 && lobes.shape[1] == kBefore ? kBefore : size_t{MultivariateLobe::kNumbers};
 }
 
 void read_lobes(const ModelFields& fields, const SrbfSideParts& part, SrbfSide& side) {
-  constexpr float kSharpest = 1e6f;  // bandwidths of any use are far below
+  constexpr float kSharpest = 1e6f;  // useful bandwidths are far below
   const size_t numbers = lobe_numbers(fields.tensor(part.lobes()));
   const Tensor& lobes = fields.rows(part.lobes(), numbers);
   const size_t count = lobes.data.size() / numbers;
@@ -96,7 +96,7 @@ void read_coefficients(const ModelFields& fields, const SrbfSideParts& part, Srb
   if (side.lobe[0].size() != side.lobes.size()) fields.fail(part.coefficients() + " leaves out lobes of axis 0.");
 }
 
-/// Files before 1.5 have half floats in place of bytes; they become bytes here.
+/// Files before version 1.5 store half floats, which are converted to bytes here.
 void read_half_values(const ModelFields& fields, const SrbfSideParts& part, SrbfSide& side) {
   std::vector<std::vector<float>> values;
   for (size_t l = 0; l < side.levels.size(); ++l) {

@@ -22,7 +22,7 @@ struct TensorSideParts {
   std::string prefix;
 };
 
-/// One array of all clusters' own.
+/// Concatenates the member `own` of all clusters.
 template <typename Value>
 std::vector<Value> joined(const TensorSide& side, std::vector<Value> TensorBtfCluster::*own) {
   std::vector<Value> all;
@@ -81,7 +81,7 @@ void check_ranks(const ModelFields& fields, const TensorSideParts& part, const T
   }
 }
 
-/// How many directions of the side there are, which must not be none.
+/// Number of directions on the side. Throws if there are none.
 uint64_t directions_of(const ModelFields& fields, const std::vector<PolarAngles>& set, bool below, const char* what) {
   const size_t count = directions_on_side(set, below).size();
   if (count == 0) {
@@ -111,7 +111,7 @@ void read_factors(const ModelFields& fields, const TensorSideParts& part, const 
   split(read_scales(fields, part.scales(), {clusters, side.rank.texel}), &TensorBtfCluster::scale, side);
 }
 
-/// Those of a texel are clusters that there are, and differ.
+/// Checks that the members of each texel are distinct, existing clusters.
 void check_members(const ModelFields& fields, const std::string& part, const TensorLevel& level,
                    const TensorSide& side) {
   const size_t texels = size_t{level.width} * level.height;

@@ -7,7 +7,7 @@
 namespace velour {
 
 void write_tensor_btf(const TensorBtf& btf, TensorFile& file);
-/// Checks every shape and range; what it returns can be evaluated as it is.
+/// Checks every shape and range; the result can be evaluated without further checks.
 TensorBtf read_tensor_btf(const ModelFields& fields);
 
 }  // namespace velour

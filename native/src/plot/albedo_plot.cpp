@@ -9,7 +9,7 @@ namespace velour {
 namespace {
 
 constexpr int kModelStep = 1, kMeasuredStep = 5, kLastAlbedo = 89;  // degrees
-// An integral over less says nothing of the albedo.
+// Minimum measured share of the lights for the integral to be an albedo.
 constexpr double kLeastCovered = 0.95;
 
 struct Channel {

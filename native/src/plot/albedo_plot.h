@@ -1,4 +1,4 @@
-// Directional albedo against the view.
+// Directional albedo against the view angle.
 #pragma once
 
 #include "brdf/measurement.h"
@@ -8,7 +8,8 @@
 
 namespace velour {
 
-/// By channel, at views of azimuth `phi` (radians). The measurement's own where it covers nearly all lights of a view.
+/// Albedo by channel at views of azimuth `phi` (radians), and that of the measurement at views whose lights it covers
+/// almost entirely.
 Plot albedo_plot(const Material& material, const Measurement* measurement, double phi, Progress& progress);
 
 }  // namespace velour

@@ -9,9 +9,9 @@ namespace velour {
 namespace {
 
 constexpr std::array<double, 3> kRound{1, 2, 5};
-constexpr double kSlack = 1e-9;  // of a step: rounding puts no tick outside
+constexpr double kSlack = 1e-9;  // of a step, so that rounding excludes no tick
 
-/// The least 1, 2 or 5 times a power of ten that is not below `value` > 0.
+/// The smallest 1, 2 or 5 times a power of ten that is not below `value` > 0.
 double round_up(double value) {
   const double power = std::pow(10.0, std::floor(std::log10(value)));
   for (const double m : kRound) {
@@ -84,7 +84,7 @@ std::string tick_text(double value) {
 void set_linear_range(PlotAxis& axis, double largest) {
   axis.logarithmic = false;
   axis.low = 0;
-  // To the next of about ten steps, so that little of the plot stays empty.
+  // Up to the next of about ten steps, so that little of the plot stays empty.
   const double step = round_up(largest / 10);
   axis.high = step * std::ceil(largest / step - kSlack);
 }

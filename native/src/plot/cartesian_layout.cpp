@@ -7,7 +7,7 @@
 namespace velour {
 namespace {
 
-/// Inside of the axes; y down.
+/// The area inside the axes; y down.
 struct PlotFrame {
   float left, top, right, bottom;
 };
@@ -18,7 +18,7 @@ std::vector<PlotTick> ticks_upwards(const Plot& plot, const Pen& pen, float heig
   return ticks_of(plot.y, tick_count(height, 2.2f * pen.em()));
 }
 
-/// Between what is written around it.
+/// The area that labels and legend leave.
 PlotFrame frame_of(const Plot& plot, const Pen& pen) {
   const float side = pen.side(), margin = pen.margin(), line = pen.line_height();
   const float legend = pen.legend_height(plot, side - 2 * margin);
@@ -26,7 +26,7 @@ PlotFrame frame_of(const Plot& plot, const Pen& pen) {
   for (const PlotTick& tick : ticks_upwards(plot, pen, frame.bottom - frame.top)) {
     frame.left = std::max(frame.left, margin + pen.width_of(tick.text) + 0.5f * pen.em());
   }
-  // The last number below may stand under the very corner.
+  // The last label of the x axis may be centered below the corner.
   frame.right -= 0.5f * pen.width_of(tick_text(plot.x.high));
   return frame;
 }

@@ -1,4 +1,4 @@
-// Marks in a square, in the order in which they are laid over each other: what both forms of a picture are made from.
+// Marks in a square, in drawing order: the input of both the raster and the SVG output.
 #pragma once
 
 #include <string>
@@ -9,7 +9,7 @@
 
 namespace velour {
 
-/// Pixels from the upper left corner; y points down. Colours are sRGB, 0 to 1.
+/// Pixels from the upper left corner; y points down. Colors are sRGB, 0 to 1.
 struct Stroke {
   std::vector<Vec2> points;
   float width;
@@ -24,8 +24,8 @@ struct Dot {
 
 struct Label {
   std::string text;  // UTF-8
-  Vec2 baseline;     // where the text starts, ends or has its middle
-  float align;       // 0: starts there; 0.5: its middle; 1: ends there
+  Vec2 baseline;     // start, middle or end of the text, by `align`
+  float align;       // 0: the text starts at `baseline`; 0.5: is centered; 1: ends
   float size;        // em, pixels
   Rgb color;
 };

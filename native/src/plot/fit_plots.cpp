@@ -11,7 +11,7 @@
 namespace velour {
 namespace {
 
-/// A logarithmic range of the errors that are above 0. What is 0 (a black material) is drawn at the low end.
+/// Sets a logarithmic range of the errors above 0. Zeros (a black material) are drawn at the low end.
 void set_error_range(std::vector<double> errors, PlotAxis& axis) {
   std::erase_if(errors, [](double error) { return !(error > 0); });
   if (errors.empty()) return set_logarithmic_range(axis, 0.1, 1);

@@ -1,4 +1,4 @@
-// What a fit found out of itself.
+// Plots of the errors recorded by a fit.
 #pragma once
 
 #include "model/model.h"
@@ -6,11 +6,11 @@
 
 namespace velour {
 
-/// Of a BRDF: the worst view's error over the tolerance against lobes. Of a BTF: the error against bytes. Throws
-/// Error(unsupported) where nothing was recorded.
+/// BRDF: the worst view's error over the tolerance against lobes. BTF: the error against bytes. Throws
+/// Error(unsupported) if nothing was recorded.
 Plot order_plot(const Model& model);
 
-/// Relative L2 at the reported views. Throws Error(unsupported) where there is none.
+/// Relative L2 at the reported views. Throws Error(unsupported) if there is none.
 Plot view_error_plot(const FitRecord& fit);
 
 }  // namespace velour

@@ -21,7 +21,7 @@ const stbtt_fontinfo& font() {
   return kFont;
 }
 
-/// The code point at the front, which is taken away; what is no UTF-8 is taken byte by byte.
+/// Removes and returns the first code point; invalid UTF-8 is read byte by byte.
 int take_code_point(std::string_view& utf8) {
   const auto byte = [&](size_t i) { return static_cast<int>(static_cast<unsigned char>(utf8[i])); };
   const int first = byte(0);
@@ -35,7 +35,7 @@ int take_code_point(std::string_view& utf8) {
   return code;
 }
 
-/// Calls `visit(glyph, pen)` with the place of each glyph's origin; returns where the next one would be.
+/// Calls `visit(glyph, pen)` with the position of each glyph's origin; returns that of the next one.
 template <typename Visit>
 float lay_out(std::string_view utf8, float scale, const Visit& visit) {
   float pen = 0;
@@ -51,7 +51,7 @@ float lay_out(std::string_view utf8, float scale, const Visit& visit) {
 
 float scale_of(float size) { return stbtt_ScaleForMappingEmToPixels(&font(), size); }
 
-/// Lays `glyph` of `origin` over what is there.
+/// Composites `glyph` at `origin` onto `out`.
 void add_glyph(int glyph, float scale, float origin, TextPixels& out) {
   const float whole = std::floor(origin), shift = origin - whole;
   int x0 = 0, y0 = 0, x1 = 0, y1 = 0;
@@ -78,7 +78,7 @@ float text_width(std::string_view utf8, float size) {
 
 TextPixels text_pixels(std::string_view utf8, float size, float fraction) {
   const float scale = scale_of(size);
-  const int room = static_cast<int>(std::ceil(size));  // around the baseline, for what leaves the advance
+  const int room = static_cast<int>(std::ceil(size));  // margin for glyphs that extend beyond their advance
   TextPixels out{-room, -2 * room, 0, 3 * room, {}};
   out.width = static_cast<int>(std::ceil(text_width(utf8, size))) + 2 * room;
   out.coverage.resize(static_cast<size_t>(out.width) * static_cast<size_t>(out.height));

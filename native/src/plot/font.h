@@ -1,4 +1,4 @@
-// The one font of plots: a part of DejaVu Sans that the library carries.
+// The font of plots: a subset of DejaVu Sans embedded in the library.
 #pragma once
 
 #include <cstdint>
@@ -7,7 +7,7 @@
 
 namespace velour {
 
-/// Of `size` pixels an em. What the font lacks is as wide as its empty box.
+/// Width in pixels at `size` pixels per em. Missing glyphs are as wide as the font's empty box.
 float text_width(std::string_view utf8, float size);
 
 /// Coverage, 0 to 255, of a piece of text: `left` and `top` are pixels from where its baseline starts, y down.

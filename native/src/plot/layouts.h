@@ -1,4 +1,4 @@
-// The two ways in which a plot fills its square. For plot_layout.cpp alone.
+// The two layouts of a plot. Only for plot_layout.cpp.
 #pragma once
 
 #include "plot/pen.h"
@@ -8,7 +8,7 @@ namespace velour {
 /// x to the right, y upwards.
 void lay_out_cartesian(const Plot& plot, Pen& pen);
 
-/// The upper half of a disc, the surface's normal upwards; the radius is y.
+/// The upper half of a disk, with the surface's normal upwards; the radius is y.
 void lay_out_polar(const Plot& plot, Pen& pen);
 
 }  // namespace velour

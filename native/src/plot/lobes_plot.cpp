@@ -13,13 +13,13 @@ namespace velour {
 namespace {
 
 constexpr double kCurveStep = 0.2;  // degrees
-// About the mirror direction and back to the viewer steps grow from this, so that the finest highlight has points.
+// Around the mirror and the view direction, steps grow from kFinest, so that the narrowest highlight has points.
 constexpr double kFinest = 0.002, kGrowth = 1.3;
-// A peak of this many means hides the rest on a linear radius.
+// A peak of this many times the mean hides the rest on a linear radius.
 constexpr double kPeakyness = 8;
 constexpr double kFewestDecades = 2, kMostDecades = 4;
 
-/// Signed degrees, sorted.
+/// Signed angles in degrees, sorted.
 std::vector<double> plotted_angles(double view_degrees) {
   std::vector<double> angles;
   const int steps = static_cast<int>(std::lround(180 / kCurveStep));
@@ -43,7 +43,7 @@ struct NamedLobe {
   std::function<double(const Vec3d& wl)> f_cos;
 };
 
-/// As the material mixes them for the view, neighbouring views' lobes with their weights.
+/// Lobes as mixed by the material for the view: those of neighboring views with their weights.
 std::vector<NamedLobe> lobes_of(const ScatteredBrdf& /*brdf*/, const Material* material, const Vec3& wv) {
   const auto point = std::make_shared<PreparedBrdf>();
   material->prepare(wv, *point);
@@ -86,8 +86,7 @@ std::vector<NamedLobe> lobes_of(const Body& /*a BTF's*/, const Material* /*mater
   return {};
 }
 
-/// None of a parametric model: setting up how samples are drawn from it would take half a second for each view, and its
-/// value is a formula.
+/// Null for a parametric model: preparing its sampling would take half a second per view, and its value is a formula.
 std::shared_ptr<const Material> material_for_values(const std::shared_ptr<const Model>& model) {
   return std::holds_alternative<ParametricBrdf>(model->body) ? nullptr : make_material(model, 0);
 }
@@ -111,7 +110,7 @@ std::vector<PlotPoint> model_points(const Model& model, const Material* material
 void set_radius(const PlotSeries& model, const std::vector<PlotPoint>& measured, PlotAxis& axis) {
   double largest = 0, sum = 0, least = 0;
   for (const PlotPoint& p : model.points) largest = std::max(largest, p.y);
-  // At even angles, as the peaks have points of their own.
+  // Trapezoidal rule: the angles are not evenly spaced, because the peaks have points of their own.
   const size_t count = model.points.size();
   for (size_t i = 1; i < count; ++i) {
     sum += 0.5 * (model.points[i - 1].y + model.points[i].y) * (model.points[i].x - model.points[i - 1].x);

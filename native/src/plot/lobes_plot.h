@@ -10,9 +10,9 @@
 
 namespace velour {
 
-/// Luminance of f cos(theta_l) against the signed theta_l: of the model of a BRDF, of each of its lobes, and of the
-/// measurement: its interpolation, or the samples themselves that lie near view and plane. The radius is logarithmic
-/// where one peak would leave nothing else to see.
+/// Luminance of f cos(theta_l) against the signed theta_l, for the model of a BRDF, each of its lobes, and the
+/// measurement: interpolated, or the samples themselves that lie near view and plane. The radius is logarithmic if one
+/// peak would hide everything else.
 Plot lobes_plot(const std::shared_ptr<const Model>& model, const Measurement* measurement, const PlotView& view);
 
 }  // namespace velour

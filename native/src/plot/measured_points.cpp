@@ -40,7 +40,7 @@ std::vector<PlotPoint> table_points(const Measurement& measurement, const PlotVi
   return points;
 }
 
-/// Turned about the normal, so that azimuth `phi` is that of +x.
+/// Rotates `w` about the normal so that azimuth `phi` becomes that of +x.
 Vec3d turned_back(const Vec3& w, double phi) {
   const double c = std::cos(phi), s = std::sin(phi);
   return {c * w.x + s * w.y, c * w.y - s * w.x, w.z};
@@ -51,7 +51,7 @@ std::vector<PlotPoint> sample_points(const Measurement& measurement, const PlotV
   for (const ScatteredSample& sample : measurement.samples()) {
     const double theta = std::acos(std::clamp(static_cast<double>(sample.wv.z), -1.0, 1.0));
     if (std::abs(degrees_from(theta - view.theta)) > kNear) continue;
-    // Of isotropic data every plane of incidence is the same one.
+    // For isotropic data, all planes of incidence are equivalent.
     const double phi = measurement.isotropic() ? std::atan2(static_cast<double>(sample.wv.y), sample.wv.x) : view.phi;
     const Vec3d wv = turned_back(sample.wv, phi), wl = turned_back(sample.wl, phi);
     const double off_plane = degrees_from(std::asin(std::clamp(std::abs(wl.y), 0.0, 1.0)));

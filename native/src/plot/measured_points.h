@@ -1,4 +1,4 @@
-// What a measurement holds in the plane of incidence of one view.
+// Measured values in the plane of incidence of one view.
 #pragma once
 
 #include <vector>
@@ -9,13 +9,13 @@
 
 namespace velour {
 
-/// In the plane of incidence of views of azimuth `phi` (radians), `degrees` from the normal, positive on the other side
-/// of it than the viewer.
+/// Light direction in the plane of incidence of views of azimuth `phi` (radians), `degrees` from the normal, positive
+/// on the side opposite the viewer.
 Vec3 light_in_plane(double degrees, double phi);
 
-/// Luminance of f cos(theta_l) against the signed theta_l in degrees, sorted. Tables: their interpolation, every two
-/// degrees and closer about the mirror direction, where it covers the pair. Scattered samples: those within 2.5 degrees
-/// of the view, and of the plane.
+/// Luminance of f cos(theta_l) against the signed theta_l in degrees, sorted. Tables: interpolated every two
+/// degrees, and closer around the mirror direction, where they cover the pair. Irregular samples: those within 2.5
+/// degrees of the view and of the plane.
 std::vector<PlotPoint> measured_points(const Measurement& measurement, const PlotView& view);
 
 }  // namespace velour

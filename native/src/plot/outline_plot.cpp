@@ -12,7 +12,7 @@ namespace {
 constexpr int kOutlineStep = 3, kLastOutline = 87;  // degrees
 constexpr int kAzimuths = 12;
 constexpr uint32_t kTexels = 64;
-constexpr float kLongest = 4;  // tiles that are longer have no more texels
+constexpr float kLongest = 4;  // maximum aspect; longer tiles get no more texels
 
 TileTexels texels_of(const OcclusionVolume& volume) {
   const float rows = std::clamp(kTexels * volume.aspect, 1.0f, kTexels * kLongest);

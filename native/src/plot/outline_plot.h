@@ -1,4 +1,4 @@
-// What an outline leaves open, against the view.
+// Coverage of a VOTF against the view angle.
 #pragma once
 
 #include "job/progress.h"
@@ -7,8 +7,8 @@
 
 namespace velour {
 
-/// Share of a tile that its structure covers, at view angles three degrees apart: the mean over azimuths, and the least
-/// and the most of them. Throws Error(unsupported) for a model without outline (VOTF).
+/// Share of a tile that its structure covers, at view angles three degrees apart: mean, minimum and maximum over
+/// azimuths. Throws Error(unsupported) for a model without a VOTF.
 Plot outline_plot(const Model& model, Progress& progress);
 
 }  // namespace velour

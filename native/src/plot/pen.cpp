@@ -9,8 +9,8 @@ namespace velour {
 namespace {
 
 constexpr float kLeastText = 10, kSideOfText = 45, kLargestShare = 16;
-constexpr float kTolerance = 0.05f;                                   // pixels that a drawn line may be off
-constexpr float kSample = 1.8f, kSampleGap = 0.5f, kEntryGap = 1.2f;  // of a legend, em
+constexpr float kTolerance = 0.05f;                                   // maximum error of a drawn line in pixels
+constexpr float kSample = 1.8f, kSampleGap = 0.5f, kEntryGap = 1.2f;  // lengths in a legend, in em
 
 float em_of(const PlotStyle& style) {
   const auto side = static_cast<float>(style.side);

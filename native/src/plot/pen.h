@@ -1,4 +1,4 @@
-// Draws the parts that all plots share, in the plot's colours and in widths that go with its text.
+// Draws the parts that all plots share, in the plot's colors, with widths that scale with its text.
 #pragma once
 
 #include <optional>
@@ -26,7 +26,7 @@ class Pen {
   void series(PlotRole role, PlotMark mark, const std::vector<Vec2>& points,
               std::optional<size_t> chosen = std::nullopt);
 
-  /// Of `plot`, in lines of at most `width`.
+  /// Height of the legend of `plot`, in lines of at most `width`.
   float legend_height(const Plot& plot, float width) const;
   void legend(const Plot& plot, const Vec2& upper_left, float width);
 

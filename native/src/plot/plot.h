@@ -1,4 +1,4 @@
-// What a plot shows: series of numbers with their axes. Nothing of pixels.
+// Data of a plot: series of numbers with their axes, without pixels.
 #pragma once
 
 #include <optional>
@@ -11,9 +11,9 @@ struct PlotPoint {
   double x, y;
 };
 
-/// What a number is of: its colour.
+/// Meaning of a series, which determines its color.
 enum class PlotRole { model, lobe, measured, level, red, green, blue, text };
-/// How it is drawn.
+/// How a series is drawn.
 enum class PlotMark { line, dashes, dots, line_and_dots };
 
 struct PlotSeries {
@@ -21,14 +21,14 @@ struct PlotSeries {
   PlotRole role = PlotRole::model;
   PlotMark mark = PlotMark::line;
   std::vector<PlotPoint> points = {};
-  std::optional<size_t> chosen = std::nullopt;  // the point that the model is
+  std::optional<size_t> chosen = std::nullopt;  // index of the model's own point
 };
 
 struct PlotAxis {
-  std::string column;  // with its unit, as a table names it
-  std::string label;   // the same to a reader
+  std::string column;  // name of a table's column, with the unit
+  std::string label;   // the same for a reader
   bool logarithmic = false;
-  /// What is drawn, low < high. On a logarithmic axis less than `low` is drawn there.
+  /// Visible range, low < high. On a logarithmic axis, values below `low` are drawn at `low`.
   double low = 0, high = 1;
 };
 
@@ -40,11 +40,11 @@ struct PlotLegend {
 
 struct Plot {
   std::string kind;
-  /// x is then an angle in degrees from the normal, -90 to 90, positive where the mirror direction is; y the radius.
+  /// x is then an angle in degrees from the normal, -90 to 90, positive towards the mirror direction; y the radius.
   bool polar = false;
   PlotAxis x = {}, y = {};
   std::vector<PlotSeries> series = {};  // in the order of drawing
-  std::vector<PlotLegend> legend = {};  // where there is more than one kind of series
+  std::vector<PlotLegend> legend = {};  // drawn if it has more than one entry
 };
 
 }  // namespace velour

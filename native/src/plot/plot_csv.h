@@ -7,7 +7,7 @@
 
 namespace velour {
 
-/// Lines "series,x,y,chosen", the names of x and y with their units; all digits of the numbers.
+/// Lines "series,x,y,chosen" below the columns' names with their units; numbers have all digits.
 std::string csv_text(const Plot& plot);
 
 }  // namespace velour

@@ -1,4 +1,4 @@
-// Where everything of a plot lies in a square of pixels.
+// Lays out a plot in a square of pixels.
 #pragma once
 
 #include "plot/drawing.h"
@@ -10,7 +10,7 @@ namespace velour {
 struct PlotStyle {
   static constexpr int kLeastSide = 64, kLargestSide = 8192;
   int side = 800;  // pixels
-  float text = 0;  // em of the text, pixels; 0: by the side. At most a sixteenth of the side
+  float text = 0;  // em of the text in pixels, at most a sixteenth of the side; 0: derived from the side
   PlotColors colors = {};
 };
 

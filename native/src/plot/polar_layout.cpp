@@ -12,7 +12,7 @@ struct HalfDisc {
   float radius;
 };
 
-constexpr int kSpoke = 30;  // degrees between two
+constexpr int kSpoke = 30;  // degrees between two spokes
 
 std::string degrees_text(int degrees) { return std::to_string(std::abs(degrees)) + "\u00b0"; }
 
@@ -23,7 +23,7 @@ Vec2 on_circle(const HalfDisc& disc, float radius, double degrees) {
 
 std::string radius_label(const Plot& plot) { return plot.y.label + (plot.y.logarithmic ? " (logarithmic)" : ""); }
 
-/// What is written below the disc.
+/// Height of the text below the disk.
 float height_below(const Plot& plot, const Pen& pen) {
   return 2 * pen.line_height() + 0.5f * pen.em() + pen.legend_height(plot, pen.side() - 2 * pen.margin());
 }

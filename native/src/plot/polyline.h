@@ -1,4 +1,4 @@
-// Lines of many points.
+// Simplification and dashing of polylines.
 #pragma once
 
 #include <vector>
@@ -7,8 +7,8 @@
 
 namespace velour {
 
-/// Some of `points`, the first and the last among them, whose line is nowhere further than `tolerance` from what is
-/// left out [DP73].
+/// A subset of `points`, including the first and the last, whose line is within `tolerance` of all omitted points
+/// [DP73].
 std::vector<Vec2> simplified(const std::vector<Vec2>& points, float tolerance);
 
 /// Pieces of the line, `on` long, with gaps of `off` between them.

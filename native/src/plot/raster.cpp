@@ -20,7 +20,7 @@ class Raster {
 
   void add(const Stroke& stroke) {
     if (stroke.points.empty()) return;
-    // Coverage first: where segments of one stroke meet, it is not drawn twice.
+    // Coverage is collected first, so that pixels where segments of a stroke meet are not blended twice.
     const float reach = 0.5f * stroke.width + 0.5f;
     const Box box = box_of(stroke.points, reach);
     if (box.x0 >= box.x1 || box.y0 >= box.y1) return;
@@ -30,7 +30,7 @@ class Raster {
       const Vec2 a = stroke.points[i], b = stroke.points[std::min(i + 1, stroke.points.size() - 1)];
       cover_segment(a, b, reach, box, cover);
     }
-    // What is thinner than a pixel covers no more of it than its width.
+    // A stroke thinner than a pixel covers no more of it than its width.
     const float most = std::min(stroke.width, 1.0f);
     for (int y = box.y0; y < box.y1; ++y) {
       for (int x = box.x0; x < box.x1; ++x) {
@@ -46,7 +46,7 @@ class Raster {
     const float start = label.baseline.x - label.align * text_width(label.text, label.size);
     const float whole = std::floor(start);
     const TextPixels text = text_pixels(label.text, label.size, start - whole);
-    // Whole rows keep stems sharp.
+    // A baseline on a whole row keeps stems sharp.
     const int left = static_cast<int>(whole) + text.left;
     const int top = static_cast<int>(std::lround(label.baseline.y)) + text.top;
     for (int y = 0; y < text.height; ++y) {

@@ -7,7 +7,7 @@
 
 namespace velour {
 
-/// RGBA, side x side, row 0 at the bottom; sRGB, 0 to 1, opaque. Edges are smooth over a pixel.
+/// RGBA, side x side, row 0 at the bottom; sRGB, 0 to 1, opaque. Edges are antialiased over one pixel.
 std::vector<float> rasterized(const Drawing& drawing);
 
 }  // namespace velour

@@ -8,7 +8,7 @@
 namespace velour {
 namespace {
 
-/// Hundredths of a pixel.
+/// Rounds to hundredths of a pixel.
 std::string number(float value) {
   std::array<char, 32> text;
   std::snprintf(text.data(), text.size(), "%.2f", static_cast<double>(value));

@@ -1,4 +1,4 @@
-// A drawing as a picture of lines.
+// A drawing as vector graphics.
 #pragma once
 
 #include <string>
@@ -7,7 +7,7 @@
 
 namespace velour {
 
-/// SVG 1.1, side x side user units; text stays text, in DejaVu Sans where there is one.
+/// SVG 1.1, side x side user units; text stays text, in DejaVu Sans if available.
 std::string svg_text(const Drawing& drawing);
 
 }  // namespace velour

@@ -10,12 +10,12 @@
 namespace velour {
 namespace {
 
-constexpr int kPoints = 1500;               // of the sphere
-constexpr double kBandwidth = 14;           // deviation 15 degrees
-constexpr double kApart = 25 * kPiD / 180;  // of rings, and of the Gaussians of one
-constexpr double kNarrowest = 300;          // bandwidth of those whose colours change
-constexpr double kStay = 1e-3;              // what a change costs, in squares of the Gaussian itself
-constexpr double kRidge = 1e-5;             // of the Gram matrix' mean diagonal: weights stay small
+constexpr int kPoints = 1500;               // on the sphere
+constexpr double kBandwidth = 14;           // standard deviation of 15 degrees
+constexpr double kApart = 25 * kPiD / 180;  // between rings, and between the Gaussians of a ring
+constexpr double kNarrowest = 300;          // maximum bandwidth of own Gaussians whose colors change
+constexpr double kStay = 1e-3;              // penalty of a color change, relative to the Gaussian's squared norm
+constexpr double kRidge = 1e-5;             // relative to the mean diagonal of the Gram matrix; keeps weights small
 
 std::vector<LightGaussian> rings() {
   std::vector<LightGaussian> gaussians;
@@ -74,7 +74,7 @@ BroadPart::Fitted BroadPart::fitted(const std::function<Vec3d(const Vec3d&)>& sl
   return fitted;
 }
 
-/// By what those of fixed centres cannot take of `left`, which changes with the colours.
+/// Adjusts the colors of `own` to what the fixed Gaussians cannot represent of `left`, and updates `left`.
 void BroadPart::mend(std::span<LightGaussian* const> own, Eigen::MatrixXd& left) const {
   const auto count = static_cast<Eigen::Index>(own.size());
   Eigen::MatrixXd density(count, kPoints);

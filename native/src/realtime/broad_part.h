@@ -1,5 +1,5 @@
-// What is broad of a slice of f cos: a clipped cosine and few Gaussians of fixed centres, with those that the slice has
-// of its own, by least squares.
+// Least-squares fit of the broad part of a slice of f cos: a clipped cosine and a few Gaussians with fixed centers, in
+// addition to the slice's own Gaussians.
 #pragma once
 
 #include <Eigen/Core>
@@ -9,7 +9,7 @@
 
 namespace velour {
 
-/// Immutable: the least squares of any slice are a product with one matrix.
+/// Immutable: the least-squares solution of any slice is a product with one matrix.
 class BroadPart {
  public:
   BroadPart();
@@ -19,9 +19,9 @@ class BroadPart {
     Vec3d cosine;  // of the clipped cosine over pi
     std::vector<LightGaussian> gaussians;
   };
-  /// `slice` of a direction of the sphere; below the horizon it should be 0, for light comes from there as well. The
-  /// fit is what is left of it by `own`, whose colours change where that helps much: views beside this one blend
-  /// theirs.
+  /// `slice` takes any direction of the sphere; it should be 0 below the horizon, because light comes from there, too.
+  /// Fits the residual of `slice` after `own`, whose colors change only where that helps much, because they are blended
+  /// with those of neighboring views.
   Fitted fitted(const std::function<Vec3d(const Vec3d&)>& slice, std::span<LightGaussian> own) const;
 
  private:

@@ -21,7 +21,7 @@ std::vector<BtfMaps::Term> terms_of(const SrbfBtf& btf, const SrbfSide& side) {
   return terms;
 }
 
-/// Writes one layer's part of a level; `value`(texel x, texel y, to) gives its four numbers.
+/// Writes one layer's part of a level; `value(texel x, texel y, to)` gives its four numbers.
 template <typename Value>
 void write_level(TablePixels& maps, uint32_t first_row, const BtfMaps::Level& level, const Value& value) {
   for (uint32_t y = 0; y < level.height + 2 * kTableBorder; ++y) {

@@ -1,4 +1,4 @@
-// A BTF of multivariate SRBFs as the maps that a shader interpolates.
+// A BTF of multivariate SRBFs as maps that a shader interpolates.
 #pragma once
 
 #include <vector>
@@ -8,18 +8,18 @@
 
 namespace velour {
 
-/// One side of a BTF, f = expanded(axes s) as in btf/srbf_btf.h. `layers` stand one above the other in `maps`, each of
-/// maps.height / layers rows: four coefficients a layer, in the order of `terms` and zeros to the end, then one of the
-/// relief: height over the reference plane in widths of the tile, and its slope, two numbers. A layer has all levels of
-/// the pyramid beside one another, each with a border of one pixel that repeats the tile.
+/// One side of a BTF, f = expanded(axes s) as in btf/srbf_btf.h. `maps` stacks `layers` vertically, each of maps.height
+/// / layers rows: four coefficients per layer, in the order of `terms` and padded with zeros, then one layer of the
+/// relief: height over the reference plane in tile widths, and its slope along x and y. A layer has all levels of the
+/// pyramid side by side, each with a border of one pixel that repeats the tile.
 struct BtfMaps {
   struct Level {
-    uint32_t x, width, height;  // of the first pixel within the border; it is in the second row
+    uint32_t x, width, height;  // x of the first pixel inside the border, which is in the second row
   };
-  /// A coefficient: what it multiplies, and the colour of its axis.
+  /// A coefficient: the lobe that it multiplies, and the color of its axis.
   struct Term {
     MultivariateLobe lobe;
-    bool in_tile;  // a function in the tile's frame, else in that of the relief's normal
+    bool in_tile;  // the lobe is in the tile's frame, otherwise in that of the relief's normal
     Vec3 color;
   };
 
@@ -30,8 +30,8 @@ struct BtfMaps {
   TablePixels maps = {};
 };
 
-/// What is seen from above under light from above, and, where the BTF has one of its own, what is seen from below under
-/// light from below: both are looked at mirrored to z > 0. Throws Error(invalid_argument) of a BTF without the first.
+/// Maps of the side seen and lit from above and, if the BTF has its own, of the side seen and lit from below, whose two
+/// directions are mirrored to z > 0. Throws Error(invalid_argument) for a BTF without the first.
 std::vector<BtfMaps> btf_maps(const SrbfBtf& btf);
 
 }  // namespace velour

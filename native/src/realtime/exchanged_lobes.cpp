@@ -10,24 +10,24 @@
 namespace velour {
 namespace {
 
-constexpr int kLights = 300;  // of the hemisphere, where Newton's method may begin
+constexpr int kLights = 300;  // on the hemisphere: starting points of Newton's method
 constexpr int kMaxSteps = 8;
-constexpr double kFarthest = 0.3;                          // of a step, radians
-constexpr double kBroadest = 2;                            // bandwidth of a peak
-constexpr double kMinLogGrowth = -2, kMaxLogGrowth = 1.5;  // logarithms of a growth
+constexpr double kFarthest = 0.3;                          // maximum length of a step in radians
+constexpr double kBroadest = 2;                            // minimum bandwidth of a peak
+constexpr double kMinLogGrowth = -2, kMaxLogGrowth = 1.5;  // bounds of the logarithm of growth()
 
 double sum_of(const Vec3d& color) { return color.x + color.y + color.z; }
 
-/// Of the sum of a term's channels, with the parameters `own` of the light.
+/// Logarithm of the sum of a term's channels; `own`: its parameters at the light.
 double log_value(const WarpedLobe& own, const Vec3d& wl, const Vec3d& wv) {
   return std::log(0.5 * sum_of(own.coefficient)) - own.bandwidth * one_minus_dot(warped(own, wv, wl), own.center);
 }
 
-/// Of a function of two variables at 0, by differences.
+/// Quadratic approximation of a function of two variables at 0, by finite differences.
 struct Quadratic {
   double at;
   glm::dvec2 slope;
-  glm::dmat2 curvature;  // of minus the function
+  glm::dmat2 curvature;  // of the negated function
 
   template <typename Value>
   Quadratic(const Value& f, double h) : at(f(0, 0)) {
@@ -46,20 +46,20 @@ struct Quadratic {
   }
 };
 
-/// Of a positive symmetric matrix.
+/// Inverse square root of a symmetric positive definite matrix.
 glm::dmat2 inverse_root(const glm::dmat2& m) {
   const double root = std::sqrt(glm::determinant(m)), trace = std::sqrt(m[0][0] + m[1][1] + 2 * root);
   return glm::inverse((m + glm::dmat2(root)) / trace);
 }
 
-/// Beyond the horizon there are no parameters: what a peak there is like is extrapolated from above.
+/// Lifts `wl` to `least_cosine`: there are no parameters below the horizon, so peaks there are extrapolated from above.
 Vec3d lifted(const Vec3d& wl, double least_cosine) {
   if (wl.z >= least_cosine) return wl;
   const double planar = std::sqrt((1 - least_cosine * least_cosine) / (wl.x * wl.x + wl.y * wl.y));
   return {planar * wl.x, planar * wl.y, least_cosine};
 }
 
-/// A lobe of the view whose argument is psi at `wl`, and of what the parameters there are.
+/// A lobe at the view, in the space of the parameters `own` at `wl`, centered on the argument of `wl`.
 WarpedLobe argument_of(const WarpedLobe& own, const Vec3d& wl, const Vec3d& wv) {
   WarpedLobe seen;
   seen.space = own.space;

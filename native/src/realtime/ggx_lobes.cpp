@@ -50,7 +50,7 @@ Vec3d GgxLobes::growth(const Vec3d& wl, const Vec3d& wv) const {
   const double cosine = std::max(wv.z, 0.02);
   const PrincipledPoint point(parameters_, view_at(cosine));
   const auto at_facet = static_cast<float>(std::clamp(glm::dot(wl, glm::normalize(wl + wv)), 0.0, 1.0));
-  // Without a reflectance at the normal it is 0 there, as the lobes are.
+  // Without reflectance at normal incidence the ratio is 0, like the lobes.
   return masking(wl.z, cosine) / masking(cosine, cosine) * Vec3d(point.reflectance(at_facet)) /
          glm::max(Vec3d(point.reflectance(static_cast<float>(cosine))), Vec3d(1e-9));
 }

@@ -10,11 +10,11 @@ namespace velour {
 namespace {
 
 constexpr double kMostBandwidth = 1e6;
-constexpr double kLeastAbove = 1e-9;        // of a Gaussian, above the horizon
+constexpr double kLeastAbove = 1e-9;        // minimum share of a Gaussian above the horizon
 constexpr double kBroad = 8, kNarrow = 24;  // bandwidths
-constexpr double kRowSpacing = 1.8;  // deviations of a Gaussian between two of a row: smooth to one in two hundred
+constexpr double kRowSpacing = 1.8;         // in deviations of a Gaussian; the sum is smooth to one in two hundred
 
-/// Gaussians in a row: places x, in deviations of what they sample, and weights that sum to 1.
+/// Gaussians in a row: positions x, in deviations of the Gaussian that they sample, and weights that sum to 1.
 struct Row {
   explicit Row(size_t count) : n(static_cast<int>(count)) {
     double sum = 0;
@@ -22,7 +22,7 @@ struct Row {
     for (int i = 0; i < n; ++i) variance += (share[i] = std::exp(-x(i) * x(i) / 2) / sum) * x(i) * x(i);
   }
   double x(int i) const { return n > 1 ? 4.0 * i / (n - 1) - 2 : 0; }
-  /// Variance of places, over that of each Gaussian, that still adds up smoothly.
+  /// Maximum variance of the positions, relative to that of each Gaussian, for a smooth sum.
   double most() const { return variance * std::pow(kRowSpacing * (n - 1) / 4, 2); }
 
   static constexpr int kMost = 13;
@@ -30,13 +30,13 @@ struct Row {
   double share[kMost], variance = 0;
 };
 
-/// The light direction of an argument beside the lobe's centre, if there is one.
+/// The light direction of the argument at `distance` from the lobe's center along `tangent`, if there is one.
 std::optional<Vec3d> light_at(const WarpedLobe& lobe, const Vec3d& tangent, double distance, const Vec3d& wv) {
   const Vec3d psi = std::cos(distance) * lobe.center + std::sin(distance) * tangent;
   return unwarped(lobe, psi, wv);
 }
 
-/// What a deviation along `tangent` is among lights, by both sides of the centre where both have any.
+/// Derivative of the light direction along `tangent`, from both sides of the center if both have light directions.
 Vec3d spread(const WarpedLobe& lobe, const Vec3d& center, const Vec3d& tangent, double step, const Vec3d& wv) {
   const auto ahead = light_at(lobe, tangent, step, wv), behind = light_at(lobe, tangent, -step, wv);
   if (ahead && behind) return (*ahead - *behind) / (2 * step);
@@ -45,8 +45,8 @@ Vec3d spread(const WarpedLobe& lobe, const Vec3d& center, const Vec3d& tangent, 
   return tangent;
 }
 
-/// A Gaussian times the clipped cosine, as a Gaussian again: what its mean and variance along the normal become, those
-/// of a normal distribution of cosines. `color` times the mean cosine.
+/// Approximates a Gaussian times the clipped cosine by a Gaussian: its mean and variance along the normal become those
+/// of a normal distribution of cosines, and `color` is multiplied by the mean cosine.
 void multiply_by_cosine(LightGaussian& g) {
   const double m = g.center.z, s = std::sqrt(std::max(1 - m * m, 0.0) / g.bandwidth);
   if (s < 1e-6) {
@@ -79,7 +79,7 @@ void clip_at_horizon(LightGaussian& g) {
   g.is_used = g.is_used && above > kLeastAbove;
 }
 
-/// Lobes broader than this are not Gaussians once the cosine is in; they are left to whoever fits what is broad.
+/// Share of a lobe that becomes Gaussians. Broad lobes times the cosine are not Gaussian; BroadPart fits them.
 double gaussian_share(double bandwidth) {
   const double t = std::clamp(std::log(bandwidth / kBroad) / std::log(kNarrow / kBroad), 0.0, 1.0);
   return t * t * (3 - 2 * t);
@@ -105,14 +105,14 @@ ReachedLobe reached(const WarpedLobe& lobe, const glm::dmat2& deviations, const 
   const double step = std::min(0.5 * std::sqrt(std::abs(glm::determinant(deviations))), 0.2);
   const glm::dmat2x3 light =
       glm::dmat2x3(spread(lobe, *center, x, step, wv), spread(lobe, *center, y, step, wv)) * deviations;
-  // The longest axis of the ellipse that the unit circle becomes among lights.
+  // The longest axis of the ellipse to which the unit circle maps among lights.
   const double a = glm::dot(light[0], light[0]), b = glm::dot(light[0], light[1]), c = glm::dot(light[1], light[1]);
   const double middle = (a + c) / 2, half = std::hypot((a - c) / 2, b);
   const double turn = 0.5 * std::atan2(2 * b, a - c);
   const glm::dvec2 along = deviations * glm::dvec2(std::cos(turn), std::sin(turn));
   const double deviation = glm::length(along);
   result.lobe.bandwidth = 1 / (deviation * deviation);
-  result.lobe.coefficient *= std::abs(glm::determinant(deviations)) * result.lobe.bandwidth;  // of the same integral
+  result.lobe.coefficient *= std::abs(glm::determinant(deviations)) * result.lobe.bandwidth;  // keeps the integral
   reach.along = (along.x * x + along.y * y) / deviation;
   reach.longer = std::sqrt(middle + half) / deviation;
   reach.shorter = std::sqrt(std::max(middle - half, 1e-4 * middle)) / deviation;
@@ -123,7 +123,7 @@ Vec3d ReachedLobe::value(const Vec3d& wl, const Vec3d& wv) const {
   const Frame frame = Frame::about(Vec3(lobe.center));
   const Vec3d psi = warped(lobe, wl, wv);
   const glm::dvec2 plane(glm::dot(psi, Vec3d(frame.x)), glm::dot(psi, Vec3d(frame.y)));
-  // As long as the chord, so that a round lobe is its kernel.
+  // Scaled to the length of the chord, so that a round lobe equals its kernel.
   const glm::dvec2 apart = plane * (glm::length(psi - lobe.center) / std::max(glm::length(plane), 1e-12));
   return peak * std::exp(-0.5 * glm::dot(apart, curvature * apart));
 }
@@ -138,9 +138,9 @@ void light_gaussians(const ReachedLobe& reached, LobeOf of, const Vec3d& wv, std
   const WarpedLobe& lobe = reached.lobe;
   const LobeReach& reach = reached.reach;
   const Row row(out.size());
-  // The variance of a row is that of its places and that of each: along they add up to the lobe's, across each has all.
+  // Along the row, the variance of the positions and that of each Gaussian add up to the lobe's; across, each has all.
   const double square = std::pow(reach.longer / reach.shorter, 2), places = std::min(square - 1, row.most());
-  const double own = square / (1 + places);  // along, over that across; above 1 where the row is too short
+  const double own = square / (1 + places);  // variance along over that across; above 1 if the row is too short
   const double deviation = std::sqrt(1 / lobe.bandwidth);  // of the argument
   const double spread = row.n > 1 ? deviation * std::sqrt(places / (1 + places) / row.variance) : 0;
   const double across = reached.bandwidth_across() / std::sqrt(own);
@@ -153,7 +153,7 @@ void light_gaussians(const ReachedLobe& reached, LobeOf of, const Vec3d& wv, std
     const double area = 1 / warp_jacobian(lobe, *wl, wv), growth = area * warp_jacobian(lobe, *center, wv);
     g.is_used = share > 0;
     g.center = *wl;
-    // A half vector's growth is all across: 2 would be the power, and 1 what keeps the row smooth along.
+    // The growth of half vectors is all across: the exact power is 2, and 1 keeps the row smooth along.
     g.bandwidth = std::clamp(across / std::pow(growth, 1.5), 1.0, kMostBandwidth);
     g.color = share * whole * row.share[i] * area * lobe.coefficient;
     of == LobeOf::f ? multiply_by_cosine(g) : clip_at_horizon(g);

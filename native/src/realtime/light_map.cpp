@@ -13,11 +13,11 @@ namespace velour {
 namespace {
 
 constexpr int kCosineSide = 48, kSkySide = 1024, kLeastSide = 24, kMostSide = 640;
-constexpr double kPixelsOfDeviation = 3.5;  // of a lobe's; linear look-ups then err by 1/98 of its peak along each axis
-constexpr int kTableAngles = 256;           // of the table of a lobe's light on a receiver
+constexpr double kPixelsOfDeviation = 3.5;  // per lobe's; linear look-ups then err by 1/98 of its peak along each axis
+constexpr int kTableAngles = 256;           // entries of the table of ReceivedLight
 
 struct Map {
-  int x, y, side;  // of the border's first pixel; without borders
+  int x, y, side;  // of the border's first pixel; side without borders
 };
 
 int side_of(int level) {
@@ -27,7 +27,7 @@ int side_of(int level) {
   return std::clamp(static_cast<int>(kPixelsOfDeviation * deviations), kLeastSide, kMostSide);
 }
 
-/// Below the row of the list: shelves of maps, largest first.
+/// Places the maps on shelves below the row of entries, largest first.
 std::array<Map, LightLevels::kCount> placed_maps(uint32_t& width, uint32_t& height) {
   std::array<Map, LightLevels::kCount> maps{};
   int x = 0, y = 1, shelf = 0;
@@ -44,7 +44,7 @@ std::array<Map, LightLevels::kCount> placed_maps(uint32_t& width, uint32_t& heig
   return maps;
 }
 
-/// Pixel of a map, border included, on the sphere: the octahedral map goes on over its edges turned by half.
+/// Direction of a pixel of a map, border included: the octahedral map continues over its edges, rotated by a half turn.
 Vec3 direction_at(int x, int y, int side) {
   const auto to_square = [&](int i) { return (static_cast<float>(i) + 0.5f) / static_cast<float>(side); };
   Vec2 square(to_square(x), to_square(y));
@@ -53,7 +53,7 @@ Vec3 direction_at(int x, int y, int side) {
   return octahedral_to(square);
 }
 
-/// What a receiver gets of a Gaussian of amplitude 1 by the angle between its normal and the lobe's centre, over pi.
+/// Irradiance / pi from a Gaussian of amplitude 1, by the angle between the receiver's normal and the lobe's center.
 class ReceivedLight {
  public:
   explicit ReceivedLight(double bandwidth) {
@@ -88,13 +88,13 @@ class ReceivedLight {
   std::array<float, kTableAngles> by_angle_;
 };
 
-constexpr float kMinLobeShare = 1e-5f;  // of the mean radiance: what a lobe of the sky may be left out for
+constexpr float kMinLobeShare = 1e-5f;  // of the mean radiance: environment lobes that add less are omitted
 
-/// A part of a mixture as the products' kernel takes it: amplitudes 1, as many lobes as lanes.
+/// Part of a mixture in the form of multiply_lobes(): amplitudes 1, in blocks of as many lobes as lanes.
 class Lobes {
  public:
-  /// Those that add at least a luminance of `least` to the mean over Gaussians of this bandwidth, anywhere within
-  /// `reach` radians of `center`.
+  /// Takes the lobes that add at least a luminance of `least` to the mean over Gaussians of this bandwidth, anywhere
+  /// within `reach` radians of `center`.
   Lobes(const SkyMixture& sky, float least, float bandwidth, const Vec3& center, float reach)
       : bandwidth_(bandwidth),
         amplitude_(1 / static_cast<float>(kernel_integral(Kernel::gaussian, static_cast<double>(bandwidth)))) {
@@ -110,7 +110,7 @@ class Lobes {
     lobes_ = in_blocks(near);
   }
 
-  /// Their mean over a Gaussian density about `center`.
+  /// Mean of the lobes over a Gaussian density around `center`.
   Rgb mean(const Vec3& center, LobeProducts& products) const {
     products.count = 0;
     multiply_lobes({center, bandwidth_, amplitude_}, lobes_, nullptr, products);
@@ -134,7 +134,7 @@ float mean_luminance(const SkyMixture& sky) {
   return static_cast<float>(sum / (4 * kPiD));
 }
 
-/// Pixels of a level that are made together; (x, y) from -1, border included.
+/// Pixels of a level that are computed together; (x, y) start at -1, border included.
 struct Block {
   static constexpr int kSide = 16;
   int level, x, y, x_end, y_end;
@@ -153,7 +153,7 @@ std::vector<Block> blocks_of(const std::array<Map, LightLevels::kCount>& maps) {
   return blocks;
 }
 
-/// Calls `value`(direction) for the pixels of a block.
+/// Fills the pixels of a block with `value(direction)`.
 template <typename Value>
 void fill(const Block& block, const Map& map, TablePixels& pixels, const Value& value) {
   for (int y = block.y; y < block.y_end; ++y) {
@@ -166,8 +166,8 @@ void fill(const Block& block, const Map& map, TablePixels& pixels, const Value& 
   }
 }
 
-/// The lobes that count in a block: by its corners, for those of the border lie elsewhere on the sphere than its
-/// middle.
+/// The lobes that matter in a block. Looks at all its pixels, because those of the border lie elsewhere on the sphere
+/// than its middle.
 Lobes lobes_in(const Block& block, const Map& map, const SkyMixture& sky, float least) {
   const Vec3 center = direction_at((block.x + block.x_end - 1) / 2, (block.y + block.y_end - 1) / 2, map.side);
   float reach = 0;
@@ -176,7 +176,7 @@ Lobes lobes_in(const Block& block, const Map& map, const SkyMixture& sky, float 
       reach = std::max(reach, glm::length(direction_at(x, y, map.side) - center));
     }
   }
-  // An angle of a chord, and no less.
+  // Converts the chord to an angle, rounded up.
   return {sky, least, LightLevels::bandwidth(block.level), center, 2 * std::asin(std::min(reach / 2, 1.0f)) + 1e-3f};
 }
 

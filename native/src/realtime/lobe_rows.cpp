@@ -16,8 +16,8 @@ namespace {
 
 constexpr int kLobeFloats = 8;
 constexpr int kRowAngles = 91, kGrid = 49;        // of parametric models, which blend
-constexpr int kNearAngles = 361, kNearGrid = 65;  // of scattered ones, which do not
-constexpr double kSoft = 300;                     // bandwidths of light below which the broad part mends a lobe
+constexpr int kNearAngles = 361, kNearGrid = 65;  // of per-view models, which do not
+constexpr double kSoft = 300;                     // bandwidth among lights below which the broad part corrects a lobe
 
 size_t places_of(const LobeRows& rows) {
   const auto n = static_cast<size_t>(rows.side);
@@ -32,7 +32,7 @@ Vec3d view_at(const LobeRows& rows, size_t place) {
     disk = {2 * along(place % n) - 1, 2 * along(place / n) - 1};
     disk /= std::max(glm::length(disk), 1.0);
   }
-  // A view in the surface itself sees nothing.
+  // A view in the plane of the surface sees nothing.
   const double radius = glm::length(disk), theta = std::min(radius * kPiD / 2, 1.5690);
   const double sine = radius > 0 ? std::sin(theta) / radius : 0;
   return {sine * disk.x, sine * disk.y, std::cos(theta)};
@@ -48,14 +48,14 @@ void write_lobe(const LightGaussian& g, float* to) {
   write_lobe(Vec3(g.center), LightLevels::of(static_cast<float>(g.bandwidth)), Vec3(g.color), g.is_used, to);
 }
 
-/// All of a place.
+/// Writes all lobes of a place.
 void write_lobes(const BroadPart::Fitted& broad, const std::vector<LightGaussian>& gaussians, float* to) {
   write_lobe({0, 0, 1}, LightLevels::kCosine, Vec3(broad.cosine), true, to);
   for (const LightGaussian& g : broad.gaussians) write_lobe(g, to += kLobeFloats);
   for (const LightGaussian& g : gaussians) write_lobe(g, to += kLobeFloats);
 }
 
-/// Black, of lobes that point anywhere.
+/// Pixels of unused lobes: black, with an arbitrary direction.
 TablePixels pixels_of(const LobeRows& rows) {
   TablePixels pixels(2 * static_cast<uint32_t>(rows.lobes), static_cast<uint32_t>(places_of(rows)));
   for (size_t i = 0; i < pixels.rgba.size(); i += kLobeFloats) {
@@ -64,7 +64,7 @@ TablePixels pixels_of(const LobeRows& rows) {
   return pixels;
 }
 
-/// How many Gaussians each lobe takes, for the view that needs most.
+/// Number of Gaussians of each lobe, for the view that needs most.
 std::vector<size_t> gaussians_of_lobes(const LobesOfViews& material, const LobeRows& rows) {
   std::vector<size_t> counts;
   for (size_t place = 0; place < places_of(rows); ++place) {
@@ -78,7 +78,7 @@ std::vector<size_t> gaussians_of_lobes(const LobesOfViews& material, const LobeR
   return counts;
 }
 
-/// The lobes of one place.
+/// Computes and writes the lobes of one place.
 void write_place(const LobesOfViews& material, const std::vector<size_t>& counts, const BroadPart& broad,
                  const Vec3d& wv, float* to) {
   const auto lobes = material.lobes(wv);
@@ -106,7 +106,7 @@ void write_place(const LobesOfViews& material, const std::vector<size_t>& counts
   write_lobes(fitted, gaussians, to);
 }
 
-/// The places beside one, those that share a side before those that share a corner.
+/// The neighbors of a place, those that share a side before those that share a corner.
 std::vector<uint32_t> beside(const LobeRows& rows, uint32_t place) {
   constexpr int kSteps[][2] = {{1, 0}, {-1, 0}, {0, 1}, {0, -1}, {1, 1}, {-1, 1}, {1, -1}, {-1, -1}};
   const int n = rows.side, last = rows.isotropic ? 0 : n - 1;
@@ -119,8 +119,8 @@ std::vector<uint32_t> beside(const LobeRows& rows, uint32_t place) {
   return places;
 }
 
-/// Lobes that a place does not use get the shape that they have beside it: else a blend would have the shape of
-/// nothing.
+/// Gives unused lobes of a place the shape that they have at a neighbor, so that blends do not mix in an arbitrary
+/// shape.
 void shape_unused_lobes(LobeRows& rows) {
   const TablePixels before = rows.pixels;
   const auto is_used = [&](uint32_t column, uint32_t place) { return before.at(column + 1, place)[3] != 0; };
@@ -149,7 +149,7 @@ LobeRows blended_rows(bool isotropic, const LobesOfViews& material, int threads,
   return rows;
 }
 
-/// The mixtures of f cos at all places, as the material has them.
+/// The material's mixtures of f cos at all places.
 std::vector<LobeMixture> mixtures_of(const ScatteredBrdf& brdf, const LobeRows& rows) {
   const ScatteredLobes lobes(brdf, 0);
   std::vector<LobeMixture> mixtures(places_of(rows));
@@ -159,7 +159,7 @@ std::vector<LobeMixture> mixtures_of(const ScatteredBrdf& brdf, const LobeRows& 
   return mixtures;
 }
 
-/// Its Gaussians; Abel-Poisson kernels as those of their mean cosine.
+/// Gaussians of a mixture; Abel-Poisson kernels become the Gaussians of their mean cosine.
 std::vector<LightGaussian> gaussians_of(const LobeMixture& mixture) {
   std::vector<LightGaussian> gaussians;
   for (int j = 0; j < mixture.count; ++j) {
@@ -173,7 +173,7 @@ std::vector<LightGaussian> gaussians_of(const LobeMixture& mixture) {
   return gaussians;
 }
 
-/// The material has nothing of its lobes below the horizon, so the broad part takes away what soft ones have there.
+/// The material is black below the horizon, so the broad part cancels what soft lobes have there.
 void write_mixture(const LobeMixture& mixture, const BroadPart& broad, float* to) {
   const auto gaussians = gaussians_of(mixture);
   std::vector<LightGaussian> soft;

@@ -1,4 +1,4 @@
-// A BRDF as Gaussian lobes of light directions, at many views: what a shader sums up.
+// A BRDF as Gaussian lobes over light directions at many views, which a shader sums up.
 #pragma once
 
 #include "job/progress.h"
@@ -8,31 +8,31 @@
 
 namespace velour {
 
-/// Reflected radiance is the sum over a place's lobes of colour times the light's mean over the lobe
+/// Reflected radiance is the sum over a place's lobes of color times the mean of the light over the lobe
 /// (realtime/light_map.h).
 ///
-/// Row = place of the view; a lobe is two pixels of it: centre (unit, in the view's frame) and level, then colour and
-/// whether it stands for anything (1, or 0 and black).
-/// Isotropic: the frame's x is along the view's azimuth, row r of n stands for the polar angle r / (n - 1) pi / 2.
-/// Otherwise the frame is the surface's, and place (i, j) of a grid of n x n for the view at (-1, -1) + 2 (i, j) /
-/// (n - 1) of the disk of views: its radius is the polar angle over pi / 2, and what lies outside counts as its rim.
-/// Places come row by row of the grid.
+/// Each row is a place, that is, a view. Each lobe is two of its pixels: center (unit, in the view's frame) and level,
+/// then color and whether it is used (1, or 0 and black).
+/// Isotropic: the frame's x is along the view's azimuth, and row r of n has the polar angle r / (n - 1) pi / 2.
+/// Otherwise the frame is the surface's, and place (i, j) of an n x n grid is the view at (-1, -1) + 2 (i, j) / (n - 1)
+/// of the disk of views: its radius is the polar angle over pi / 2, and points outside are moved to its rim. Places are
+/// in row order of the grid.
 struct LobeRows {
   bool isotropic = true;
   int side = 0;        // n
-  bool blends = true;  // lobe i of a place is lobe i of its neighbours, so they blend; else the nearest place is meant
-  int lobes = 0;       // of a place; those that are not needed are black
+  bool blends = true;  // lobe i of a place is lobe i of its neighbors, so they blend; else use the nearest place
+  int lobes = 0;       // per place; unused ones are black
   TablePixels pixels = {};
 };
 
-/// What parametric models have at a view: a lobe of half vectors, or a stretched one, is Gaussians of light in a row
-/// along its longer axis, each as wide as it is across, with what the change of variables does at each; what these
-/// leave of f cos where they are broad is fitted by a clipped cosine and few Gaussians of fixed centres, least squares
-/// over the sphere. The fit's own scattered models have such lobes; Abel-Poisson kernels count as the Gaussians of
-/// their mean cosine. Symmetric models have the lobes of the light as well (realtime/exchanged_lobes.h). Throws
+/// Parametric models: a lobe over half vectors, or a stretched one, becomes Gaussians over light directions in a row
+/// along its longer axis, each as wide as the lobe is across and scaled by the change of variables; where they are
+/// broad, the residual of f cos is fitted by a clipped cosine and a few Gaussians with fixed centers, in least squares
+/// over the sphere. Per-view models have Gaussian lobes already; Abel-Poisson kernels become the Gaussians of their
+/// mean cosine. Symmetric models also have the lobes of the light (realtime/exchanged_lobes.h). Throws
 /// Error(invalid_argument) for the model of a BTF.
 LobeRows lobe_rows(const Model& model, int threads, Progress& progress);
-/// Of the material of other objects: its GGX lobe as four lobes of half vectors.
+/// Rows of a Principled material: its GGX lobe becomes four lobes over half vectors.
 LobeRows lobe_rows(const PrincipledParameters& parameters, int threads, Progress& progress);
 
 }  // namespace velour

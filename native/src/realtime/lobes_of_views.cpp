@@ -8,7 +8,7 @@
 namespace velour {
 namespace {
 
-/// Of those that are chosen, f.
+/// f of the chosen lobes.
 Vec3d sum_of(const std::vector<WarpedLobe>& lobes, const std::vector<bool>& chosen, const Vec3d& wl, const Vec3d& wv) {
   Vec3d sum(0.0);
   for (size_t j = 0; j < lobes.size(); ++j) {

@@ -1,4 +1,4 @@
-// The lobes that a material has at a view, before they are Gaussians of light.
+// The lobes of a material at a view, before their conversion to Gaussians over light directions.
 #pragma once
 
 #include <memory>
@@ -14,16 +14,16 @@ class LobesOfViews {
  public:
   virtual ~LobesOfViews() = default;
   virtual LobeOf of() const = 0;
-  /// As many at every view.
+  /// The lobes at a view; their number is the same at every view.
   virtual std::vector<ReachedLobe> lobes(const Vec3d& wv) const = 0;
-  /// What lobe `j` of `lobes`(wv) is at `wl` over what it is there as a Gaussian of its argument.
+  /// Ratio of lobe `j` of `lobes(wv)` at `wl` to the Gaussian of its argument there.
   virtual Vec3d growth(const std::vector<ReachedLobe>& lobes, size_t j, const Vec3d& wl, const Vec3d& wv) const = 0;
-  /// f of those lobes that are `soft`, and whatever no lobe reflects.
+  /// f of the lobes marked in `soft`, plus everything that no lobe reflects.
   virtual Vec3d soft_value(const std::vector<bool>& soft, const Vec3d& wl, const Vec3d& wv) const = 0;
 };
 
-/// Of a symmetric model there are twice its lobes: those of the view, then those of the light. `brdf` has to outlive
-/// it.
+/// A symmetric model has twice its lobes here: those of the view, then those of the light. `brdf` must outlive the
+/// result.
 std::unique_ptr<LobesOfViews> lobes_of_views(const ParametricBrdf& brdf);
 std::unique_ptr<LobesOfViews> lobes_of_views(const PrincipledParameters& parameters);
 

@@ -8,7 +8,7 @@
 namespace velour {
 namespace {
 
-/// Distances by point, which repeat along x and y.
+/// Distances of the points, which repeat along x and y.
 class Distances {
  public:
   explicit Distances(const OcclusionVolume& volume) : v_(volume) {}
@@ -17,7 +17,7 @@ class Distances {
     const int byte = v_.distance[(size_t{z} * v_.height + y) * v_.width + x];
     return v_.reach * static_cast<float>(byte - OcclusionVolume::kZero) / OcclusionVolume::kUnits;
   }
-  /// Between the points on both sides; along z those there are.
+  /// Writes distance and slope: central differences, one-sided at both ends of z.
   void write(uint32_t x, uint32_t y, uint32_t z, float* to) const {
     const uint32_t right = (x + 1) % v_.width, left = (x + v_.width - 1) % v_.width, back = (y + 1) % v_.height,
                    front = (y + v_.height - 1) % v_.height, low = z > 0 ? z - 1 : z,

@@ -1,4 +1,4 @@
-// What a shader fetches, as a picture of four floats a pixel.
+// A table for shaders: an image with four floats per pixel.
 #pragma once
 
 #include <cstddef>
@@ -17,9 +17,9 @@ struct TablePixels {
   const float* at(uint32_t x, uint32_t y) const { return rgba.data() + 4 * (size_t{y} * width + x); }
 };
 
-/// Pixels around a table that repeats, which show its other side.
+/// Width in pixels of the border around a repeating table, which holds its opposite side.
 inline constexpr uint32_t kTableBorder = 1;
-/// The texel that pixel `pixel` of a bordered row of `size` texels shows.
+/// The texel at pixel `pixel` of a bordered row of `size` texels.
 inline uint32_t wrapped_texel(uint32_t pixel, uint32_t size) { return (pixel + size - kTableBorder) % size; }
 
 }  // namespace velour

@@ -7,7 +7,7 @@ namespace {
 
 uint32_t scrambled(uint32_t block) { return std::rotl(block * 0xcc9e2d51u, 15) * 0x1b873593u; }
 
-/// `count` bytes from `first` on, the first of them the lowest.
+/// `count` bytes from `first`, in little-endian order.
 uint32_t block_at(std::string_view name, size_t first, size_t count) {
   uint32_t block = 0;
   for (size_t i = 0; i < count; ++i) {

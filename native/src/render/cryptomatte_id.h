@@ -1,4 +1,4 @@
-// Names as numbers: Friedman and Jones [FJ15], Cryptomatte specification 1.2.0.
+// Cryptomatte ids of names: Friedman and Jones [FJ15], Cryptomatte specification 1.2.0.
 #pragma once
 
 #include <cstdint>
@@ -9,8 +9,8 @@ namespace velour {
 /// MurmurHash3_x86_32 of Austin Appleby (public domain), seed 0.
 uint32_t murmur_hash(std::string_view name);
 
-/// The bits of the hash of a UTF-8 name as a float. The lowest bit of the exponent is flipped where they would be zero,
-/// a subnormal, an infinity or a NaN: the specification's conversion "uint32_to_float32".
+/// The hash of a UTF-8 name, reinterpreted as a float. The lowest bit of the exponent is flipped where the float would
+/// be zero, subnormal, infinite or NaN: the specification's conversion "uint32_to_float32".
 float cryptomatte_id(std::string_view name);
 
 }  // namespace velour

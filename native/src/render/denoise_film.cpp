@@ -7,9 +7,9 @@
 namespace velour {
 namespace {
 
-constexpr size_t kOfHalf = 9;  // floats a pixel of "Halves": color, albedo, normal
+constexpr size_t kOfHalf = 9;  // floats per pixel of "Halves": color, albedo, normal
 
-/// 3 floats a pixel each.
+/// 3 floats per pixel each.
 struct Pictures {
   explicit Pictures(size_t pixels) : color(3 * pixels), albedo(3 * pixels), normal(3 * pixels) {}
   std::vector<float> color, albedo, normal;
@@ -36,7 +36,7 @@ struct Halves {
     }
   }
 
-  /// The pictures of all camera rays: both halves, weighted by their number of rays.
+  /// Images of all camera rays: the mean of both halves, weighted by their numbers of rays.
   Pictures whole() const {
     Pictures mean = half[0];
     const auto join = [&](std::vector<float>& first, const std::vector<float>& second) {

@@ -8,7 +8,7 @@
 namespace velour {
 namespace {
 
-// Camera rays grow by that from decision to decision: each costs some ten of them.
+// Growth factors of the camera rays between decisions; a decision costs as much as about ten of them.
 constexpr double kLeastGrowth = 1.25, kMostGrowth = 4;
 
 }  // namespace
@@ -19,7 +19,7 @@ void DenoisedTarget::decide(Film& film, const Progress& progress) {
   const double excess = error ? error->bound() / (target_ * target_) : kMostGrowth;
   done_ = excess <= 1;
   const double rays = next_ * std::clamp(excess, kLeastGrowth, kMostGrowth);
-  next_ = 2 * static_cast<int>(std::ceil(rays / 2));  // both halves have as many
+  next_ = 2 * static_cast<int>(std::ceil(rays / 2));  // both halves have the same number
 }
 
 }  // namespace velour

@@ -1,4 +1,4 @@
-// Where a render may stop whose picture is denoised: judged by the error of the denoised picture.
+// Stopping criterion of a denoised render: the error of the denoised image.
 #pragma once
 
 #include "job/progress.h"
@@ -6,17 +6,17 @@
 
 namespace velour {
 
-/// Decides at numbers of camera rays that follow from the errors before, so the picture depends neither on threads nor
+/// Decides at numbers of camera rays that depend only on previous errors, so the image depends neither on threads nor
 /// on time.
 class DenoisedTarget {
  public:
-  /// `target`: root of the relmse that the bound of the error must meet (DenoisedError).
+  /// `target`: square root of the relmse that the error bound must meet (DenoisedError).
   DenoisedTarget(double target, int threads) : target_(target), threads_(threads) {}
 
   bool done() const { return done_; }
-  /// Number of camera rays a pixel at which the next decision falls; a pass must not go beyond it.
+  /// Number of camera rays per pixel at the next decision; a pass must not exceed it.
   int next_decision() const { return next_; }
-  /// To be called when every pixel has next_decision() camera rays. Throws what denoise() throws.
+  /// Call it when every pixel has next_decision() camera rays. Throws what denoise() throws.
   void decide(Film& film, const Progress& progress);
 
  private:

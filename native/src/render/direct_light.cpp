@@ -43,7 +43,7 @@ void DirectLight::prepare(const Receiver& receiver, bool go_on, Work& work, cons
   work.from_product = product;
   work.from_surface = surface;
   work.from_lights = lights;
-  // One of several would be every n-th point of their sequence, and those are not even.
+  // One of several directions would be every n-th point of their sequence; such points are not even.
   work.goes_on_drawn = go_on && surface.count == 1;
   work.continuation.reset();
   work.shared_term = -1;
@@ -88,7 +88,7 @@ void DirectLight::draw_towards_lights(std::span<const Receiver> receivers) {
                    {aims_, lighting_.glow().empty() ? 0 : static_cast<size_t>(count)});
 }
 
-/// The products are Gaussians in the world frame, whatever the vertex.
+/// Products are Gaussians in the world frame, so those of all vertices are sampled together.
 void DirectLight::draw_towards_products(std::span<const Receiver> receivers) {
   product_draws_.count = 0;
   for (size_t k = 0; k < receivers.size(); ++k) {
@@ -99,7 +99,7 @@ void DirectLight::draw_towards_products(std::span<const Receiver> receivers) {
   if (product_draws_.count > 0) product_draws_.directions(Kernel::gaussian, towards_products_);
 }
 
-/// A direction that brings nothing costs nothing further: n counts it, the batch does not hold it.
+/// A direction that cannot carry light counts in n but is not stored in the batch, so it costs nothing further.
 void DirectLight::keep_if_lit(const Vertex& vertex, const Vec3& wl, const Vec3& wl_world, Drawer drawer, uint8_t aim) {
   if (!vertex.receives_light(wl, wl_world)) return;
   drawer_[world_.count] = drawer;
@@ -111,7 +111,7 @@ void DirectLight::keep_if_lit(const Vertex& vertex, const Vec3& wl, const Vec3& 
 void DirectLight::keep_world(const Vertex& vertex, const DirectionBatch& drawn, int first, int count, Drawer drawer) {
   const bool aimed = drawer == Drawer::lights && !lighting_.glow().empty();
   for (int i = first; i < first + count; ++i) {
-    const Vec3 wl_world = drawn.get(i);  // zero for a lamp's dark side: then not above the horizon
+    const Vec3 wl_world = drawn.get(i);  // zero for the dark side of a light: then not above the horizon
     const uint8_t aim = aimed && aims_[i].instance != kNoHit ? static_cast<uint8_t>(i + 1) : 0;
     keep_if_lit(vertex, vertex.frame.to_local(wl_world), wl_world, drawer, aim);
   }

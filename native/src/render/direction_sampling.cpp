@@ -36,7 +36,7 @@ void prepare_surface(SurfaceSampling sampling, const Vertex& vertex, PreparedBrd
 
 namespace {
 
-constexpr float kBeyond = 0.5f;  // share of samples of densities that know one side, where light comes through
+constexpr float kBeyond = 0.5f;  // share of samples on the far side, for one-sided densities of transmissive materials
 
 void sample_one_side(SurfaceSampling sampling, const Vertex& vertex, const PreparedBrdf& prepared,
                      std::span<const Vec2> u, DirectionBatch& wl) {

@@ -1,4 +1,4 @@
-// Independent draws from a stream of items, each with probability proportional to its weight.
+// Independent samples from a stream of items, each with probability proportional to its weight.
 #pragma once
 
 #include <algorithm>
@@ -12,22 +12,22 @@
 
 namespace velour {
 
-/// Every item receives the times of a Poisson process whose rate is its weight; the `count` earliest times of all stay,
-/// and the items to which they belong are the draws: the marks of superposed Poisson processes are independent, and
-/// proportional to the rates [Kin93 chapters 2 and 5]. (Keeping each item's first time alone would be the reservoir of
-/// [ES06]: draws without replacement, of which heavy items get less than their share.) The outcome depends on the items
-/// alone, not on their order, so parts may be drawn apart and merged.
+/// Every item receives the times of a Poisson process whose rate is its weight. The `count` earliest times of all are
+/// kept, and the items they belong to are the samples: the marks of superposed Poisson processes are independent, with
+/// probabilities proportional to the rates [Kin93 chapters 2 and 5]. (Keeping only the first time of each item would be
+/// the reservoir of [ES06]: sampling without replacement, in which heavy items get less than their share.) The outcome
+/// depends on the items but not on their order, so parts may be sampled separately and merged.
 template <typename Item>
 class DrawByWeight {
  public:
   explicit DrawByWeight(size_t count) : count_(count) {}
 
   struct Draw {
-    uint64_t key;  // the bits of the time: they are ordered as times are
+    uint64_t key;  // bits of the time; they sort like the times
     Item item;
   };
 
-  /// `numbers`: the item's own.
+  /// `numbers`: random numbers of this item alone.
   void add(const Item& item, double weight, RandomStream numbers) {
     double time = 0;
     for (size_t i = 0; i < count_; ++i) {
@@ -42,7 +42,7 @@ class DrawByWeight {
     draws_.insert(draws_.end(), other.draws_.begin(), other.draws_.end());
     if (draws_.size() > count_) trim();
   }
-  /// The draws in the order of their keys.
+  /// The samples in ascending order of their keys.
   std::vector<Draw> sorted() const {
     std::vector<Draw> draws = draws_;
     std::ranges::sort(draws, {}, &Draw::key);
@@ -61,7 +61,7 @@ class DrawByWeight {
 
   size_t count_;
   std::vector<Draw> draws_;
-  uint64_t latest_ = std::numeric_limits<uint64_t>::max();  // what comes later is no longer among the draws
+  uint64_t latest_ = std::numeric_limits<uint64_t>::max();  // later times are no longer among the samples
 };
 
 }  // namespace velour

@@ -39,7 +39,7 @@ constexpr Pass kPasses[] = {{"Combined", 4, write_combined},
 
 constexpr std::string_view kDenoised = "Denoised";
 
-/// Null: it is none of those that every film has.
+/// Null unless `name` is a pass that every film has.
 const Pass* find_pass(std::string_view name) {
   const auto* found = std::ranges::find(kPasses, name, &Pass::name);
   return found != std::end(kPasses) ? found : nullptr;

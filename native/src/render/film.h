@@ -1,4 +1,4 @@
-// The picture being made.
+// The image being rendered.
 #pragma once
 
 #include <cstdint>
@@ -19,8 +19,8 @@ namespace velour {
 class Film {
  public:
   Film(int width, int height) : Film(PixelRect{0, 0, width, height}) {}
-  /// Of the pixels of a picture that lie in `window`, with the passes of `options` beside those that it has anyway.
-  /// Throws Error(invalid_argument) where the window is empty, or options make no sense.
+  /// Film of the pixels of an image that lie in `window`, with the passes of `options` beside those that every film
+  /// has. Throws Error(invalid_argument) if the window is empty or the options are invalid.
   explicit Film(const PixelRect& window, PassOptions options = {});
   const PixelRect& window() const { return window_; }
   const PassOptions& options() const { return options_; }
@@ -28,30 +28,29 @@ class Film {
   int width() const { return window_.width(); }
   int height() const { return window_.height(); }
 
-  /// Sets all pixels to nothing.
+  /// Resets all pixels.
   void clear();
-  /// Copies the sums of `rect`, which lies in the window, row by row, to and from `pixels`; with them what layout()
-  /// keeps of each pixel, unless `values` is empty.
+  /// Copies the sums of `rect`, which must lie in the window, row by row to and from `pixels`, and with them the values
+  /// of layout() for each pixel, unless `values` is empty.
   void load(const PixelRect& rect, std::span<PixelSum> pixels, std::span<float> values = {}) const;
   void store(const PixelRect& rect, std::span<const PixelSum> pixels, std::span<const float> values = {});
 
-  /// Keeps the colors of a picture that was made of what the film has, 3 a pixel: the pass "Denoised", until the film
-  /// has more.
+  /// Stores denoised colors of the current contents, 3 per pixel, as the pass "Denoised", until the contents change.
   void keep_denoised(std::vector<float> colors, std::optional<DenoisedError> error);
   bool is_denoised() const;
-  /// Error of the pass "Denoised"; empty when it is unknown or the film is not denoised.
+  /// Error of the pass "Denoised"; empty if it is unknown or the film is not denoised.
   std::optional<DenoisedError> denoised_error() const;
 
   /// Channels of a pass: "Combined" 4 (RGBA, premultiplied), "Depth" 1, "Normal" 3 (world), "Sample Count" 1 (light
-  /// directions), "Denoised" 4, and those of PassLayout. Throws Error(invalid_argument) on another name.
+  /// directions), "Denoised" 4, and those of PassLayout. Throws Error(invalid_argument) for other names.
   static int channels(std::string_view pass);
   /// `pixels` holds width x height x channels(pass). Pixels without samples are 0; depth is 1e10 where nothing was hit.
-  /// Throws Error(invalid_argument) for a pass that was not asked for, Error(invalid_state) where there is none yet.
+  /// Throws Error(invalid_argument) for a pass that was not requested, Error(invalid_state) if it does not exist yet.
   void read_pass(std::string_view pass, std::span<float> pixels) const;
-  /// "Combined", but pixels without samples are those of a `coarser` film of the same view; null: they are 0.
+  /// "Combined", with pixels without samples taken from a `coarser` film of the same view; null: they are 0.
   void read_over(const Film* coarser, std::span<float> pixels) const;
 
-  /// Light directions of all pixels.
+  /// Number of light directions of all pixels.
   uint64_t directions() const;
 
   /// RMS over the pixels of the standard error of luminance, divided by the mean luminance. 0 while unknown.
@@ -66,8 +65,8 @@ class Film {
   const PassLayout layout_;
   mutable std::mutex mutex_;
   std::vector<PixelSum> pixels_;
-  std::vector<float> values_;    // layout_.size() of each pixel
-  std::vector<float> denoised_;  // colors; empty: there are none
+  std::vector<float> values_;    // layout_.size() per pixel
+  std::vector<float> denoised_;  // colors; empty: not denoised
   std::optional<DenoisedError> denoised_error_;
 };
 

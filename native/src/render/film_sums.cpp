@@ -11,7 +11,7 @@ namespace velour {
 namespace {
 
 constexpr size_t kOfPixel = 12;
-constexpr float kMaxWholeFloat = 16777216.0f;  // above, floats are no whole numbers
+constexpr float kMaxWholeFloat = 16777216.0f;  // above, floats skip integers
 
 void write(const PixelSum& p, float* out) {
   const float values[kOfPixel] = {p.radiance.r,
@@ -44,7 +44,7 @@ PixelSum read(const float* v) {
           .directions = count(v[11])};
 }
 
-/// A copy of all that a film has.
+/// Copy of the contents of a film.
 struct Contents {
   explicit Contents(const Film& film)
       : pixels(static_cast<size_t>(film.width()) * static_cast<size_t>(film.height())),

@@ -1,4 +1,4 @@
-// A film's sums as plain numbers: what one run leaves to the next, or one machine to another.
+// A film's sums as plain floats, passed from one run or machine to another.
 #pragma once
 
 #include <cstddef>
@@ -8,15 +8,16 @@
 
 namespace velour {
 
-/// Floats a pixel: those of PixelSum, and what the film's layout keeps.
+/// Floats per pixel: those of PixelSum and of the film's layout.
 size_t sums_per_pixel(const Film& film);
 
-/// All pixels from the bottom row on, sums_per_pixel() each. Exact: a film of nothing to which they are added has the
-/// same bits. Throws Error(invalid_argument) where `sums` has another size.
+/// Reads all pixels from the bottom row up, sums_per_pixel() each. Exact: added to an empty film, they reproduce the
+/// same bits. Throws Error(invalid_argument) if `sums` has the wrong size.
 void read_sums(const Film& film, std::span<float> sums);
 
-/// Adds the sums of camera rays that come after those of `film`, which has the same passes. Throws Error(bad_data)
-/// where they are none that read_sums() has written; `film` is unchanged then.
+/// Adds the sums of the camera rays that follow those of `film`, which has the same passes. Throws
+/// Error(invalid_argument) if `sums` has the wrong size, Error(bad_data) if it was not written by read_sums(); `film`
+/// is unchanged then.
 void add_sums(std::span<const float> sums, Film& film);
 
 }  // namespace velour

@@ -3,13 +3,13 @@
 namespace velour {
 namespace {
 
-/// Pixels at most of what a picture begins with, and of the coarsest level.
+/// Maximum number of pixels of the first level, and of the coarsest one.
 constexpr int kFirstPixels = 16000;
 constexpr int kCoarsestPixels = 1000;
-/// Of the first level. A change is seen in the redraw at hand if it is ready within the add-on's patience (40 ms), in
-/// which the hierarchy and the lights are made anew as well.
+/// Maximum time of the first level. A change is visible in the current redraw if it is ready within the add-on's
+/// patience (40 ms), in which the hierarchy and the lights are rebuilt as well.
 constexpr double kLateSeconds = 0.015;
-/// A level finer takes four times as long; twice that is left, lest pictures go to and fro.
+/// The next finer level takes four times as long; the remaining factor of two keeps images from alternating.
 constexpr double kEarlySeconds = kLateSeconds / 8;
 
 int halvings(int width, int height, int most_pixels) {

@@ -9,7 +9,7 @@
 namespace velour {
 namespace {
 
-constexpr float kLeastPart = 0.125f;  // of a pixel's side
+constexpr float kLeastPart = 0.125f;  // minimum share of a pixel's side
 
 bool varies(const Scene& scene) {
   return std::ranges::any_of(scene.materials(), [](const SurfaceMaterial& m) { return m.material->varies(); });
@@ -32,7 +32,7 @@ PixelFootprint::PixelFootprint(const Scene& scene, int width, int height, int ca
 RayCone PixelFootprint::cone_along(const Vec3& direction) const {
   const float side = std::sqrt(std::abs(pitch_.x * pitch_.y));
   if (camera_.type == Camera::Type::orthographic) return {side, 0.0f};
-  // A pixel at distance 1 / cosine from the eye shows cosine of its area.
+  // A pixel lies at distance 1 / cosine from the eye, and its area appears scaled by the cosine.
   const float cosine = -glm::dot(direction, camera_.camera_to_world.column(2));
   return {0.0f, side * std::sqrt(cosine) * cosine};
 }

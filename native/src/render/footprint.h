@@ -1,4 +1,4 @@
-// How much of a surface a ray stands for.
+// Area of a surface that a ray represents.
 #pragma once
 
 #include "material/surface_site.h"
@@ -6,41 +6,39 @@
 
 namespace velour {
 
-/// A ray as wide as what it stands for [Ama84], [AMC21]: metres across at its
-/// origin, and what every metre adds.
+/// Width of a ray [Ama84], [AMC21]: meters across at its origin, and growth per meter.
 ///
-/// Paths widen with their length alone. Mirrors that are flat keep it exact; a rough or bent surface would widen it
-/// further, and its textures are then looked up finer than they need be: that costs noise, never a blurred picture.
-/// A cone opened by the density of the sampled direction would blur it, and each strategy would converge to a picture
-/// of its own.
+/// Cones widen with the length of the path alone. Flat mirrors keep them exact; rough or curved surfaces would widen
+/// them further, so textures are looked up at a finer level than necessary, which costs noise but never blurs the
+/// image. A cone opened by the density of the sampled direction would blur it, and each strategy would converge to a
+/// different image.
 struct RayCone {
   float width = 0, spread = 0;
 
   RayCone at(float distance) const { return {width + distance * spread, spread}; }
 };
 
-/// Two sides of a parallelogram in world space. What counts is where they lead along the ray, not where they end.
+/// Two sides of a parallelogram in world space. Only their projection along the ray counts.
 struct RaySides {
   Vec3 x, y;
 };
 
-/// A square as wide as the cone, across unit `direction`.
+/// A square as wide as the cone, perpendicular to unit `direction`.
 RaySides across(const RayCone& cone, const Vec3& direction);
 
-/// What camera rays stand for: a pixel, or less where it has several. With n camera rays a pixel it is max(1/8,
-/// 1/sqrt(n)) of a pixel's side, as in pbrt-v4 [PJH23]: the rays spread over the
-/// pixel and average it already, and a texture that averages the whole pixel at each of them would blur the picture a
-/// second time. The eighth leaves 1 % of that.
+/// Footprint of camera rays: a pixel, or less with several rays per pixel. With n camera rays per pixel it is max(1/8,
+/// 1/sqrt(n)) of a pixel's side, as in pbrt-v4 [PJH23]: the rays already spread over the pixel and average it, and a
+/// texture look-up that averages the whole pixel for each of them would blur the image a second time. At an eighth, 1 %
+/// of that remains.
 class PixelFootprint {
  public:
-  /// `width`, `height` of the picture; `camera_rays` a pixel that the render is asked for, whatever ends it early.
+  /// `width`, `height`: of the image; `camera_rays`: requested per pixel, even if the render ends early.
   PixelFootprint(const Scene& scene, int width, int height, int camera_rays);
 
-  /// Of a camera ray along unit `direction`, at the camera: as wide as its pixel's solid angle, or an orthographic
-  /// pixel's area, is large. Empty where no material of the
-  /// scene varies.
+  /// Cone of a camera ray along unit `direction`, at the camera: as wide as its pixel's solid angle, or an orthographic
+  /// pixel's area. Empty if no material of the scene varies.
   RayCone cone(const Vec3& direction) const { return needed_ ? cone_along(direction) : RayCone{}; }
-  /// Of a camera ray that ends at `position`: exact, by differentials [Ige99].
+  /// Sides for a camera ray that ends at `position`: exact, by ray differentials [Ige99].
   RaySides sides(const Vec3& position) const;
 
  private:
@@ -48,17 +46,18 @@ class PixelFootprint {
 
   const Camera& camera_;
   const bool needed_;
-  Vec2 pitch_;  // of what camera rays stand for; metres at distance 1, or anywhere
+  Vec2 pitch_;  // size of the footprint of camera rays; meters at distance 1, or anywhere (orthographic)
 };
 
-/// In texture coordinates, what `sides` meet along unit `direction` on the plane through the hit. At grazing angles it
-/// is stretched no further than kLeastSlope tells. Zero without texture coordinates.
+/// Footprint in texture coordinates: `sides` projected along unit `direction` onto the plane through the hit. At
+/// grazing angles its stretch is limited by kLeastSlope. Zero without texture coordinates.
 Mat2 texture_footprint(const RaySides& sides, const Vec3& direction, const Vec3& normal, const TexturePoint& texture);
 
-/// Instances of a mesh without texture coordinates of which a material varies: one point of it is shown all over them.
+/// Number of instances with a varying material on a mesh without texture coordinates, which show a single point of the
+/// material everywhere.
 uint64_t untextured_instances(const Scene& scene);
 
-/// Cosine to the geometric normal from which on a footprint grows no longer: a thousand times as long as wide.
+/// Minimum cosine to the geometric normal in footprints, which are thus at most a thousand times as long as wide.
 inline constexpr float kLeastSlope = 1e-3f;
 
 }  // namespace velour

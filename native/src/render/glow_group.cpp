@@ -9,7 +9,7 @@
 namespace velour {
 namespace {
 
-constexpr float kLeastOfMean = 1.0f / 64;  // of the material's own mean: what any part of a picture may hold
+constexpr float kLeastOfMean = 1.0f / 64;  // minimum luminance of a triangle, as a share of the material's mean
 constexpr float kMostLuminance = 1e20f;
 
 float luminance_at(const SurfaceMaterial& m, const SurfaceSite& site) {
@@ -17,7 +17,7 @@ float luminance_at(const SurfaceMaterial& m, const SurfaceSite& site) {
   return light > 0.0f ? std::min(light, kMostLuminance) : 0.0f;
 }
 
-/// The parallelogram of which the triangle is a half; of other sets of coordinates than the first, all of the picture.
+/// The parallelogram whose half is the triangle; for texture coordinate sets other than the first, the whole texture.
 SurfaceSite site_of(const Mesh& mesh, uint32_t triangle, const TextureMap* placed) {
   if (!mesh.has_uvs()) return {};
   Vec2 uv[3];
@@ -32,7 +32,7 @@ SurfaceSite site_of(const Mesh& mesh, uint32_t triangle, const TextureMap* place
   return site;
 }
 
-/// Whether areas scale by one number whatever their direction.
+/// Whether the map scales areas of all orientations by the same factor.
 bool is_similarity(const Affine& map, double& area_scale) {
   const Vec3d x(map.column(0)), y(map.column(1)), z(map.column(2));
   area_scale = glm::dot(x, x);
@@ -54,7 +54,7 @@ float mean_glow(const SurfaceMaterial& m, const Mesh& mesh, uint32_t triangle, c
   SurfaceSite own = site_of(mesh, triangle, placed), all = SurfaceSite::everywhere();
   const auto light = [&] { return std::max(luminance_at(m, own), kLeastOfMean * luminance_at(m, all)); };
   if (m.color_sets == 0) return light();
-  // Corners, too: there is light wherever one of them has some, whatever the others take from the mean.
+  // Includes the corners, so that a triangle counts as emissive if any corner is, whatever the mean color is.
   constexpr Vec2 kPlaces[] = {{1 / 3.0f, 1 / 3.0f}, {0, 0}, {1, 0}, {0, 1}};
   float sum = 0;
   for (const Vec2& place : kPlaces) {

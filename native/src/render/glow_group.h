@@ -1,4 +1,4 @@
-// What glows of a mesh with its materials, whatever instances show it: object space.
+// Emissive triangles of a mesh with given materials, independent of instances: object space.
 #pragma once
 
 #include "render/light_tree.h"
@@ -6,14 +6,14 @@
 
 namespace velour {
 
-/// Whether the material emits light, on a surface that is itself what is seen.
+/// Whether the material emits light from the mesh itself, i.e. without a shell.
 bool glows(const SurfaceMaterial& material);
 
-/// Luminance of what a triangle sends to every side: near its mean where the material varies, and above 0 wherever the
-/// material has any light at all, so that nothing is missed that a mean of texels would round away.
+/// Luminance that a triangle emits to either side: about its mean if the material varies, and above 0 wherever the
+/// material emits at all, so that rounding in the mean of texels loses no light.
 float mean_glow(const SurfaceMaterial& material, const Mesh& mesh, uint32_t triangle, const TextureMap* placed);
 
-/// Immutable. Instances of the same mesh, materials and placements share one.
+/// Immutable. Shared by instances with the same mesh, materials and placements.
 class GlowGroup {
  public:
   static constexpr uint32_t kNone = 0xffffffffu;
@@ -21,12 +21,12 @@ class GlowGroup {
   /// Throws Error(cancelled).
   GlowGroup(const Scene& scene, const Scene::Instance& instance, const Progress& progress);
 
-  /// Triangles that rays are drawn to; the intensity of one is its luminance times its area in the object.
+  /// Light-sampled triangles; the intensity of each is its luminance times its area in object space.
   const LightTree& tree() const { return tree_; }
   uint32_t triangle(uint32_t light) const { return triangle_[light]; }
-  /// Its number in the tree; kNone: no rays are drawn to it.
+  /// Index of a triangle in the tree; kNone: it is not light-sampled.
   uint32_t light(uint32_t triangle) const { return light_[triangle]; }
-  /// Luminance times area in the world.
+  /// Sum of luminance times area, in world space.
   double power(const Mesh& mesh, const Affine& object_to_world) const;
 
  private:
@@ -35,7 +35,7 @@ class GlowGroup {
   LightTree tree_;
 };
 
-/// Twice the area, along the normal on the mesh's front.
+/// Vector of twice the area, along the normal of the mesh's front.
 Vec3 double_area(const Mesh& mesh, uint32_t triangle, const Affine& object_to_world);
 
 }  // namespace velour

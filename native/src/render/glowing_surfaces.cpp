@@ -14,13 +14,15 @@ namespace {
 
 constexpr uint32_t kNone = GlowGroup::kNone;
 constexpr size_t kRayBatch = 64;
-/// Between that of a plane that is faced, 1, and that of a ball, whose area is four times what is seen.
+/// Mean cosine of an emissive mesh: between 1 for a plane that faces the viewer and 1/4 for a ball, whose area is four
+/// times its visible disk.
 constexpr float kMeanCosine = 0.5f;
 
-/// Uniform in a triangle, without the fold of a square root [Hei19]: weights of its second and third corner.
+/// Uniform in a triangle, without the fold of a square root [Hei19]: barycentric weights of its second and third
+/// corner.
 Vec2 in_triangle(float x, float y) { return y > x ? Vec2(0.5f * x, y - 0.5f * x) : Vec2(x - 0.5f * y, 0.5f * y); }
 
-/// All that a group depends on.
+/// Everything that a group depends on.
 struct GroupKey {
   uint32_t mesh;
   std::vector<uint32_t> materials;
@@ -154,7 +156,7 @@ GlowingSurfaces::Light GlowingSurfaces::light(const Ray& ray, const Hit& hit, co
   const bool seen = !passes_back(*vertex.surface, ray, hit, hidden::kFromBounces);
   const float alpha = material.opaque() ? 1.0f : material.alpha(point_site(scene_, hit, *vertex.surface));
   const float facing = std::abs(glm::dot(ray.direction, vertex.geometric_normal));
-  // A ray that was aimed starts a little off where it was aimed from.
+  // An aimed ray starts slightly off the point that it was aimed from.
   const float distance = facing > kLeastFacing
                              ? std::abs(glm::dot(vertex.position - ray.origin, vertex.geometric_normal)) / facing
                              : hit.distance;

@@ -1,4 +1,4 @@
-// Surfaces that glow, as lights: rays are drawn to them, and drawn directions meet them. World space.
+// Emissive meshes as lights: they are light-sampled, and sampled directions hit them. World space.
 #pragma once
 
 #include <memory>
@@ -8,52 +8,53 @@
 
 namespace velour {
 
-/// Where a ray meets a surface that glows, whatever stands before it.
+/// Hit of a ray with an emissive mesh, whatever lies in between.
 struct GlowHit {
-  size_t ray;  // its number
+  size_t ray;  // index of the ray
   Hit hit;
 };
 
-/// All triangles of materials that emit, less those of instances that are hidden from bounces and those under a shell:
-/// they glow by bounces alone. Geometry and hierarchies are the scene's, which stays. Immutable; thread-safe; no
-/// allocation but of what is found.
+/// All triangles of emissive materials, except those of instances hidden from bounces and those under a shell, whose
+/// emission only bounces find. Geometry and hierarchies belong to the scene, which must outlive this. Immutable;
+/// thread-safe; allocates only for what it finds.
 class GlowingSurfaces {
  public:
-  /// `scene` is committed. Throws Error(cancelled): of millions of triangles the choice takes seconds to prepare.
+  /// `scene` must be committed. Throws Error(cancelled): preparing the choice among millions of triangles takes
+  /// seconds.
   GlowingSurfaces(const Scene& scene, const Progress& progress);
 
   bool empty() const { return places_.empty(); }
-  /// Those that rays are drawn to, for choosing between them; a light is an instance.
+  /// Light-sampled instances, one light each, for the choice between them.
   std::span<const LightTree::Light> lights() const { return lights_; }
 
-  /// Whether what was hit, by a ray of the scene's, is one of these surfaces.
+  /// Whether a hit of the scene's rays is on one of these surfaces.
   bool holds(const Hit& hit) const;
-  /// Whether rays are drawn to it.
+  /// Whether that surface is light-sampled.
   bool draws(const Hit& hit) const;
 
-  /// A point of a light: a triangle by its importance to `position`, then uniform in its area [Hei19]. `direction`:
-  /// unit, from there to the point, or zero where they are one. `x` and `y` are uniform in [0, 1).
+  /// Samples a point of a light: a triangle by its importance to `position`, then uniformly in its area [Hei19].
+  /// `direction`: unit, from `position` to the point, or zero if they coincide. `x` and `y` are uniform in [0, 1).
   Hit sample(uint32_t light, const Vec3& position, double x, float y, Vec3& direction) const;
-  /// The density of that per solid angle, at what the ray from `position` along `direction` has hit, and of which
-  /// `light`; 0 where no rays are drawn to it.
+  /// Density of sample() per solid angle, for the hit of a ray from `position` along `direction`; `light` receives the
+  /// light it belongs to. 0 if the hit is not light-sampled.
   double pdf(const Vec3& position, const Vec3& direction, const Hit& hit, uint32_t& light) const;
 
-  /// Appends what the rays, at most 64, meet of these surfaces, up to the first of them that lets nothing through.
+  /// Appends the hits of the rays, at most 64, with these surfaces, up to the first opaque one.
   void meet(std::span<const Ray> rays, std::vector<GlowHit>& found) const;
 
   struct Light {
-    Rgb radiance;  // times how much of the surface is there
-    float far;     // of a shadow ray along `ray`: just before the surface
+    Rgb radiance;  // times the alpha of the surface
+    float far;     // end of a shadow ray along `ray`: just before the surface
   };
-  /// What such a point sends along a ray back to its origin; `cone`: at that origin.
+  /// Light from such a point along a ray back to its origin; `cone`: at that origin.
   Light light(const Ray& ray, const Hit& hit, const RayCone& cone) const;
 
  private:
   struct Place {
-    uint32_t instance;  // of the scene
+    uint32_t instance;  // index in the scene
     uint32_t group;
     Affine to_object;
-    uint32_t light;  // of lights_, or GlowGroup::kNone
+    uint32_t light;  // index in lights_, or GlowGroup::kNone
   };
   bool stops(const Hit& hit) const;
   const GlowGroup& group(const Place& place) const { return groups_[place.group]; }
@@ -67,9 +68,9 @@ class GlowingSurfaces {
   std::vector<uint8_t> glows_;  // by material
   std::vector<GlowGroup> groups_;
   std::vector<Place> places_;       // by instance of rays_
-  std::vector<uint32_t> place_of_;  // by instance of the scene, or GlowGroup::kNone; empty where nothing glows
+  std::vector<uint32_t> place_of_;  // by instance of the scene, or GlowGroup::kNone; empty if nothing emits
   std::vector<LightTree::Light> lights_;
-  std::vector<uint32_t> lit_;  // by light: its place
+  std::vector<uint32_t> lit_;  // index in places_, by light
   std::unique_ptr<EmbreeScene> rays_;
 };
 

@@ -77,7 +77,7 @@ void HitLightEstimator::keep_if_received(const Vertex& vertex, const Vec3& wl, c
   world_.push(wl_world);
 }
 
-/// Looks the directions up and weighs them by the density of the balance heuristic.
+/// Looks up the directions and weights them by the density of the balance heuristic.
 void HitLightEstimator::weigh(const Vertex& vertex, Counts counts) {
   local_.pad();
   world_.pad();
@@ -104,7 +104,7 @@ void HitLightEstimator::trace(const Vertex& vertex) {
   visible_.intersect({rays_, count}, hits_, hidden::kFromBounces, passed_);
 }
 
-/// Radiance of environment and lamps where nothing stands before them.
+/// Radiance of unoccluded environment and lights.
 void HitLightEstimator::add_lights(const Vertex& vertex) {
   for (int i = 0; i < world_.count; ++i) {
     radiance_[i] = hits_[i].instance == kNoHit ? passed_[i] * environment_.get(i) : Rgb(0.0f);
@@ -119,12 +119,12 @@ Rgb HitLightEstimator::passed_from(const Vertex& vertex, const LampHit& lamp) co
   if (!lamp.lamp->casts_shadow()) return Rgb(1.0f);
   const Hit& hit = hits_[lamp.direction];
   if (!visible_.dims()) return Rgb(hit.instance != kNoHit && hit.distance < lamp.distance ? 0.0f : 1.0f);
-  // What the direction met or passed on its way was drawn, and may stand behind the lamp.
+  // The ray of the direction passed surfaces at random, and its hit may lie behind the light.
   Rgb passed;
   return visible_.occluded(vertex.shadow_ray(world_.get(lamp.direction), lamp.distance), &passed) ? Rgb(0.0f) : passed;
 }
 
-/// As LightTerms has it: what the lights draw brings the light of a surface only where it was aimed at it.
+/// As in LightTerms, light-sampled directions carry the light of a surface only if they were aimed at it.
 void HitLightEstimator::add_glow(const Vertex& vertex, Counts counts) {
   for (int i = 0; i < world_.count; ++i) {
     glow_[i] = Rgb(0.0f);
@@ -171,7 +171,7 @@ void HitLightEstimator::add_sharp(const Vertex& vertex, PathNumbers& numbers) {
   }
 }
 
-/// What is not finite is left out, as the renderer leaves it out.
+/// Drops terms that are not finite, as the renderer does.
 void HitLightEstimator::add_term(const Vec3& wl, const Rgb& light) {
   if (light == Rgb(0.0f) || !std::isfinite(light.r + light.g + light.b)) return;
   result_.wl.push_back(wl);

@@ -1,4 +1,4 @@
-// Where the light of one hit comes from: the terms of an ObservedHit.
+// Incident light of one hit: the terms of an ObservedHit.
 #pragma once
 
 #include <span>
@@ -18,10 +18,10 @@ struct HitLight {
   float light_density = 0;
 };
 
-/// One a thread.
+/// One per thread.
 class HitLightEstimator {
  public:
-  /// `options`: those of two renders whose random numbers are independent, one a half.
+  /// `options`: of two renders with independent random numbers, one for each half.
   HitLightEstimator(const Scene& scene, const Lighting& lighting, const RenderOptions (&options)[2])
       : scene_(scene),
         visible_(scene),
@@ -29,12 +29,12 @@ class HitLightEstimator {
         options_(options),
         indirect_{IndirectLight(scene, lighting, options[0]), IndirectLight(scene, lighting, options[1])} {}
 
-  /// What arrives at `vertex` over up to `bounces` surfaces. Random numbers come from `key`.
+  /// Light that arrives at `vertex` over up to `bounces` surfaces. Random numbers are derived from `key`.
   HitLight estimate(const Vertex& vertex, int bounces, uint64_t key);
 
  private:
   void estimate_half(const Vertex& vertex, int bounces, uint64_t key, int half);
-  /// How many directions there are, and which of them are drawn towards light.
+  /// Numbers of directions sampled from the lights and from the surface.
   struct Counts {
     int lights, surface;
     int all() const { return lights + surface; }
@@ -45,13 +45,13 @@ class HitLightEstimator {
   void weigh(const Vertex& vertex, Counts counts);
   void trace(const Vertex& vertex);
   void add_lights(const Vertex& vertex);
-  /// What is left on the way of what a lamp sends.
+  /// Transmittance of the way from a light.
   Rgb passed_from(const Vertex& vertex, const LampHit& lamp) const;
   void add_glow(const Vertex& vertex, Counts counts);
   void add_surfaces(const RayCone& cone, int bounces, uint64_t key, int half);
   void add_sharp(const Vertex& vertex, PathNumbers& numbers);
   void add_term(const Vec3& wl, const Rgb& light);
-  /// Luminance of the light of lamps, environment and surfaces that glow, by Lighting's density.
+  /// Records the luminance of light from lights, environment and emissive meshes with its density (Lighting).
   void note_density(float density, const Rgb& light);
   float light_density();
 
@@ -63,23 +63,23 @@ class HitLightEstimator {
   PreparedBrdf prepared_;
   HitLight result_;
 
-  // Of one half: directions that the vertex receives light from.
+  // For one half: directions that the vertex receives light from.
   DirectionBatch local_, world_;
   RgbBatch environment_, f_;
   ScalarBatch light_pdf_, material_pdf_;
   std::vector<LampHit> lamp_hits_;
   Drawer drawer_[DirectionBatch::kCapacity];
-  Hit aims_[DirectionBatch::kCapacity];      // as Lighting::sample gives them
-  float weight_[DirectionBatch::kCapacity];  // cos / (n density); 0: aimed at a surface
+  Hit aims_[DirectionBatch::kCapacity];      // from Lighting::sample
+  float weight_[DirectionBatch::kCapacity];  // cos / (n density); 0: aimed at an emissive mesh
   Ray rays_[DirectionBatch::kCapacity];
   Hit hits_[DirectionBatch::kCapacity];
-  Rgb passed_[DirectionBatch::kCapacity];  // on the way there
+  Rgb passed_[DirectionBatch::kCapacity];  // transmittance of the ray
   Rgb radiance_[DirectionBatch::kCapacity];
-  Rgb glow_[DirectionBatch::kCapacity];  // light of surfaces that glow, weighed
+  Rgb glow_[DirectionBatch::kCapacity];  // light of emissive meshes, weighted
   LightView view_;
-  uint8_t view_of_[DirectionBatch::kCapacity] = {};  // all of the one
+  uint8_t view_of_[DirectionBatch::kCapacity] = {};  // all refer to view_
 
-  // Of both halves.
+  // For both halves.
   struct Concentration {
     float density;
     double luminance;

@@ -1,19 +1,20 @@
-// How much of a pixel each of the ids in it covers.
+// Coverage of a pixel by each of its ids.
 #pragma once
 
 #include <span>
 
 namespace velour {
 
-/// Floats that a pixel needs for its `ranks` heaviest ids: a few ids more than are shown, because what has come early
-/// need not be heavy in the end.
+/// Floats per pixel for its `ranks` heaviest ids: a few ids more than are shown, because ids that come early need not
+/// be heavy in the end.
 constexpr int floats_of_ids(int ranks) { return 2 * (ranks + 2); }
 
-/// Adds `weight` to that of `id` in `slots`, pairs of both; 0 is no id. Where there is no place, the id is left out.
+/// Adds `weight` to that of `id` in `slots`, which holds (id, weight) pairs; 0 is no id. Drops the id if there is no
+/// room.
 void add_id(float id, float weight, std::span<float> slots);
 
-/// The ids of `slots` in places `first` and `first` + 1 when they are sorted by weight, the heaviest first (of equal
-/// weights: the smaller id), each with its weight times `scale`; 0 where there are no more.
+/// Writes the ids of ranks `first` and `first` + 1 by weight, heaviest first (ties: smaller id first), each with its
+/// weight times `scale`; 0 where there are no more.
 void write_ids(std::span<const float> slots, int first, float scale, float out[4]);
 
 }  // namespace velour

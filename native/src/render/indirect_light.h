@@ -7,21 +7,21 @@
 
 namespace velour {
 
-/// One a thread. Estimates what TileRenderer counts beyond a path's first continuing ray: the light of lamps,
-/// environment and surfaces that glow at every surface that the path meets, and what of their own emission was not in
-/// that (DirectLight::counts_glow; whoever adds rays counts it at the first of them).
+/// One per thread. Estimates what TileRenderer counts beyond the first continuation ray of a path: light from lights,
+/// environment and emissive meshes at every surface of the path, and the emission of these surfaces where
+/// DirectLight::counts_glow() is false. Where it is true at the first surface, the caller of add() counts the emission.
 class IndirectLight {
  public:
   IndirectLight(const Scene& scene, const Lighting& lighting, const RenderOptions& options)
       : scene_(scene), flight_(scene, lighting, options, nullptr) {}
 
   void clear();
-  /// A ray that met a surface, `cone` at its origin; its radiance will be number `radiance().size()` so far. `numbers`:
-  /// those of that surface.
+  /// Adds a ray that hit a surface, `cone` at its origin; its radiance goes to a new last element of samples().
+  /// `numbers`: those of that surface.
   void add(const Ray& ray, const RayCone& cone, const Hit& hit, const PathNumbers& numbers);
-  /// Follows all paths over up to `surfaces` surfaces, one path a ray.
+  /// Follows all paths over up to `surfaces` surfaces, one path per ray.
   void resolve(int surfaces);
-  /// Of the rays, in the order of add().
+  /// Results of the rays, in the order of add().
   const std::vector<CameraSample>& samples() const { return flight_.samples; }
 
  private:

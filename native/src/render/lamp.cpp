@@ -28,9 +28,9 @@ float drop_between(const Vec3& a, const Vec3& b) {
   return 0.5f * glm::dot(d, d);
 }
 
-/// The largest 1 - cos from the axis at which a direction counts as within a cone of `extent`. Components of directions
-/// are rounded, which moves samples by up to 5e-8 (measured): of a cone of sine 1e-5 one in a thousand falls outside,
-/// of one of 1e-7 one in ten. So cones that narrow reach beyond their rims by twice as much; no other draws meet them.
+/// Maximum 1 - cos from the axis at which a direction counts as inside a cone of `extent`. Direction components are
+/// rounded, which moves samples by up to 5e-8 (measured): for a cone of sine 1e-5 one in a thousand falls outside, for
+/// 1e-7 one in ten. Cones that narrow therefore reach beyond their rims by twice as much; no other samples hit them.
 float reach(float extent) {
   constexpr float kNarrow = 5e-11f, kRounding = 1e-7f;
   if (extent >= kNarrow || !(extent > 0.0f)) return extent;
@@ -97,7 +97,7 @@ void Lamp::set_spot(const Light& light) {
   constexpr float kPerpendicular = 1e-5f;
   const bool sheared =
       std::max({std::abs(products[0][1]), std::abs(products[0][2]), std::abs(products[1][2])}) > kPerpendicular;
-  // Before Blender 3.5, whose spots also fall with the cosine, the cone was round whatever became of its axes.
+  // Before Blender 3.5, whose spots also fall off with the cosine, the cone stayed circular whatever its axes were.
   const bool turns_with_axes = sheared && !cosine_ && std::abs(glm::determinant(axes)) > kPerpendicular;
   if (light.cone_scale != Vec2(1.0f) || turns_with_axes) {
     const Mat3 rows = turns_with_axes ? glm::transpose(glm::inverse(axes)) : axes;
@@ -131,7 +131,7 @@ void Lamp::set_area(const Light& light) {
 
 /// The integral of (1 - cot(h) tan(x)) cos(x) over the directions within h of the normal is pi (1 - h cot(h)).
 void Lamp::set_spread(float spread) {
-  constexpr float kLeast = 0.5f * kPi / 180.0f;  // as in Blender: one degree in all
+  constexpr float kLeast = 0.5f * kPi / 180.0f;  // as in Blender: one degree in total
   const float half = std::clamp(0.5f * spread, kLeast, 0.5f * kPi);
   if (half == 0.5f * kPi) return;
   cot_spread_ = 1.0f / std::tan(half);
@@ -149,7 +149,7 @@ LightCone Lamp::cone_of_light() const {
     case Light::Type::point:
       break;
     case Light::Type::spot:
-      // What a scaled cone holds is not told.
+      // The directions of a scaled cone are not bounded here.
       if (narrow_z_ == Vec3(0.0f)) return {axis_, cos_cone_, std::cos(0.1f)};
       break;
     case Light::Type::rectangle:
@@ -171,10 +171,10 @@ float Lamp::cone_cosine(const Vec3& direction) const {
   return cosine / glm::length(Vec3(glm::dot(direction, narrow_x_), glm::dot(direction, narrow_y_), cosine));
 }
 
-/// Sheared lamps are lit as in Cycles, whose samples of a disk count with the cosine to the lamp's own axis, not to the
-/// normal of its plane; those of a rectangle are drawn by solid angle.
+/// Sheared lights behave as in Cycles, which weights samples of a disk by the cosine to the light's own axis instead of
+/// the normal of its plane, and samples rectangles by solid angle.
 float Lamp::area_falloff(const Vec3& direction) const {
-  constexpr float kMaxRatio = 1e4f;  // seen along the plane
+  constexpr float kMaxRatio = 1e4f;  // viewed along the plane
   const float cosine = -glm::dot(direction, shine_);
   if (!(cosine > 0.0f)) return cot_spread_ == 0.0f && type_ == Light::Type::rectangle ? 1.0f : 0.0f;
   const float lean = std::abs(glm::dot(direction, axis_));
@@ -202,7 +202,7 @@ float Lamp::cone(const Vec3& position, Vec3& axis) const {
   const Vec3 to_center = center_ - position;
   const float distance_sq = glm::dot(to_center, to_center);
   const float radius_sq = radius_ * radius_;
-  // Inside of a ball: it shines outwards. Nothing faces the middle of a disk.
+  // A ball emits outward, so it is dark from inside. A disk cannot be seen from its center.
   if (!(distance_sq > (sphere_ ? radius_sq : 0.0f))) return 0.0f;
   axis = to_center / std::sqrt(distance_sq);
   return one_minus_cos(radius_sq / (sphere_ ? distance_sq : distance_sq + radius_sq));
@@ -234,7 +234,7 @@ Lamp::Sight Lamp::hit(const Vec3& position, const Vec3& direction) const {
 }
 
 Vec2 Lamp::coordinates(const Vec3& place) const {
-  // Half axes that a sheared lamp does not keep perpendicular.
+  // The half axes of a sheared light are not perpendicular.
   const Vec3 normal = glm::cross(half_x_, half_y_);
   const Vec2 scaled(glm::dot(glm::cross(place, half_y_), normal), glm::dot(glm::cross(half_x_, place), normal));
   return scaled / glm::dot(normal, normal);
@@ -245,7 +245,7 @@ Lamp::Part Lamp::part_seen(const Vec3& position) const {
   const Vec3 place = position - center_;
   const float quarter = glm::length(glm::cross(half_x_, half_y_));
   if (shine_ != axis_) return {Vec2(-1.0f), Vec2(1.0f), 4.0f * quarter};
-  const float radius = std::max(0.0f, glm::dot(place, axis_)) / cot_spread_;  // of the circle that shines here
+  const float radius = std::max(0.0f, glm::dot(place, axis_)) / cot_spread_;  // circle that shines on `position`
   const Vec2 middle = coordinates(place), extent = radius / quarter * Vec2(glm::length(half_y_), glm::length(half_x_));
   const Vec2 low = glm::max(middle - extent, Vec2(-1.0f)), high = glm::min(middle + extent, Vec2(1.0f));
   const Vec2 size = glm::max(high - low, Vec2(0.0f));

@@ -8,7 +8,7 @@
 
 namespace velour {
 
-/// Point `i` of `n` of a Fibonacci-like rank-1 lattice, moved by `shift` modulo 1 [CP76]. With a uniform shift every
+/// Point `i` of `n` of a Fibonacci-like rank-1 lattice, shifted by `shift` modulo 1 [CP76]. With a uniform shift every
 /// point is uniform in [0, 1)^2, and together they cover the square evenly.
 inline Vec2 lattice_point(int i, int n, const Vec2& shift) {
   constexpr float kGoldenRatio = 0.618033989f;

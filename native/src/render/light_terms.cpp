@@ -5,7 +5,7 @@ namespace velour {
 float LightTerms::weighed(Heuristic heuristic, int direction, float light_pdf) const {
   const float q[3] = {product.v[direction], surface.v[direction], light_share.v[direction] * light_pdf};
   const float density = effective_density(heuristic, q, drawer[direction]);
-  // A direction of density 0 was drawn by rounding alone. One that is not a number passes, to be counted.
+  // A density of 0 results from rounding alone. NaN passes, to be counted.
   return density == 0.0f ? 0.0f : 1.0f / density;
 }
 

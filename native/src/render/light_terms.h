@@ -1,4 +1,4 @@
-// Directions of several vertices whose light is still to be looked up, side by side.
+// Directions of several vertices whose light is looked up together.
 #pragma once
 
 #include <vector>
@@ -9,24 +9,24 @@
 
 namespace velour {
 
-/// What each direction brings is  reflected x radiance / d,  d the density of combination.h. Looked up for a batch at
-/// once, so that the sky's texels of all are on their way together and vectors are full.
+/// Each direction contributes  reflected x radiance / d,  with d the density of combination.h. Light is looked up for a
+/// whole batch, so that all fetches of environment texels are in flight together and vectors are full.
 ///
-/// Directions that are aimed at surfaces that glow bring their light alone, those that the lights draw otherwise bring
-/// none of it, and the others bring both: each kind of light is weighed with the densities of those that bring it, the
-/// environment by the `heuristic` that is chosen, lamps and surfaces by kLampHeuristic.
+/// Directions aimed at emissive meshes carry the light of these alone, other light-sampled directions carry none of it,
+/// and the remaining ones carry both. Each kind of light is weighted with the densities of the techniques that carry
+/// it: the environment by the chosen `heuristic`, lights and meshes by kLampHeuristic.
 struct alignas(64) LightTerms {
   DirectionBatch world;
   RgbBatch reflected;            // throughput f cos / n of n directions
-  ScalarBatch product, surface;  // share of a drawer times its density
+  ScalarBatch product, surface;  // share of a technique times its density
   ScalarBatch light_share;
-  Drawer drawer[DirectionBatch::kCapacity];     // who drew it
-  uint8_t receiver[DirectionBatch::kCapacity];  // number of the vertex in the batch
-  uint8_t aim[DirectionBatch::kCapacity];       // 0: none; else 1 + its number among the aims (Lighting::sample)
+  Drawer drawer[DirectionBatch::kCapacity];     // technique that sampled it
+  uint8_t receiver[DirectionBatch::kCapacity];  // index of the vertex in the batch
+  uint8_t aim[DirectionBatch::kCapacity];       // 0: none; otherwise 1 + index among the aims (Lighting::sample)
 
-  // What look_up() finds.
+  // Results of look_up().
   RgbBatch environment;             // radiance
-  ScalarBatch weight, lamp_weight;  // 1 / d: of the environment, and of lamps where one is met
+  ScalarBatch weight, lamp_weight;  // 1 / d: for the environment, and for lights where one is hit
   std::vector<LampHit> lamp_hits;
   struct Glow {
     int direction;
@@ -40,14 +40,14 @@ struct alignas(64) LightTerms {
     lamp_hits.clear();
     glow.clear();
   }
-  /// `views`: by number of the vertex.
+  /// `views`: by index of the vertex.
   void look_up(const Lighting& lighting, std::span<const LightView> views, Heuristic heuristic);
-  /// `rays`: along the directions, as they leave their vertices.
+  /// `rays`: along the directions, starting at their vertices.
   void look_up_glow(const Lighting& lighting, std::span<const LightView> views, std::span<const Hit> aims,
                     std::span<const Ray> rays);
 
  private:
-  /// 1 / d, with the density of whoever draws towards the light.
+  /// 1 / d, with the density of the technique that samples the light.
   float weighed(Heuristic heuristic, int direction, float light_pdf) const;
   void find_glow(const GlowingSurfaces& surfaces, std::span<const Hit> aims, std::span<const Ray> rays);
   std::vector<GlowHit> found_;

@@ -9,7 +9,7 @@ namespace velour {
 namespace {
 
 constexpr uint32_t kNoParent = 0xffffffffu;
-/// The least factor that the bounds of both cosines leave a light: they are rounded, and no light may have none.
+/// Minimum of the product of both cosine bounds: they are rounded, and no light may have a probability of 0.
 constexpr float kLeastCosines = 1e-3f;
 
 int widest_axis(const Bounds& bounds) {
@@ -18,19 +18,19 @@ int widest_axis(const Bounds& bounds) {
   return size.y >= size.z ? 1 : 2;
 }
 
-/// An angle of [0, pi] by its cosine and sine.
+/// An angle in [0, pi], as its cosine and sine.
 struct Angle {
   float cos, sin;
   explicit Angle(float cosine) : cos(cosine), sin(std::sqrt(std::max(0.0f, 1.0f - cosine * cosine))) {}
   Angle(float cosine, float sine) : cos(cosine), sin(sine) {}
-  /// The angle less the other, at least 0.
+  /// This angle minus the other, at least 0.
   Angle less(const Angle& other) const {
     if (cos >= other.cos) return {1.0f, 0.0f};
     return {cos * other.cos + sin * other.sin, sin * other.cos - cos * other.sin};
   }
 };
 
-/// A cone that holds both.
+/// A cone that contains both.
 LightCone join(const LightCone& a, const LightCone& b) {
   LightCone joined{a.axis, -1.0f, std::min(a.cos_end, b.cos_end)};
   if (a.cos_normals <= -1.0f || b.cos_normals <= -1.0f) return joined;
@@ -105,7 +105,8 @@ void LightTree::set_cone(uint32_t node, const LightCone& cone) {
   nodes_[node].sin_normals = Angle(cone.cos_normals).sin;
 }
 
-/// Splits the node first whose importance differs most from place to place: the one of most intensity and extent.
+/// Splits the node whose importance varies most over space first: the one with the largest product of intensity and
+/// extent.
 void LightTree::choose_cut() {
   const auto spread = [&](uint32_t n) {
     return (nodes_[n].link & kLeaf) != 0 ? -1.0f : intensity_[n] * std::sqrt(nodes_[n].radius_sq);
@@ -126,7 +127,7 @@ float LightTree::importance(uint32_t number, const LightPlace& place) const {
   const Vec3 to_node = node.middle - place.position;
   const float distance_sq = glm::dot(to_node, to_node);
   const float plain = intensity_[number] / std::max(distance_sq, node.radius_sq);
-  if (!(distance_sq > node.radius_sq)) return plain;  // from every side
+  if (!(distance_sq > node.radius_sq)) return plain;  // light may come from any side
   const Vec3 w = to_node / std::sqrt(distance_sq);
   const float sine_sq = node.radius_sq / distance_sq;
   const Angle extent(std::sqrt(1.0f - sine_sq), std::sqrt(sine_sq));
@@ -180,7 +181,7 @@ LightTree::Cut LightTree::cut(const LightPlace& place) const {
   Cut cut;
   double sum = 0;
   for (size_t i = 0; i < kCut; ++i) {
-    // A number above 0, even where light is at the place itself or out of a float's reach.
+    // Above 0 and finite, even at the light itself or beyond the range of a float.
     if (i < cut_.size()) sum += static_cast<double>(std::clamp(importance(cut_[i], place), 1e-37f, 1e37f));
     cut.sum[i] = sum;
   }
@@ -204,7 +205,7 @@ double LightTree::probability(const Cut& cut, const LightPlace& place, uint32_t 
   return (cut.sum[i] - low) / cut.total() * probability_below(top, node_of_[light], place);
 }
 
-/// Slabs, widened by what directions and distances are rounded by.
+/// Slab test, widened by the rounding errors of directions and distances.
 bool LightTree::may_meet(const Node& node, const Vec3& origin, const Vec3& inverse) const {
   constexpr float kRounding = 1e-6f;
   const Vec3 middle = node.middle - origin;
@@ -213,7 +214,7 @@ bool LightTree::may_meet(const Node& node, const Vec3& origin, const Vec3& inver
   float near = 0.0f, far = std::numeric_limits<float>::infinity();
   for (int i = 0; i < 3; ++i) {
     const float a = (middle[i] - half[i]) * inverse[i], b = (middle[i] + half[i]) * inverse[i];
-    near = std::max(near, std::min(a, b));  // a NaN (0 times infinity, along a side) is no bound
+    near = std::max(near, std::min(a, b));  // a NaN (0 times infinity, along a side) does not bound
     far = std::min(far, std::max(a, b));
   }
   return near <= far;

@@ -1,4 +1,4 @@
-// Choice among many lights, by what they are likely to bring to a place.
+// Choice among many lights by their expected contribution at a point.
 #pragma once
 
 #include <array>
@@ -13,30 +13,30 @@ namespace velour {
 
 inline constexpr double kDoubleBelowOne = 0x1.fffffffffffffp-1;
 
-/// Where light is gathered.
+/// A point that gathers light.
 struct LightPlace {
   Vec3 position{0.0f};
-  Vec3 normal{0.0f};        // unit: light counts by its cosine; zero: light from every side counts alike
+  Vec3 normal{0.0f};        // unit: light counts by its cosine; zero: light from all sides counts equally
   bool both_sides = false;  // light from below counts as well
 };
 
-/// Directions of emission: within `cos_normals` of the axis all intensity, from there on less by the cosine of the
-/// angle beyond, and none from `cos_end` on.
+/// Directions of emission: full intensity within `cos_normals` of the axis, beyond that reduced by the cosine of the
+/// excess angle, and none from `cos_end` on.
 struct LightCone {
   Vec3 axis{0.0f, 0.0f, 1.0f};
-  float cos_normals = -1.0f;  // -1: alike to all sides
+  float cos_normals = -1.0f;  // -1: uniform in all directions
   float cos_end = 0.0f;
 };
 
-/// A binary tree over lights [EK18]: of two children one is chosen in proportion to its importance at the place: its
-/// intensity over the squared distance from the middle of its box (or over the box' squared radius where that is
-/// larger), times the largest cosines that emission and reception can have there. Wherever the place, every light has a
-/// probability above 0. Immutable; thread-safe; no allocation.
+/// A binary tree over lights [EK18]. Of two children, one is chosen in proportion to its importance at the point: its
+/// intensity over the squared distance from the center of its box (or over the squared radius of the box if that is
+/// larger), times the maximum cosines that emission and reception can have there. Every light has a probability above 0
+/// at every point. Immutable; thread-safe; no allocation.
 class LightTree {
  public:
   struct Light {
     Bounds box;
-    float intensity;  // luminance, W/sr or in proportion to it; above 0, finite
+    float intensity;  // luminance, W/sr or proportional to it; above 0, finite
     LightCone cone{};
   };
   LightTree() = default;
@@ -45,30 +45,30 @@ class LightTree {
 
   bool empty() const { return intensity_.empty(); }
   size_t size() const { return node_of_.size(); }
-  /// Of all lights.
+  /// Total intensity of all lights.
   float intensity() const { return empty() ? 0.0f : intensity_[0]; }
   float intensity(uint32_t light) const { return intensity_[node_of_[light]]; }
   const Bounds& bounds() const { return bounds_; }
 
-  /// The number of a light, chosen by `x`, uniform in [0, 1), which comes back as what is left of it: uniform again,
-  /// and growing within the light's share. Only of a tree that is not empty.
+  /// Index of a light chosen by `x`, uniform in [0, 1). `x` returns its residual: uniform again, and increasing within
+  /// the light's share. The tree must not be empty.
   uint32_t choose(const LightPlace& place, double& x) const;
-  /// That choose() gives `light`.
+  /// Probability that choose() returns `light`.
   double probability(const LightPlace& place, uint32_t light) const;
 
-  /// Importances at one place of up to kCut nodes that hold all lights: their sum is nearer to the irradiance there
-  /// than the root's importance, and the choice from them nearer to it than one from the root. Few lights are all told
-  /// apart.
+  /// Importances at a point of up to kCut nodes that cover all lights. Their sum is closer to the irradiance there than
+  /// the root's importance, and a choice from them follows it better than one from the root. A few lights are all
+  /// distinguished.
   static constexpr size_t kCut = 16;
   struct Cut {
-    std::array<double, kCut> sum{};  // of the importances up to and with each
+    std::array<double, kCut> sum{};  // prefix sums of the importances
     double total() const { return sum[kCut - 1]; }
   };
   Cut cut(const LightPlace& place) const;
   uint32_t choose(const Cut& cut, const LightPlace& place, double& x) const;
   double probability(const Cut& cut, const LightPlace& place, uint32_t light) const;
 
-  /// Calls visit(light) for every light whose box a ray from `origin` may meet.
+  /// Calls visit(light) for every light whose box a ray from `origin` may hit.
   template <class Visit>
   void meet(const Vec3& origin, const Vec3& direction, Visit&& visit) const;
 
@@ -80,19 +80,19 @@ class LightTree {
     float radius_sq;
     LightCone cone;
     float sin_normals;
-    uint32_t link;  // the right child, or kLeaf and the light; the left child is the next node
+    uint32_t link;  // index of the right child, or kLeaf and the light; the left child is the next node
     uint32_t parent;
-    Vec3 half;        // of the box' sides
-    uint32_t in_cut;  // its number in the cut, or kNoCut
+    Vec3 half;        // half the sides of the box
+    uint32_t in_cut;  // index in the cut, or kNoCut
   };
   void build(std::span<const Light> lights, std::span<uint32_t> order, uint32_t parent, const Progress& progress);
   void set_cone(uint32_t node, const LightCone& cone);
   void choose_cut();
   float importance(uint32_t node, const LightPlace& place) const;
-  /// Of the left one of two siblings.
+  /// Probability of the left one of two siblings.
   double share(uint32_t left, uint32_t right, const LightPlace& place) const;
   uint32_t descend(uint32_t node, const LightPlace& place, double& x) const;
-  /// That descend() from `top` comes to `node`.
+  /// Probability that descend() from `top` reaches `node`.
   double probability_below(uint32_t top, uint32_t node, const LightPlace& place) const;
   bool may_meet(const Node& node, const Vec3& origin, const Vec3& inverse) const;
 
@@ -107,7 +107,7 @@ template <class Visit>
 void LightTree::meet(const Vec3& origin, const Vec3& direction, Visit&& visit) const {
   if (empty()) return;
   const Vec3 inverse = 1.0f / direction;
-  uint32_t waiting[64], count = 0;  // half of the lights at every level
+  uint32_t waiting[64], count = 0;  // suffices: every level halves the lights
   waiting[count++] = 0;
   while (count > 0) {
     const uint32_t at = waiting[--count];

@@ -11,10 +11,10 @@ namespace {
 
 constexpr float kFloatBelowOne = 0x1.fffffep-1f;
 constexpr double kLeastShare = 0.3;
-constexpr float kLeastSun = 0.02f;  // of its irradiance: where the plane turns away, and rounding decides
-constexpr size_t kFewLamps = 4;     // that are not worth the way through the tree
+constexpr float kLeastSun = 0.02f;  // minimum cosine, for planes that face away, where rounding decides
+constexpr size_t kFewLamps = 4;     // up to this many, traversing the tree does not pay
 
-/// A multiple of what random numbers are multiples of, so that the probability is exact.
+/// Rounded to a multiple of 2^-24, as random numbers are, so that the probability is exact.
 float exact(float probability) { return std::floor(probability * 0x1p24f) * 0x1p-24f; }
 
 double sun_irradiance(const Lamp& sun, const LightPlace& place) {
@@ -102,8 +102,8 @@ Vec3 Lighting::sample_sun(const LightView& view, double x, float y) const {
 }
 
 Vec3 Lighting::sample_near(const LightView& view, const Vec2& u, Hit* aim) const {
-  // Among a hundred thousand triangles the 24 bits of a number are used up before it comes to a place in one of them.
-  // What follows them is made of the bits of both.
+  // With a hundred thousand triangles, the choice uses up the 24 bits of a number before it gets to a point in one of
+  // them. Further bits are hashed from both numbers.
   const uint64_t bits = (uint64_t{std::bit_cast<uint32_t>(u.x)} << 32) | std::bit_cast<uint32_t>(u.y);
   const double fine = static_cast<double>(mix64(bits) >> 11) * 0x1p-77;
   const auto begin = static_cast<double>(view.environment + view.suns);

@@ -1,5 +1,5 @@
-// All light of a scene: the environment, and lamps with extent, as one density over directions at a place; surfaces
-// that glow as another beside it; sharp lamps by name.
+// All light of a scene: the environment and lights with extent as one density over directions at a point; emissive
+// meshes as a second one; delta lights one by one.
 #pragma once
 
 #include <span>
@@ -12,18 +12,18 @@
 
 namespace velour {
 
-/// A direction of a batch that meets a lamp.
+/// A direction of a batch that hits a light.
 struct LampHit {
-  int direction;  // its place in the batch
+  int direction;  // index in the batch
   const Lamp* lamp;
   float distance;
 };
 
-/// A place and the probabilities of the lights there.
+/// A point and the selection probabilities of the lights there.
 struct LightView {
   LightPlace place;
-  float environment = 0, suns = 0, near = 0;  // of the environment, of all suns, of the tree's lights; 1 in all
-  double suns_total = 0;                      // of their irradiances
+  float environment = 0, suns = 0, near = 0;  // probabilities: environment, all suns, lights of the tree; sum 1
+  double suns_total = 0;                      // sum of their irradiances
   LightTree::Cut cut;
 };
 
@@ -33,40 +33,41 @@ class Lighting {
   Lighting(const Scene& scene, const Progress& progress);
 
   const Environment& environment() const { return environment_; }
-  /// True when there is anything that a sampled direction can meet.
+  /// Whether there is anything that a sampled direction can hit.
   bool has_extended() const { return !environment_.black() || !suns_.empty() || !lamps_.empty() || !glow_.empty(); }
 
-  /// Of all but sharp lamps: environment, suns and near lights are chosen by the irradiance that each would bring if
-  /// nothing stood before it (of near lights, estimated by LightTree), and at least three tenths of an equal part: what
-  /// stands before one is not known. Needs has_extended().
+  /// For all but delta lights. Environment, suns and near lights are chosen by their unoccluded irradiance (for near
+  /// lights, estimated by LightTree), mixed with three tenths of a uniform choice, since occlusion is unknown. Needs
+  /// has_extended().
   LightView view(const LightPlace& place) const;
 
-  /// Directions towards light, one for each `u` from its view: first a light, then a direction of it. A zero vector
-  /// where the chosen lamp shows its dark side.
+  /// Samples directions toward light, one for each `u` from its view: first a light, then a direction to it. A zero
+  /// vector if the chosen light shows its dark side.
   ///
-  /// One that is aimed at a point of a surface that glows brings the light of that point and nothing else, so that only
-  /// that point's density need be known: `aims`, as many or none, gets the point, and of the others no instance.
+  /// A direction aimed at a point of an emissive mesh carries the light of that point alone, so that only the density
+  /// of that point need be known. `aims`, one per direction or empty, receives the point; for other directions it has
+  /// no instance.
   void sample(std::span<const LightView> views, std::span<const uint8_t> view_of, std::span<const Vec2> u,
               DirectionBatch& world, std::span<Hit> aims = {}) const;
-  /// For each direction of `world` from its view: radiance of the environment, density of `sample`, less what it aims
-  /// at surfaces, and lamps met (appended to `hits`). The batch is padded.
+  /// For each direction of `world` from its view: radiance of the environment, density of `sample` without directions
+  /// aimed at emissive meshes, and lights hit (appended to `hits`). The batch is padded.
   void look_up(std::span<const LightView> views, std::span<const uint8_t> view_of, const DirectionBatch& world,
                RgbBatch& environment, ScalarBatch& pdf, std::vector<LampHit>& hits) const;
 
   const GlowingSurfaces& glow() const { return glow_; }
-  /// Density of `sample` aiming at what a ray has hit.
+  /// Density with which `sample` aims at the point that a ray has hit.
   float glow_pdf(const LightView& view, const Vec3& direction, const Hit& hit) const;
 
   std::span<const Lamp> sharp() const { return sharp_; }
-  /// The same of sharp lamps.
+  /// Like view(), for delta lights.
   LightView sharp_view(const LightPlace& place) const;
-  /// Index of a sharp lamp, and the probability with which it was chosen.
+  /// Index of a delta light, and the probability of choosing it.
   size_t choose_sharp(const LightView& view, float u, float& probability) const;
 
  private:
   struct Chosen {
     size_t lamp;
-    double probability, rest;  // of the number that chose it
+    double probability, rest;  // rest: residual of the number that chose the light
   };
   static LightView view_of_all(const LightPlace& place, double sky, std::span<const Lamp> suns, const LightTree& near);
   static Chosen choose_sun(const LightView& view, std::span<const Lamp> suns, double x);
@@ -77,10 +78,10 @@ class Lighting {
   const SkyIrradiance sky_;
   std::vector<Lamp> suns_, lamps_;  // with extent
   const GlowingSurfaces glow_;
-  LightTree near_;           // of lamps_, then of the glow's lights
+  LightTree near_;           // lamps_, then glow_.lights()
   std::vector<Lamp> sharp_;  // suns first
   size_t sharp_suns_ = 0;
-  LightTree sharp_near_;  // of the others
+  LightTree sharp_near_;  // delta lights except suns
 };
 
 }  // namespace velour

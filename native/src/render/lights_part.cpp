@@ -11,8 +11,8 @@ namespace velour {
 namespace {
 
 constexpr float kHalf = 0.5f;
-constexpr float kBroad = 16;      // bandwidth: a deviation of 14 degrees, wider than a lamp
-constexpr double kDiffuse = 0.9;  // broad share from on which a material counts as diffuse
+constexpr float kBroad = 16;      // bandwidth: a standard deviation of 14 degrees, wider than a light
+constexpr double kDiffuse = 0.9;  // minimum broad share of a diffuse material
 
 }  // namespace
 

@@ -1,4 +1,4 @@
-// Where `product` had better draw towards lights than from products of lobes.
+// Materials for which `product` samples lights instead of products of lobes.
 #pragma once
 
 #include "scene/scene.h"
@@ -7,17 +7,17 @@ namespace velour {
 
 class SkyProposals;
 
-/// Of the products' share of the directions (kProductShare), what the lights draw in their place: half, or nothing. By
-/// material; the same at every vertex of one, for the points of a sequence stay evenly spread only where all vertices
-/// deal them alike.
+/// Share of the products' directions (kProductShare) that light sampling takes over, by material: half, or nothing. The
+/// same at all vertices of a material, since the points of a sequence stay even only if all vertices deal them alike.
 ///
-/// Under a sun half for all: SkyProposals says why. Lamps of a studio are the same at a smaller scale: their edges are
-/// blurred in a mixture of few Gaussians. A highlight blurs them as well, so that its products lose nothing; a diffuse
-/// material sees them sharp, and there the lights' own density, one smooth map of the unit square, is the better half.
+/// Under a sun it is half for all materials; SkyProposals says why. Studio lights are the same at a smaller scale: a
+/// mixture of few Gaussians blurs their edges. A highlight blurs them as well, so that its products lose nothing. A
+/// diffuse material resolves them, and there light sampling, with one smooth map of the unit square, does better for
+/// half of the directions.
 std::vector<float> lights_parts(const Scene& scene, const SkyProposals& sky);
 
-/// Of what the material's proposals reflect of even light, the share in lobes as broad as a cosine; mean over views.
-/// 0 where it has no lobes.
+/// Share of the reflection of uniform light, according to the material's proposals, that is in lobes as broad as a
+/// cosine; mean over views. 0 if it has no lobes.
 double broad_share(const Material& material);
 
 }  // namespace velour

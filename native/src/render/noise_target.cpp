@@ -9,7 +9,7 @@ namespace {
 
 constexpr int kBlockSize = 16;
 
-/// Where the pixels [begin, end) are cut: into equal parts as near to kBlockSize as can be.
+/// Boundaries that cut the pixels [begin, end) into equal parts as close to kBlockSize as possible.
 std::vector<int> cuts(int begin, int end) {
   const int side = end - begin;
   const int parts = std::max(1, (side + kBlockSize / 2) / kBlockSize);
@@ -74,7 +74,7 @@ std::vector<BlockError> NoiseTarget::errors(const Film& film) const {
 }
 
 void NoiseTarget::decide(const Film& film) {
-  // A quarter more each time: two estimates in a row that share most of their samples would be one.
+  // Grows by a quarter: two successive estimates that share most of their samples would count as one.
   next_ += std::max(kRaysAtLeast, next_ / 4 / kRaysAtLeast * kRaysAtLeast);
   const auto all = errors(film);
   const double luminance = mean_luminance(all, blocks_);

@@ -1,4 +1,4 @@
-// Where a render may stop: the error of each block of pixels, judged from the film alone.
+// Stopping criterion of a render: the error of each block of pixels, estimated from the film alone.
 #pragma once
 
 #include <limits>
@@ -9,24 +9,24 @@
 
 namespace velour {
 
-/// Cuts a picture into blocks of about 16 x 16 pixels, none much smaller: they are the tiles of the work too.
+/// Cuts an image into blocks of about 16 x 16 pixels, none much smaller; they are also the tiles of the work.
 std::vector<PixelRect> blocks_of(const PixelRect& picture);
 
-/// Estimated mean over the pixels of the variance of their luminance, and mean of their luminance.
+/// Estimated variance of the luminance of pixels, and their luminance; means over the pixels of a block.
 struct BlockError {
   double variance = 0, luminance = 0;
   bool known = false;  // every pixel has at least one camera ray in each half
 
-  /// sqrt(variance) relative to sqrt(L_b^2 + 0.01 L^2), L the mean luminance of the picture: as in relmse, a black
-  /// block is not asked for more than the eye sees.
+  /// sqrt(variance) relative to sqrt(L_b^2 + 0.01 L^2), with L_b the mean luminance of the block and L that of the
+  /// image: as in relmse, a dark block needs no more accuracy than the eye sees.
   double relative_to(double picture_luminance) const;
 };
 BlockError block_error(std::span<const PixelSum> pixels);
 
-/// Which blocks still need camera rays. Decides at fixed numbers of camera rays, so the picture depends neither on
-/// threads nor on how passes are cut. A block is done when its error has been at most the target at two successive
-/// decisions, the first of which comes after kRaysAtLeast camera rays; so one lucky estimate before a firefly was seen
-/// does not suffice.
+/// Blocks that still need camera rays. Decides at fixed numbers of camera rays, so the image depends neither on threads
+/// nor on how passes are cut. A block is done when its error is at most the target at two successive decisions, the
+/// first of which comes after kRaysAtLeast camera rays; a single lucky estimate before a firefly appears does not
+/// suffice.
 class NoiseTarget {
  public:
   static constexpr int kRaysAtLeast = 8;
@@ -36,11 +36,11 @@ class NoiseTarget {
 
   bool enabled() const { return target_ > 0.0; }
   std::span<const PixelRect> blocks() const { return blocks_; }
-  /// Of the blocks that are not done.
+  /// Indices of the blocks that are not done.
   const std::vector<size_t>& active() const { return active_; }
-  /// Number of camera rays a pixel at which the next decision falls; a pass must not go beyond it.
+  /// Number of camera rays per pixel at the next decision; a pass must not exceed it.
   int next_decision() const { return enabled() ? next_ : std::numeric_limits<int>::max(); }
-  /// To be called when every active block has next_decision() camera rays a pixel.
+  /// Call it when every active block has next_decision() camera rays per pixel.
   void decide(const Film& film);
   /// Largest error of all blocks; 0 while unknown.
   double worst(const Film& film) const;
@@ -51,7 +51,7 @@ class NoiseTarget {
   const double target_;
   const std::vector<PixelRect> blocks_;
   std::vector<size_t> active_;
-  std::vector<bool> passed_;  // the last decision, by block
+  std::vector<bool> passed_;  // at the last decision, by block
   int next_ = kRaysAtLeast;
 };
 

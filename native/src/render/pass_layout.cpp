@@ -31,7 +31,7 @@ void increase(float* v, const Vec3& x) {
 }
 bool is_first(const CameraRay& ray) { return ray.before.camera_rays == 0; }
 
-/// Sums of squared differences from the mean, as Welford: no digits are lost where errors are small.
+/// Sums of squared deviations from the mean by Welford's method, which loses no digits where errors are small.
 void add_error(const CameraRay& ray, float* v) {
   const float n = static_cast<float>(ray.before.camera_rays);
   for (int c = 0; c < 3; ++c) {
@@ -47,13 +47,13 @@ void write_error(const float* v, const PixelSum& sum, float* out) {
   }
 }
 
-/// Camera rays, and such that come after them.
+/// Two successive runs of camera rays.
 struct Runs {
   const PixelSum& before;
   const PixelSum& later;
 };
 
-/// Of two runs the sum of squared differences from the mean of both (Chan, Golub and LeVeque).
+/// Sum of squared deviations of two runs from their common mean (Chan, Golub and LeVeque).
 void join_error(const Runs& runs, float* v, const float* later) {
   const double n = runs.before.camera_rays, m = runs.later.camera_rays;
   if (m == 0.0) return;
@@ -74,7 +74,7 @@ void join_sums(const Runs& /*runs*/, float* v, const float* later) {
   for (int c = 0; c < channels; ++c) v[c] += later[c];
 }
 
-/// A pass of `channels` values, for which a pixel keeps `floats`.
+/// A pass of `channels` values, for which a pixel stores `floats`.
 struct ValuePass {
   uint32_t bit;
   std::string_view name;
@@ -89,7 +89,7 @@ void write_as_is(const float* v, const PixelSum& /*sum*/, float* out) {
   std::copy_n(v, channels, out);
 }
 
-// Floats that a pixel keeps for its halves: sums over the even camera rays of color, denoising albedo and normal, and
+// Floats that a pixel stores for its halves: sums of color, denoising albedo and normal over the even camera rays, and
 // of the albedo over all.
 constexpr int kFloatsOfHalves = 12;
 using HalfSum = std::array<Vec3, 3>;
@@ -163,7 +163,7 @@ constexpr ValuePass kValues[] = {
        for (int c = 0; c < 3; ++c) out[c] = std::clamp(v[c] * sum.weight(), 0.0f, 1.0f);
      }},
     {pass::kError, "Error", 3, 3, add_error, join_error, write_error},
-    // As Cycles has it, so that a denoiser sees the edges of what shines; it may be above 1.
+    // As in Cycles, so that a denoiser sees the edges of emitters; may be above 1.
     {pass::kDenoisingAlbedo, "Denoising Albedo", 3, 3,
      [](const CameraRay& ray, float* v) {
        for (int c = 0; c < 3; ++c) v[c] += ray.surface.albedo[c] + ray.surface.shine[c];
@@ -177,7 +177,7 @@ constexpr ValuePass kValues[] = {
 
 struct IdPass {
   uint32_t bit;
-  std::string_view name;  // and two digits
+  std::string_view name;  // followed by two digits
   float SurfaceSample::*id;
 };
 
@@ -192,7 +192,7 @@ const ValuePass* find_value(std::string_view name) {
 
 bool is_digit(char c) { return c >= '0' && c <= '9'; }
 
-/// The pass that `name` is one of, and which: "CryptoAsset02" is the third.
+/// The pass that `name` belongs to, and its level: "CryptoAsset02" is the third.
 struct IdLevel {
   const IdPass* pass = nullptr;
   int level = 0;
@@ -219,14 +219,14 @@ PassLayout::PassLayout(const PassOptions& options) : asked_(options.asked), rank
   for (uint32_t bit = 1; bit <= pass::kAll; bit *= 2) size_ += floats(bit);
 }
 
-/// Of a pixel; 0 where it is not asked for.
+/// Floats per pixel; 0 if the pass is not requested.
 size_t PassLayout::floats(uint32_t bit) const {
   if ((asked_ & bit) == 0) return 0;
   const auto* value = std::ranges::find(kValues, bit, &ValuePass::bit);
   return static_cast<size_t>(value != std::end(kValues) ? value->floats : floats_of_ids(ranks_));
 }
 
-/// Where its floats begin: values come before ids, each in the order of their tables.
+/// Offset of the floats of a pass: values come before ids, each in the order of their tables.
 size_t PassLayout::place(uint32_t bit) const {
   size_t before = 0;
   for (const ValuePass& value : kValues) {

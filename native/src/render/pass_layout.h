@@ -1,4 +1,4 @@
-// The values of a pixel's further passes.
+// Storage of the additional passes of a pixel.
 #pragma once
 
 #include <span>
@@ -9,29 +9,29 @@
 
 namespace velour {
 
-/// The floats of a pixel for the passes that are asked for, one behind the other; nothing for those that are not.
+/// Floats per pixel of the requested passes, stored one after the other.
 class PassLayout {
  public:
-  /// Throws Error(invalid_argument) where `options` make no sense.
+  /// Throws Error(invalid_argument) for invalid `options`.
   explicit PassLayout(const PassOptions& options);
 
-  /// Floats a pixel.
+  /// Floats per pixel.
   size_t size() const { return size_; }
 
-  /// Channels of a pass, asked for or not; 0: there is none of that name. "Position" 3 (world, of the first camera
+  /// Channels of a pass, requested or not; 0: there is none of that name. "Position" 3 (world, of the first camera
   /// ray), "UV" 3 (mean; the last: share with texture coordinates), "IndexOB" 1, "IndexMA" 1 (of the first camera ray),
-  /// "Mist" 1, "Albedo" 3, "Error" 3, "Denoising Albedo" 3, "Halves" 18 (of the even camera rays color, denoising
-  /// albedo and normal, 3 each; of the odd ones the same); "CryptoObject00", "CryptoObject01", ...,
-  /// "CryptoMaterial..", "CryptoAsset.." 4: two ids, each followed by its coverage.
+  /// "Mist" 1, "Albedo" 3, "Error" 3, "Denoising Albedo" 3, "Halves" 18 (color, denoising albedo and normal of the even
+  /// camera rays, 3 each; then of the odd ones); "CryptoObject00", "CryptoObject01", ..., "CryptoMaterial..",
+  /// "CryptoAsset.." 4: two ids, each followed by its coverage.
   static int channels(std::string_view pass);
   bool has(std::string_view pass) const;
 
-  /// What a camera ray has brought, after those that `before` sums.
+  /// Adds a camera ray that follows those summed in `before`.
   void add(const SurfaceSample& surface, const CameraSample& sample, const PixelSum& before, float* values) const;
-  /// What the camera rays of `later` have brought, which come after those that `before` sums.
+  /// Adds the camera rays summed in `later`, which follow those summed in `before`.
   void join(const PixelSum& before, std::span<float> values, const PixelSum& later,
             std::span<const float> later_values) const;
-  /// The channels of a pass that it has, of one pixel after the other; `values` holds size() of each.
+  /// Writes the channels of a requested pass, pixel by pixel; `values` holds size() floats per pixel.
   void write(std::string_view pass, std::span<const PixelSum> sums, std::span<const float> values, float* out) const;
 
  private:

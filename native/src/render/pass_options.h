@@ -1,4 +1,4 @@
-// The passes that a film has beyond those that every film has, and what they say of the scene.
+// Passes of a film beyond those that every film has, and the scene data that they show.
 #pragma once
 
 #include <cstdint>
@@ -6,21 +6,21 @@
 
 namespace velour {
 
-/// Bits of PassOptions::asked, and values of velour.h.
+/// Bits of PassOptions::asked; same values as in velour.h.
 namespace pass {
 inline constexpr uint32_t kPosition = 1, kUv = 2, kObjectIndex = 4, kMaterialIndex = 8, kMist = 16, kAlbedo = 32,
                           kError = 64, kCryptoObject = 128, kCryptoMaterial = 256, kCryptoAsset = 512,
                           kDenoisingAlbedo = 1024, kHalves = 2048;
 inline constexpr uint32_t kAll = 4095;
-/// Those that need to know what a camera ray meets.
+/// Passes that depend on what a camera ray hits.
 inline constexpr uint32_t kOfSurfaces = kAll & ~kError;
 }  // namespace pass
 
-/// Of an instance. Ids are those of names (cryptomatte_id.h).
+/// Labels of an instance. Ids are those of names (cryptomatte_id.h).
 struct InstanceLabel {
   float index = 0;
   float object_id = 0, asset_id = 0;
-  int uv_set = -1;  // of the mesh's sets of texture coordinates the one of the UV pass; -1: it has none
+  int uv_set = -1;  // index of the mesh's texture coordinates for the UV pass; -1: it has none
 };
 
 struct MaterialLabel {
@@ -28,11 +28,11 @@ struct MaterialLabel {
   float id = 0;
 };
 
-/// Grows from 0 to 1 over `depth` metres from `start`, by the share of that way to the power of `exponent`.
+/// Grows from 0 to 1 over `depth` meters from `start`: the fraction of that distance to the power of `exponent`.
 struct Mist {
   float start = 5, depth = 25, exponent = 2;
 
-  /// 0..1. Without depth there is none, as in Cycles.
+  /// 0..1. A depth of 0 means no mist, as in Cycles.
   float at(float distance) const;
 };
 
@@ -40,9 +40,9 @@ struct PassOptions {
   static constexpr int kMostRanks = 16;
 
   uint32_t asked = 0;
-  int cryptomatte_ranks = 6;  // ids a pixel; 2..kMostRanks
+  int cryptomatte_ranks = 6;  // ids per pixel; 2..kMostRanks
   Mist mist;
-  /// By their numbers in the scene; those beyond have the default.
+  /// Indexed as in the scene; missing ones have the default.
   std::vector<InstanceLabel> instances;
   std::vector<MaterialLabel> materials;
 

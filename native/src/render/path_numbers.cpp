@@ -50,8 +50,8 @@ PathNumbers::Deal PathNumbers::deal(Run run, float share, Purpose purpose) {
     const int dealt = static_cast<int>(whole) + (one_more ? 1 : 0);
     return {{0, run.count - dealt}, {0, dealt}};
   }
-  // Systematic sampling: direction number d is dealt out where floor(d share + offset) takes a step. Whatever the
-  // share, the directions of each part are successive points of its sequence.
+  // Systematic sampling: direction d is dealt out where floor(d share + offset) takes a step. For any share, the
+  // directions of each part are successive points of its sequence.
   const double offset = static_cast<double>(unit_float(key(purpose)));
   const auto dealt_before = [&](double d) { return static_cast<uint32_t>(std::floor(d * part + offset)); };
   const uint32_t before = dealt_before(run.first), after = dealt_before(static_cast<double>(run.first) + run.count);

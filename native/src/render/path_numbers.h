@@ -1,4 +1,4 @@
-// The random numbers of one path, from independent numbers or from a sequence that covers the unit square evenly.
+// Random numbers of one path: independent, or from a sequence that covers the unit square evenly.
 #pragma once
 
 #include <cstdint>
@@ -11,16 +11,16 @@
 
 namespace velour {
 
-/// What numbers at a vertex are for. Each has its own sequence.
-/// `lens` has the number of the next vertex' `camera`, which there is none of.
+/// Purpose of the numbers at a vertex; each has its own sequence. `lens` has the key of the next vertex' `camera`,
+/// which does not exist.
 enum class Purpose : uint64_t { camera, side, surface, light, sharp, onward, product_side, product, lens };
 
-/// `Sequence::sobol`: for every (seed, pixel, half, vertex of the path, purpose) one scrambled sequence. The camera
-/// rays of a pixel, and the directions of each, take successive points of it. With a noise target or to denoise even
-/// and odd camera rays are two halves, independent of each other, so that their difference tells the error (PixelSum);
-/// without one they are one sequence, which errs less.
+/// `Sequence::sobol`: one scrambled sequence for every (seed, pixel, half, vertex of the path, purpose). The camera
+/// rays of a pixel and the directions of each take successive points of it. With a noise target or denoising, even and
+/// odd camera rays form two independent halves, whose difference gives the error (PixelSum); otherwise they form one
+/// sequence, which errs less.
 ///
-/// `Sequence::random`: independent numbers, with a lattice for the directions of one vertex; kept as the judge.
+/// `Sequence::random`: independent numbers, with a lattice for the directions of one vertex; kept as a reference.
 ///
 /// `Sequence::independent`: without the lattice, as in the dissertation.
 class PathNumbers {
@@ -33,38 +33,39 @@ class PathNumbers {
     if (sequence_ == Sequence::sobol) key_ = random_.next_bits();
   }
 
-  /// From here on numbers are for the next vertex of the path.
+  /// Subsequent numbers are for the next vertex of the path.
   void next_vertex() { ++vertex_; }
 
-  /// `u.size()` points in [0, 1)^2. `first`: how many points earlier camera rays of the half used for this purpose.
+  /// `u.size()` points in [0, 1)^2. `first`: number of points that earlier camera rays of the half used for this
+  /// purpose.
   void points(Purpose purpose, uint32_t first, std::span<Vec2> u);
-  /// The same points, made together with those of other paths.
+  /// Requests these points from a batch that generates them with those of other paths.
   void points(Purpose purpose, uint32_t first, int count, PointBatch& batch);
-  /// One point, where every camera ray uses one.
+  /// One point, for purposes with one point per camera ray.
   Vec2 point(Purpose purpose);
   void point(Purpose purpose, PointBatch& batch) { points(purpose, ray_, 1, batch); }
 
-  /// Directions in a row, and which of the points of their purpose they take.
+  /// Consecutive directions, and the first point of their purpose that they take.
   struct Run {
     uint32_t first;
     int count;
   };
-  /// The directions of this camera ray; `full` is how many one has that is not the last of its pixel.
+  /// The directions of this camera ray; `full`: number of directions of a camera ray other than the last of its pixel.
   Run all(int directions, int full) const { return {ray_ * static_cast<uint32_t>(full), directions}; }
 
   struct Deal {
     Run rest, dealt;
   };
-  /// Deals `share` of the directions out, on average: each time one of the two nearest whole numbers of them.
+  /// Deals out `share` of the directions on average: each time one of the two nearest integers.
   Deal deal(Run run, float share, Purpose purpose);
 
-  /// Of the ray that goes on from this vertex, before it has come to the next.
+  /// Decisions of the continuation ray from this vertex, before it reaches the next.
   RayDecisions decisions();
 
-  /// Uniform over [0, 1): which lobe the ray that goes on from this vertex is said to come from.
+  /// Uniform over [0, 1): selects the lobe that the continuation ray from this vertex is attributed to.
   float label();
 
-  /// How many camera rays of the half came before this one.
+  /// Number of camera rays of the half before this one.
   uint32_t ray() const { return ray_; }
 
  private:

@@ -1,4 +1,4 @@
-// Paths of one thread that go from surface to surface together.
+// Paths of one thread that advance from surface to surface together.
 #pragma once
 
 #include <vector>
@@ -9,8 +9,8 @@
 
 namespace velour {
 
-/// Light directions of a vertex beyond the first: one from each side suffices for `mis`, and the many camera rays of a
-/// pixel average them.
+/// Light directions at vertices after the first: one from the surface and one from the lights suffice for `mis`, and
+/// the many camera rays of a pixel average them.
 inline constexpr int kIndirectDirections = 2;
 
 struct Path {
@@ -21,37 +21,37 @@ struct Path {
   PathPast past{};
 };
 
-/// Whoever has them makes `receivers` of the hits, in turns with trace() and gather(), and counts what surfaces emit.
+/// The owner turns hits into `receivers`, alternating with trace() and gather(), and adds the emission of surfaces.
 struct PathsInFlight {
-  /// `sky` as of DirectLight.
+  /// `sky`: see DirectLight.
   PathsInFlight(const Scene& scene, const Lighting& lighting, const RenderOptions& options, const SkySampler* sky)
       : visible(scene), light(scene, lighting, options, sky) {}
 
-  /// Where the rays end, and what of their light comes through on the way. Light that waited for them is added to the
-  /// samples. `kind`: a bit of `hidden`.
+  /// Finds where the rays end and how much of their light is transmitted on the way. Adds light that waited for them to
+  /// the samples. `kind`: a bit of `hidden`.
   void trace(uint8_t kind);
-  /// Adds the light at the receivers to the samples. The paths then are those that go on from them, if they `go_on`,
-  /// else none. The number of shadow rays, which `log` (may be null) receives.
+  /// Adds the light at the receivers to the samples. Afterwards `paths` holds their continuations if they `go_on`,
+  /// otherwise none. Returns the number of shadow rays, which `log` (may be null) receives.
   size_t gather(bool go_on, RayLog* log);
 
   const VisibleRays visible;
   DirectLight light;
   std::vector<Path> paths;
-  std::vector<Ray> rays;            // of the paths
-  std::vector<Hit> hits;            // of the rays
-  std::vector<Receiver> receivers;  // with numbers of the paths
+  std::vector<Ray> rays;            // by path
+  std::vector<Hit> hits;            // by path
+  std::vector<Receiver> receivers;  // they use the numbers of the paths
   std::vector<CameraSample> samples;
 
  private:
-  /// Adds the paths that go on from the receivers of the last DirectLight::gather().
+  /// Adds the continuations of the receivers of the last DirectLight::gather().
   void extend(std::span<const Receiver> batch);
   void add_awaited();
 
   ShadowQueue shadows_;
-  std::vector<AwaitedLight> awaited_;  // by number of the path
+  std::vector<AwaitedLight> awaited_;  // `place` is the index of the path
   std::vector<Path> next_;
   std::vector<Ray> next_rays_;
-  // Of the rays, where they may pass what they come to.
+  // Per ray, if rays may pass through surfaces.
   std::vector<Rgb> passed_;
   std::vector<RayDecisions> decisions_;
 };

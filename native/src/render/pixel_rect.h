@@ -1,4 +1,4 @@
-// Pixels of a picture.
+// Rectangle of pixels.
 #pragma once
 
 namespace velour {

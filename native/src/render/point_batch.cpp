@@ -14,7 +14,7 @@ namespace HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
-// The functions of sobol.cpp, where they are explained, over lanes.
+// Vectorized versions of the functions that sobol.cpp explains.
 
 template <int kBits, class D, class V = hn::Vec<D>>
 HWY_INLINE V swap_neighbors(D d, V x, uint32_t low) {

@@ -1,4 +1,4 @@
-// Points of many sequences, made together.
+// Points of many sequences, generated together.
 #pragma once
 
 #include <span>
@@ -7,15 +7,15 @@
 
 namespace velour {
 
-/// Up to kCapacity points in [0, 1)^2: add, then resolve(), then read. A sequence gives but a few points at a time;
-/// vectors run over those of all.
+/// Up to kCapacity points in [0, 1)^2: add, then resolve(), then read. Each sequence contributes only a few points;
+/// vectors run over the points of all of them.
 class PointBatch {
  public:
   static constexpr int kCapacity = 64;
 
   void clear() { count_ = 0; }
   int count() const { return count_; }
-  /// Points `first`, `first` + 1, ... of the Sobol sequence `seeds`.
+  /// Adds points `first`, `first` + 1, ... of the Sobol sequence `seeds`.
   void add(const SobolSeeds& seeds, uint32_t first, int count) {
     pending_ = true;
     for (uint32_t i = 0; i < static_cast<uint32_t>(count); ++i, ++count_) {
@@ -25,20 +25,21 @@ class PointBatch {
       seed_y_[count_] = seeds.y;
     }
   }
-  /// Room for `count` points that the caller sets at once: those of no sequence. Not together with the others.
+  /// Adds `count` points that the caller sets at once, for numbers without a sequence. Must not be mixed with the
+  /// others.
   std::span<Vec2> add(int count) {
     count_ += count;
     return {points_ + count_ - count, static_cast<size_t>(count)};
   }
-  /// Makes what was asked for. Run-time dispatched SIMD; the very bits of sobol_points.
+  /// Generates the requested points. Run-time dispatched SIMD; bit-identical to sobol_points.
   void resolve();
 
   std::span<const Vec2> points(int first, int count) const { return {points_ + first, static_cast<size_t>(count)}; }
 
-  // What the kernel sees.
+  // Arguments of the kernel.
   struct Lanes {
     const uint32_t *index, *order, *seed_x, *seed_y;
-    float* points;  // x and y by turns
+    float* points;  // x and y interleaved
     int count;
   };
 

@@ -1,4 +1,4 @@
-// A hit as a place of its material, and whether rays of a kind meet it.
+// Site of a hit on its material, and whether rays of a kind hit it.
 #pragma once
 
 #include "material/material.h"
@@ -6,16 +6,16 @@
 
 namespace velour {
 
-/// Whether `ray` has come to a back that is hidden from its kind. Of shadow rays that is a matter of the light, which
-/// comes the other way.
+/// Whether `ray` has reached a back face that is hidden from its kind. For shadow rays the direction of the light
+/// counts, which comes the other way.
 inline bool passes_back(const SurfaceMaterial& surface, const Ray& ray, const Hit& hit, uint8_t kind) {
   if (!surface.hides_backs() || (surface.hidden_backs & kind) == 0) return false;
   const float along = glm::dot(hit.geometric_normal, ray.direction);
   return kind == hidden::kFromShadows ? along < 0.0f : along > 0.0f;
 }
 
-/// Where a material is asked for what is there and what passes: at a point, because what a footprint would average the
-/// rays of a pixel do.
+/// Site at which a material is queried for opacity and transmission: a point, because the rays of a pixel average what
+/// a footprint would.
 inline SurfaceSite point_site(const Scene& scene, const Hit& hit, const SurfaceMaterial& surface) {
   SurfaceSite site;
   if (!surface.material->varies()) return site;

@@ -7,7 +7,7 @@
 namespace velour {
 namespace {
 
-/// options.samples, its end in numbers.
+/// options.samples with its end resolved.
 SampleRange checked_samples(const RenderOptions& options) {
   const SampleRange range{options.samples.begin, options.samples.end == 0 ? options.spp : options.samples.end};
   const auto whole = [&](int directions) { return directions % options.split == 0 || directions == options.spp; };

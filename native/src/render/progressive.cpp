@@ -15,7 +15,7 @@
 namespace velour {
 namespace {
 
-/// Light directions a pixel of the coarse levels: they are looked at for a moment only.
+/// Light directions per pixel of the coarse levels, which are visible only for a moment.
 constexpr int kCoarseDirections = 4;
 
 }  // namespace
@@ -58,13 +58,13 @@ void ProgressiveRender::run(Progress& progress) {
   }
 }
 
-/// Has the next picture begin where that of this one suggests.
+/// Chooses the first level of the next image by the time of this one.
 void ProgressiveRender::measure_first(bool is_whole) {
   if (!std::exchange(is_unseen_, false)) return;
   first_.took(std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count(), is_whole);
 }
 
-/// Its hierarchy, lights, and what the strategy needs: kept while the camera alone moves.
+/// Prepares hierarchy, lights, and what the strategy needs; kept while only the camera moves.
 void ProgressiveRender::prepare_scene(Progress& progress) {
   progress.stage("hierarchy", 0.0, 0.0);
   scene_->commit(asked_.threads, &progress);
@@ -118,7 +118,7 @@ void ProgressiveRender::render_pass(Level& level, int target, Progress& progress
   arena_.execute([&] {
     tbb::parallel_for(size_t{0}, level.tiles.size(), [&](size_t t) {
       int& done = level.done[t];
-      if (done >= target) return;  // before a cancel
+      if (done >= target) return;  // done before a cancellation
       renderers.local().render(level.tiles[t], done, target - done, level.film, nullptr, progress);
       done = target;
       if (level_ > begin_) show();
@@ -126,7 +126,7 @@ void ProgressiveRender::render_pass(Level& level, int target, Progress& progress
   });
 }
 
-/// RGBA.
+/// Denoised image, RGBA.
 std::vector<float> ProgressiveRender::denoised(const Film& film, const Progress& progress) const {
   const std::vector<float> colors = denoised_colors(film, asked_.threads, progress);
   std::vector<float> pixels(4 * (colors.size() / 3));
@@ -135,8 +135,8 @@ std::vector<float> ProgressiveRender::denoised(const Film& film, const Progress&
   return pixels;
 }
 
-/// The first level is shown only once it is complete, as there is nothing beneath it. A denoised picture stays until
-/// the next one.
+/// The first level is shown only once it is complete, as there is nothing beneath it. A denoised image stays until the
+/// next one.
 void ProgressiveRender::show(std::vector<float> denoised) {
   const std::lock_guard lock(mutex_);
   if (denoised.empty() && !denoised_.empty()) return;

@@ -1,4 +1,4 @@
-// A picture for somebody who watches it and keeps changing the scene: coarse at once, then finer, then less noisy.
+// An image for a viewer who keeps changing the scene: coarse at once, then finer, then less noisy.
 #pragma once
 
 #include <tbb/task_arena.h>
@@ -15,33 +15,33 @@
 
 namespace velour {
 
-/// Goes through levels of half the pixels' size each, one camera ray a pixel, and then on at full size. Camera rays,
-/// strategies and light are those of render(): after all of spp its picture is the same, bit for bit. How coarse it
-/// begins is what the picture before took.
+/// Renders levels that each halve the pixel size, one camera ray per pixel, then continues at full size. Camera rays,
+/// strategies and light are those of render(): after all spp the image is the same, bit for bit. The time that the
+/// previous image took determines how coarse an image begins.
 class ProgressiveRender {
  public:
   struct Picture {
-    int width = 0, height = 0;  // 0: there is none yet
-    uint32_t samples = 0;       // light directions that every pixel of full size has
-    uint64_t version = 0;       // grows with what there is to see
+    int width = 0, height = 0;  // 0: there is no image yet
+    uint32_t samples = 0;       // light directions per pixel of full size
+    uint64_t version = 0;       // increases with every visible change
   };
 
-  /// `scene` may change between runs: then restart() goes before the next one. Of `options`, noise, time_limit,
-  /// samples, crop and stop are not used. With `denoise` the picture is denoised from the first pass of full size on,
-  /// each time that it has twice the camera rays, and what is shown has no noise from then on. Throws what render()
-  /// throws of options.
+  /// `scene` may change between runs; restart() must then be called before the next run. Of `options`, noise,
+  /// time_limit, samples, crop and stop are ignored. With `denoise`, the image is denoised from the first full-size
+  /// pass on, each time its camera rays have doubled, and only denoised images are shown from then on. Throws what
+  /// render() throws for invalid options.
   ProgressiveRender(std::shared_ptr<Scene> scene, const RenderOptions& options);
 
-  /// The next run begins anew. Not while one runs.
+  /// Makes the next run start from the beginning. Must not be called during a run.
   void restart();
-  /// Commits the scene, and renders until the picture has all of spp, or Error(cancelled); then the next run goes on
-  /// where this one was.
+  /// Commits the scene and renders until the image has all spp. After Error(cancelled), the next run continues where
+  /// this one stopped.
   void run(Progress& progress);
 
   // From any thread, at any time:
   Picture picture() const;
-  /// RGBA, premultiplied, row 0 at the bottom; pixels that are not there yet are those of the level before. Throws
-  /// Error(invalid_argument) where `pixels` holds less than the picture has; a picture of full size always fits.
+  /// RGBA, premultiplied, row 0 at the bottom; pixels not yet rendered come from the previous level. Throws
+  /// Error(invalid_argument) if `pixels` is smaller than the image; room for the full size always suffices.
   Picture read(std::span<float> pixels) const;
 
  private:
@@ -49,8 +49,8 @@ class ProgressiveRender {
     Level(int width, int height, const PassOptions& passes);
     Film film;
     std::vector<PixelRect> tiles;
-    std::vector<int> done;  // camera rays a pixel, by tile
-    int least = 0;          // of them
+    std::vector<int> done;  // camera rays per pixel, by tile
+    int least = 0;          // minimum of `done`
   };
   bool is_last() const { return level_ == first_.last(); }
   void prepare_scene(Progress& progress);
@@ -63,21 +63,21 @@ class ProgressiveRender {
 
   const std::shared_ptr<Scene> scene_;
   const RenderOptions asked_;
-  RenderOptions options_;  // of the level
+  RenderOptions options_;  // options of the current level
   tbb::task_arena arena_;
   std::unique_ptr<RenderContext> context_;
   uint64_t prepared_for_ = 0;  // revision of the scene
   FirstLevel first_;
-  std::vector<std::unique_ptr<Level>> levels_;  // null: not begun, for films are large
-  int begin_;                                   // the level that the picture began at
+  std::vector<std::unique_ptr<Level>> levels_;  // null: not begun, since films are large
+  int begin_;                                   // level at which the image began
   int level_;
-  std::chrono::steady_clock::time_point start_;  // of the first level
+  std::chrono::steady_clock::time_point start_;  // start of the first level
   bool is_unseen_ = true;
 
-  mutable std::mutex mutex_;        // of what follows
+  mutable std::mutex mutex_;        // guards the members below
   const Level* shown_ = nullptr;    // null: nothing yet
-  const Level* beneath_ = nullptr;  // the level before, where `shown_` has holes
-  std::vector<float> denoised_;     // RGBA, of full size: shown in the place of `shown_`; empty: nothing
+  const Level* beneath_ = nullptr;  // previous level, where `shown_` has holes
+  std::vector<float> denoised_;     // RGBA, full size: shown instead of `shown_`; empty: none
   uint32_t samples_ = 0;
   std::atomic<uint64_t> version_{0};
 };

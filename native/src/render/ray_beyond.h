@@ -1,4 +1,4 @@
-// Rays that go on straight behind a surface.
+// Rays that continue straight behind a surface.
 #pragma once
 
 #include <cmath>
@@ -7,13 +7,13 @@
 
 namespace velour {
 
-/// Lets a ray go on behind its hit.
+/// Makes a ray start behind its hit.
 inline void go_beyond(Ray& ray, const Hit& hit) {
-  constexpr float kStep = 0x1p-20f;  // of the distance: the ray tracer's own error
+  constexpr float kStep = 0x1p-20f;  // relative to the distance: the error of the ray tracer
   ray.near = std::nextafter(hit.distance * (1.0f + kStep), ray.far);
 }
 
-/// A ray crosses a triangle once; what is found again is the same crossing, by rounding.
+/// A ray crosses a triangle only once: a second hit is the same crossing, found again through rounding.
 inline bool same_crossing(const Hit& hit, const Hit& passed) {
   return hit.instance == passed.instance && hit.triangle == passed.triangle;
 }

@@ -1,4 +1,4 @@
-// The rays of a few tiles, to learn what share of the time is the bare tracing of rays.
+// Records the rays of a few tiles, to measure the share of the time that goes into tracing them.
 #pragma once
 
 #include <span>
@@ -16,9 +16,9 @@ class RayLog {
   void reserve(size_t rays) { rays_.reserve(rays); }
   void add(std::span<const Ray> rays, Kind kind);
   size_t size() const { return rays_.size(); }
-  /// Time spent in add(), which is no part of a render.
+  /// Seconds spent in add(), which are not part of the render.
   double seconds() const { return seconds_; }
-  /// Traces the very same rays, in the same order and batches. Seconds of thread_seconds().
+  /// Traces the same rays in the same order and batches. Returns seconds of thread_seconds().
   double replay(const EmbreeScene& scene) const;
 
  private:

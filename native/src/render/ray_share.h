@@ -1,4 +1,4 @@
-// What share of the render time is the bare tracing of rays: 1 would be a renderer that shades for nothing.
+// Share of the render time that goes into tracing rays; at 1, shading would cost nothing.
 #pragma once
 
 #include <mutex>
@@ -11,13 +11,13 @@
 
 namespace velour {
 
-/// Records the rays of one tile in 16 until kMostRays are kept, with the processor time that these tiles took; later
-/// traces the very same rays alone, with as many threads, and divides.
+/// Records the rays of one tile in 16 until kMaxSharedRays are kept, with the CPU time of these tiles. Later traces the
+/// same rays alone, with as many threads, and divides.
 class RayShare {
  public:
   RayShare(bool enabled, int split) : enabled_(enabled), split_(split) {}
 
-  /// Calls work(log), log null unless tile number `tile` is recorded in this pass of `count` camera rays a pixel.
+  /// Calls work(log); log is null unless tile `tile` is recorded in this pass of `count` camera rays per pixel.
   template <typename Work>
   void record(size_t tile, const PixelRect& rect, int count, Work&& work) {
     if (!chosen(tile)) {
@@ -31,7 +31,7 @@ class RayShare {
     keep(std::move(record));
   }
 
-  /// Seconds of the rays alone / seconds of their tiles; nothing when no ray was recorded. Call it in the arena of the
+  /// Seconds of the rays alone / seconds of their tiles; empty if no ray was recorded. Call it in the arena of the
   /// render.
   std::optional<double> measure(const EmbreeScene& scene, const Progress& progress) const;
 

@@ -34,7 +34,7 @@ RenderOptions checked_for(const Scene& scene, const RenderOptions& options, cons
   return checked(options);
 }
 
-/// Camera rays a pixel of the next pass: doubling, so that a first picture appears at once.
+/// Camera rays per pixel of the next pass: doubles, so that a first image appears at once.
 int pass_size(const RenderOptions& options, int done, int left) {
   const int asked = options.camera_rays_per_pass;
   const int grown = std::clamp(done, 1, kMaxPass);
@@ -61,7 +61,7 @@ class Renderer {
     prepare(context_, arena_, progress_, report_.stages);
     if (context_.sky) report_.sky = context_.sky->report;
     render_passes();
-    if (options_.measure_ray_share && !stopped()) measure_ray_share();  // a stop is in a hurry
+    if (options_.measure_ray_share && !stopped()) measure_ray_share();  // a stop must not wait for it
     return report();
   }
 
@@ -148,13 +148,13 @@ class Renderer {
   tbb::task_arena arena_;
   RenderContext context_;
   NoiseTarget target_;
-  std::optional<DenoisedTarget> denoised_;  // in its place
+  std::optional<DenoisedTarget> denoised_;  // if set, used instead of target_
   tbb::enumerable_thread_specific<TileRenderer> renderers_{[this] { return TileRenderer(context_); }};
   RayShare share_{options_.measure_ray_share, options_.split};
   RenderReport report_;
-  uint64_t before_ = 0;  // light directions that the film had
-  int next_;             // camera ray of the active tiles
-  double work_ = 0;      // camera rays a pixel, summed over tiles
+  uint64_t before_ = 0;  // light directions that the film had at the start
+  int next_;             // next camera ray of the active tiles
+  double work_ = 0;      // camera rays per pixel, summed over tiles
 };
 
 }  // namespace

@@ -1,4 +1,4 @@
-// A picture of a scene.
+// Renders an image of a scene.
 #pragma once
 
 #include "job/progress.h"
@@ -9,12 +9,13 @@
 
 namespace velour {
 
-/// Renders a committed scene into `film` (cleared first), whose window is that of `options`. Throws
-/// Error(invalid_argument) with the option at fault, Error(invalid_state) when the scene is not committed, and
-/// Error(cancelled): then the film holds what was done.
+/// Renders a committed scene into `film`, whose window must be that of `options`; clears it first unless
+/// options.onto_film. Throws Error(invalid_argument) naming the option at fault, Error(invalid_state) if the scene is
+/// not committed, and Error(cancelled): then the film holds what was done.
 ///
-/// The picture is a function of scene, options (less threads and camera_rays_per_pass) and seed, bit for bit. A crop
-/// has the bits of the whole there; ranges of samples have its camera rays, and so add up to it within rounding.
+/// The image is a function of scene, options (except threads and camera_rays_per_pass) and seed, bit for bit. A crop
+/// has the same bits as the whole image there. Ranges of samples have the same camera rays as the whole, and so add up
+/// to it within rounding.
 RenderReport render(const Scene& scene, const RenderOptions& options, Film& film, Progress& progress);
 
 }  // namespace velour

@@ -17,12 +17,12 @@
 namespace velour {
 namespace {
 
-/// Camera rays of a frame, about.
+/// Approximate number of camera rays of a frame.
 constexpr double kPlaces = 65536;
-/// Camera rays that one task follows: a few milliseconds.
+/// Camera rays per task: a few milliseconds.
 constexpr uint64_t kRaysOfBlock = 256;
 
-/// kPlaces cells, about as wide as high.
+/// kPlaces cells that are about square.
 CameraGrid grid_of(const ObserverOptions& options) {
   const bool wide = options.width > options.height;
   const double ratio = static_cast<double>(options.width) / options.height;
@@ -31,7 +31,7 @@ CameraGrid grid_of(const ObserverOptions& options) {
   return wide ? CameraGrid{other, one} : CameraGrid{one, other};
 }
 
-/// The render whose paths are followed; `stream` tells independent ones apart.
+/// Options of the render whose paths are followed; different `stream`s are independent.
 RenderOptions render_options(const ObserverOptions& options, uint64_t stream) {
   RenderOptions render;
   render.width = options.width;
@@ -84,7 +84,7 @@ class Observer {
       tracers_.local().follow(first, std::min(grid_.cells(), first + kRaysOfBlock), seen[i]);
     });
     SceneDomain& domain = observation_.domain;
-    for (const SeenWeights& block : seen) {  // in this order, whatever the threads did
+    for (const SeenWeights& block : seen) {  // in a fixed order, independent of threads
       for (size_t i = 0; i < block.view.size(); ++i) domain.view[i] += block.view[i];
       merge(domain.surface, block.surface);
     }

@@ -1,4 +1,4 @@
-// Looks at a scene as the renderer would, to learn what it asks of one material.
+// Observes a scene as the renderer would, to find the scene usage of one material.
 #pragma once
 
 #include "domain/observation.h"
@@ -8,33 +8,33 @@
 namespace velour {
 
 struct ObserverOptions {
-  int width = 640, height = 480;  // of the picture, 1..65536; uniform materials see their ratio alone
-  int bounces = 0;                // of its render, 0..1024
+  int width = 640, height = 480;  // image size, 1..65536; for uniform materials only the ratio matters
+  int bounces = 0;                // bounces of the render, 0..1024
   int threads = 0;                // 0: all
   uint64_t seed = 0;
 };
 
-/// Throws Error with the option at fault, or what is wrong with the scene.
+/// Throws Error naming the option at fault or what is wrong with the scene.
 void check_observer(const Scene& scene, uint32_t material, const ObserverOptions& options);
 
-/// One frame of `material` in a committed scene. A function of scene, options (less threads) and seed, bit for bit.
-/// Throws what check_observer throws, and Error(cancelled).
+/// Observes one frame of `material` in a committed scene. A function of scene, options (except threads) and seed, bit
+/// for bit. Throws what check_observer throws, and Error(cancelled).
 ///
-/// About 65,536 camera rays, one through a random place of each cell of a grid over the picture, go on from bounce to
-/// bounce as the renderer's do. Every hit of the material, at any depth, adds the luminance of its path's throughput to
-/// the view histogram. It also takes part in a draw: it receives the times of a Poisson process whose rate is that
-/// weight, the bits of a time are a key, and the kHits earliest times of all hits stay. So each kept hit is an
-/// independent draw with probability proportional to weight (a hit may be kept more than once, with light of its own),
-/// and of several frames the earliest times of all are the same draw from all of them.
+/// About 65,536 camera rays, one through a random point of each cell of a grid over the image, continue from bounce to
+/// bounce as in the renderer. Every hit of the material, at any depth, adds the luminance of its path's throughput to
+/// the view histogram. It also takes part in sampling: it receives the times of a Poisson process whose rate is that
+/// weight, the bits of a time are its key, and the kHits earliest times of all hits are kept. Each kept hit is thus an
+/// independent sample with probability proportional to weight (a hit may be kept more than once, with different light),
+/// and the earliest times of several frames are the same kind of sample from all of them.
 ///
-/// Each half of a kept hit's light holds kObservedDirections directions, half drawn towards light (Lighting), half from
-/// the material's sampler, weighted by the balance heuristic [VG95]; environment, lamps and surfaces that glow count
-/// where nothing blocks them, and, with bounces left, the radiance that a path traced onwards brings back. Sharp lamps
-/// come by name: all of up to 64, else 64 drawn by what they bring.
+/// Each half of a kept hit's light holds kObservedDirections directions, half of them light-sampled (Lighting), half
+/// from the material's sampler, weighted by the balance heuristic [VG95]. Unoccluded environment, lights and emissive
+/// meshes count and, with remaining bounces, the radiance found by continuing a path. Delta lights are added one by
+/// one: all of up to 64, otherwise 64 sampled by contribution.
 ///
-/// The light density of a hit is the largest density d (Lighting, 1/sr) such that terms of density d or more make at
-/// least kNoticeableLight of the hit's irradiance luminance, light of surfaces included there and never concentrated;
-/// infinite where sharp lamps do.
+/// The light density of a hit is the largest density d (Lighting, 1/sr) such that terms of density d or more make up at
+/// least kNoticeableLight of the luminance of the hit's irradiance. Light reflected by surfaces counts there and is
+/// never concentrated; infinite if delta lights alone suffice.
 SceneObservation observe(const Scene& scene, uint32_t material, const ObserverOptions& options, Progress& progress);
 
 constexpr int kObservedDirections = 64;

@@ -16,8 +16,8 @@ struct SceneSamplers {
   std::shared_ptr<const SkySampler> sky;
 };
 
-/// What the scene keeps at `place`, or else what `make` gives. Renders that begin together may both make it, so that
-/// each can be cancelled; they get the same.
+/// Returns what the scene keeps at `place`, or the result of `make`. Renders that start together may both make it, so
+/// that each can be cancelled; they get the same object.
 template <typename T, typename Make>
 std::shared_ptr<const T> kept(const Scene& scene, std::shared_ptr<const T> SceneSamplers::*place, const Make& make) {
   const std::shared_ptr<SceneSamplers> samplers = scene.kept<SceneSamplers>();

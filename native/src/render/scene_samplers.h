@@ -1,5 +1,4 @@
-// What strategies draw directions from beside materials and lights. It depends on the scene alone, and renders share
-// it.
+// Samplers that strategies use beside materials and lights. They depend on the scene alone, and renders share them.
 #pragma once
 
 #include <memory>
@@ -14,7 +13,7 @@
 
 namespace velour {
 
-// By material.
+// Indexed by material.
 using TableSamplers = std::vector<std::shared_ptr<const TableSampler>>;
 using GgxSamplers = std::vector<std::unique_ptr<const GgxSampler>>;
 
@@ -24,12 +23,12 @@ struct SkySampler {
   RenderReport::Sky report;
 };
 
-/// Each is made when a render of this state of the scene first needs it (Scene::kept()), and has the same bits for any
-/// number of threads. They throw Error(cancelled).
+/// These samplers are built when a render of this state of the scene first needs them (Scene::kept()), with the same
+/// bits for any number of threads. The functions throw Error(cancelled).
 std::shared_ptr<const TableSamplers> table_samplers(const Scene& scene, const Progress& progress);
-/// `threads`: 0 is all.
+/// `threads` 0: all.
 std::shared_ptr<const GgxSamplers> ggx_samplers(const Scene& scene, int threads, Progress& progress);
-/// `cache_folder`: of sky_mixture(), which the first render looks into.
+/// `cache_folder`: cache of sky_mixture(), read by the first render.
 std::shared_ptr<const SkySampler> sky_sampler(const Scene& scene, const std::string& cache_folder, Progress& progress);
 
 }  // namespace velour

@@ -1,4 +1,4 @@
-// Lamps without extent, which no drawn direction can meet, at one vertex.
+// Delta lights, which no sampled direction can hit, at one vertex.
 #pragma once
 
 #include "render/lighting.h"
@@ -7,18 +7,19 @@
 
 namespace velour {
 
-/// Light of a sharp lamp that stands above both the shading horizon and the surface; shadows are not looked at.
+/// Light of a delta light that is above both the shading horizon and the surface; ignores shadows.
 struct SharpLight {
   const Lamp* lamp;
   float distance;
   Vec3 wl, wl_world;
-  Rgb irradiance;  // perpendicular, over the probability of having been chosen
+  Rgb irradiance;  // perpendicular, divided by the selection probability
 };
 
 inline constexpr size_t kMostSharpLamps = 64;
 
-/// Each sharp lamp once when `found` has room for all (up to kMostSharpLamps), else as many as it has room for, drawn
-/// by what they bring (Lighting::sharp_view). Returns how many of them shine on the vertex and are in `found`.
+/// Finds each delta light once if `found` has room for all (up to kMostSharpLamps), otherwise as many as it has room
+/// for, sampled by contribution (Lighting::sharp_view). Returns the number of lights in `found`: those that illuminate
+/// the vertex.
 int find_sharp_light(const Lighting& lighting, const Vertex& vertex, PathNumbers& numbers, std::span<SharpLight> found);
 
 }  // namespace velour

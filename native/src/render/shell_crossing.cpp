@@ -9,12 +9,12 @@
 namespace velour {
 namespace {
 
-/// Beyond, a BTF's texels would be looked for ever farther away.
+/// Minimum cosine of texture look-ups; below it, the texels would be ever farther away.
 constexpr float kLeastCosine = 0.15f;
-/// Pitches: where rays start from a structure, so that they do not meet it again at once.
+/// Offset of rays that start on a structure, in pitches, so that they do not hit it again at once.
 constexpr float kOffStructure = 0.3f;
 
-/// Of the radius of the top, what is left of it below.
+/// Minimum radius of curvature below the top, as a share of that at the top.
 constexpr float kLeastRadius = 0.1f;
 
 Vec3 downwards(const Ray& ray, const Hit& top) {
@@ -50,12 +50,12 @@ ShellRay ShellCrossing::in_shell() const {
 
 ShellWay ShellCrossing::way_behind(const ShellRay& ray, const Hit& hit, const ShellEdge& edge) const {
   const OcclusionVolume& volume = field().volume();
-  // Beside the outline of the smooth surface the ray passes, whatever its triangles are.
+  // At the silhouette of the smooth surface the ray passes by, whatever the triangles are.
   if (!(ray.cosine > 0)) return {ray, volume, 0, 0};
   const ShellSpan span = span_of(ray, volume);
   if (!leaving_) return {ray, volume, 0, span.end, false, edge};
   if (hit.distance < span.end) return {ray, volume, hit.distance, 0, true, edge};
-  // A ray that came in through the top is decided there.
+  // A ray that entered through the top has been decided there.
   return {ray, volume, span.through_bottom ? span.end : 0, 0, false, edge};
 }
 
@@ -63,7 +63,7 @@ ShellWay ShellCrossing::way_at_side(const Ray& ray, const Hit& hit, const ShellE
   const OcclusionVolume& volume = field().volume();
   ShellRay way = in_shell();
   way.height = -foot_.below * (volume.top - volume.bottom);
-  // Below the top of a bulge its circle is smaller.
+  // Below the top of a convex shell the radius is smaller.
   const float radius = std::max(kLeastRadius, 1 + frame_.curvature * way.height / way.scale);
   way.along /= radius;
   way.curvature /= radius;
@@ -76,7 +76,7 @@ ShellWay ShellCrossing::way_at_side(const Ray& ray, const Hit& hit, const ShellE
   return {way, volume, span.through_bottom ? -travel * span.end : 0, 0, false, edge};
 }
 
-/// A ray that comes out of a side goes on outside; one that came in through a side is decided there.
+/// A ray that leaves through a side continues outside; one that entered through a side has been decided there.
 void ShellCrossing::end_at_sides(const Ray& ray, const Hit& hit) {
   if (foot_.is_side ? goes_in(ray, hit) : !leaving_) {
     const float way = way_.end - way_.begin, far = hit.distance + std::abs(way);
@@ -93,7 +93,7 @@ void ShellCrossing::end_at_sides(const Ray& ray, const Hit& hit) {
 bool ShellCrossing::find() {
   const Hit& top = foot_.top;
   hit_.met = false;
-  if (!std::isnan(top.shell_s)) {  // which is known already
+  if (!std::isnan(top.shell_s)) {  // already known
     hit_ = {true, top.shell_begin, top.shell_s, way_.ray.at(top.shell_s) + Vec3(0, 0, field().volume().top)};
   } else if (!way_.empty()) {
     hit_ = trace_shell(field(), way_);
@@ -104,14 +104,14 @@ bool ShellCrossing::find() {
 Vec2 ShellCrossing::beyond_outline(const Vec2& texels) const {
   const OcclusionVolume& volume = field().volume();
   const Vec2 texel = Vec2(1, volume.aspect) / texels;
-  // Half of what a texel's mean and the look-up between texels reach over.
+  // Half the extent of the mean of a texel and the interpolation between texels.
   const float most = std::min(1.5f * std::max(texel.x, texel.y), 0.9f * volume.reach);
   const ShellOutline outline = outline_beside(field(), way_, hit_.s, most);
   const Vec2 across(outline.outside);
   const float square = glm::dot(across, across);
   if (!(outline.depth < std::min(most, 1.5f * glm::length(across * texel))) || !(square > 0)) return Vec2(0.0f);
   const Vec2 over = across * (2 * outline.depth / square);
-  // Where other structure lies behind, there is no outline.
+  // There is no silhouette where other structure lies behind.
   ShellWay beside = way_;
   beside.ray.place += over;
   if (deepest_behind(field(), beside, hit_.begin, 0).depth > 0) return Vec2(0.0f);
@@ -122,13 +122,13 @@ Vec3 ShellCrossing::normal() const { return glm::normalize(frame_.normal + hit_.
 
 bool ShellCrossing::is_cut() const { return foot_.is_side && way_.begin == 0 && hit_.s == 0; }
 
-/// Towards the viewer.
+/// Normal of the cut, toward the viewer.
 Vec3 ShellCrossing::cut_normal() const {
   const float length = glm::length(side_normal_);
   return length > 0 ? side_normal_ / length : normal();
 }
 
-/// Of the structure, in the world: its gradient's parts along the texture coordinates and the normal.
+/// World-space normal of the structure: the components of its gradient along the texture coordinates and the normal.
 Vec3 ShellCrossing::structure_normal(const Vec3& up) const {
   const float aspect = field().volume().aspect;
   const Vec3 slope = field().gradient(hit_.place);
@@ -153,7 +153,7 @@ SurfacePoint ShellCrossing::surface(SurfacePoint top, bool shaded) const {
     top.geometric_normal = top.shading_normal = own;
     return top;
   }
-  // What is solid below is no surface of the ray tracer's: light from there counts as nothing, so no normal may look
+  // The solid below is not a surface of the ray tracer: light from there does not count, so the normal must not point
   // there.
   const float height = glm::dot(own, leaving_ ? -up : up);
   top.shading_normal = height < 0 ? glm::normalize(own - glm::dot(own, up) * up) : own;
@@ -164,7 +164,7 @@ TexturePoint ShellCrossing::texture(TexturePoint top) const {
   const OcclusionVolume& volume = field().volume();
   const Vec3 up = normal(), wv = -direction_;
   const float cosine = std::max(glm::dot(wv, up), kLeastCosine);
-  // From the hit along the ray to the plane of the texels.
+  // Vector from the hit along the ray to the plane of the texels.
   const Vec3 to_plane = (wv - glm::dot(wv, up) * up) * ((volume.reference - hit_.place.z) / (frame_.scale * cosine));
   top.uv = Vec2(hit_.place) / Vec2(1, volume.aspect) +
            Vec2(glm::dot(top.u_gradient, to_plane), glm::dot(top.v_gradient, to_plane));

@@ -1,4 +1,4 @@
-// Rays at the tops of shells.
+// Rays at the tops and sides of shells.
 #pragma once
 
 #include "scene/scene.h"
@@ -6,41 +6,39 @@
 
 namespace velour {
 
-/// What a ray does that crosses the top of a shell, or a side where the surface ends: it comes from outside and goes
-/// in, or it leaves after its way through the shell. A way that goes in through the top or a side is decided there, up
-/// to where it leaves through any; one that came in through the bottom, or began within, where it leaves.
+/// A ray that crosses the top of a shell, or a side where the surface ends: it enters from outside, or it leaves after
+/// its way through the shell. A way that enters through the top or a side is decided there, up to wherever it leaves;
+/// one that came in through the bottom, or began inside, is decided where it leaves.
 class ShellCrossing {
  public:
   /// `hit` is on the top or a side of a shell (Scene::has_shell).
   ShellCrossing(const Scene& scene, const Ray& ray, const Hit& hit);
 
   const ShellField& field() const { return *frame_.field; }
-  /// From the shell's bottom to its top, in the world.
+  /// Height of the shell from bottom to top, in the world.
   float height() const { return (field().volume().top - field().volume().bottom) / frame_.scale; }
-  /// The top's point that the crossing belongs to: `hit`, or the point of the border over it.
+  /// Point of the top that the crossing belongs to: `hit`, or the point of the border above it.
   const Hit& top() const { return foot_.top; }
-  /// Where the ray could meet the structure on this side of the surface; nowhere when it is empty, from where it begins
-  /// to its end.
+  /// Segment on which the ray could hit the structure on this side of the surface; empty if there is none.
   const ShellWay& way() const { return way_; }
-  /// Whether it does.
+  /// Searches the way; returns whether the ray hits the structure.
   bool find();
 
-  /// The place where it does so, in place of the top's. This and what follows only after find() said so. `shaded`
-  /// (SurfaceMaterial::shell_shaded): the structure's own surface, a little off it; else the smooth surface there,
-  /// where rays leave the shell.
+  /// The hit, in place of the point of the top. Like the functions below, valid only after find() returned true.
+  /// `shaded` (SurfaceMaterial::shell_shaded): on the structure's own surface, a little off it; otherwise on the smooth
+  /// surface where rays leave the shell.
   SurfacePoint surface(SurfacePoint top, bool shaded) const;
-  /// The place's texture coordinates: those of the plane that a BTF of the structure has its texels on, where the ray
-  /// crosses it.
+  /// Texture coordinates of the hit: those of the point where the ray crosses the plane of the texels of a BTF.
   TexturePoint texture(TexturePoint top) const;
-  /// From there to its mirror image at the outline that the structure has along the ray, in texture coordinates; zero
-  /// where no outline is near in terms of so many `texels` a tile (SurfaceSite::beyond_outline).
+  /// Vector from there to its mirror image at the silhouette of the structure along the ray, in texture coordinates;
+  /// zero if no silhouette is near at a resolution of `texels` per tile (SurfaceSite::beyond_outline).
   Vec2 beyond_outline(const Vec2& texels) const;
 
  private:
   ShellRay in_shell() const;
   ShellWay way_at_side(const Ray& ray, const Hit& hit, const ShellEdge& edge);
   void end_at_sides(const Ray& ray, const Hit& hit);
-  /// Whether it is met where the side cuts it.
+  /// Whether the hit is where the side cuts the structure.
   bool is_cut() const;
   Vec3 cut_normal() const;
   ShellWay way_behind(const ShellRay& ray, const Hit& hit, const ShellEdge& edge) const;
@@ -49,10 +47,10 @@ class ShellCrossing {
 
   const Scene& scene_;
   const Scene::ShellFoot foot_;
-  const Vec3 direction_;  // of the ray, downwards through the shell
+  const Vec3 direction_;  // direction of the ray, flipped to point down through the shell
   bool leaving_;
-  Vec3 crossing_;     // of the top or side
-  Vec3 side_normal_;  // outwards, not normalised
+  Vec3 crossing_;     // point on the top or side
+  Vec3 side_normal_;  // outward, not normalized
   ShellFrame frame_;
   ShellWay way_;
   ShellHit hit_;

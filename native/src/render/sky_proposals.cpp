@@ -10,14 +10,14 @@
 namespace velour {
 namespace {
 
-/// A clipped cosine is about 1.17 exp(2.13 (t - 1)): the Gaussian of the same first two moments.
+/// A clipped cosine is about 1.17 exp(2.13 (t - 1)): the Gaussian with the same first two moments.
 constexpr float kCosineBandwidth = 2.13f, kCosineAmplitude = 1.17f;
-constexpr float kLeastProduct = 0.0025f;  // of a product's mass
+constexpr float kLeastProduct = 0.0025f;  // minimum share of the total mass
 
-/// Times as sharp as the BRDF's lobe is a sun of the lights: its disk then is a point to the lobe.
+/// A sun this many times as sharp as the BRDF lobe is left to light sampling: to the lobe its disk is a point.
 constexpr float kSunSharpness = 16;
-constexpr double kSunEnergy = 0.6;  // of the sky's
-constexpr double kBlurred = 0.2;    // misfit: 0.3 to 0.4 of small lamps in a studio, 0.1 of a square by day
+constexpr double kSunEnergy = 0.6;  // minimum share of the environment's energy
+constexpr double kBlurred = 0.2;    // misfit: 0.3 to 0.4 for small lights in a studio, 0.1 for a square by day
 
 int level_of(float bandwidth, int levels) {
   const int level = static_cast<int>(std::lround(0.5f * std::log2(std::max(bandwidth, 1.0f))));
@@ -45,9 +45,9 @@ SkyProposals::SkyProposals(const SkyMixture& sky, double misfit) : blurs_edges_(
   parallel_fill(kLists, [&](size_t list) { fill_list(list, tree); });
 }
 
-/// Takes it out of `sky`, but never the last lobe: something must be left to propose.
+/// Moves the sun out of `sky`, but never the last lobe: something must remain to propose.
 void SkyProposals::set_sun(GaussianLobes& sky) {
-  constexpr float kNarrow = 1000;  // a deviation below two degrees
+  constexpr float kNarrow = 1000;  // a standard deviation below two degrees
   if (sky.size() < 2) return;
   double total = 0;
   const auto energy = [&sky](size_t k) {
@@ -64,7 +64,7 @@ void SkyProposals::set_sun(GaussianLobes& sky) {
 }
 
 void SkyProposals::fill_list(size_t list, const LobeTree& tree) {
-  // A lobe anywhere in the cell and of any bandwidth of the level, blurred into one.
+  // A lobe anywhere in the cell and with any bandwidth of the level, blurred into one.
   constexpr float kCellVariance = 4 / (3.0f * kSide * kSide);
   const int cell = static_cast<int>(list / kLevels), level = static_cast<int>(list % kLevels);
   const float bandwidth = 1 / (std::exp2(-2.0f * static_cast<float>(level)) + kCellVariance);
@@ -97,7 +97,7 @@ bool SkyProposals::propose(const ProposalLobes& brdf, const Frame& frame, LobePr
   const auto add = [&](const GaussianLobe& world) {
     lobe[count] = world;
     list[count] = list_of(world);
-    // All lists together are larger than a core's caches; they are fetched while the first are multiplied.
+    // All lists together exceed the caches of a core; they are fetched while the first ones are multiplied.
     for (size_t line = 0; line < sizeof(LobeBlock) * blocks_[list[count]]; line += 64) {
       __builtin_prefetch(reinterpret_cast<const char*>(&lists_[list[count] * kBlocks]) + line);
     }

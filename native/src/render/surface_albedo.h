@@ -1,4 +1,4 @@
-// The share of light that a surface reflects towards the viewer.
+// Albedo: share of light that a surface reflects toward the viewer.
 #pragma once
 
 #include "material/material.h"
@@ -7,13 +7,13 @@
 
 namespace velour {
 
-/// Scratch memory of one thread.
+/// Holds scratch memory; one per thread.
 class SurfaceAlbedo {
  public:
   explicit SurfaceAlbedo(const std::optional<Mat3>& rec709_to_working) : rec709_to_working_(rec709_to_working) {}
 
-  /// Estimate of the integral of f cos over the sphere, in the working space, from kDirections directions that the
-  /// material draws; unbiased, so it may be above 1. What shines by itself is no part of it.
+  /// Unbiased estimate of the integral of f cos over the sphere, in the working space, from kDirections directions
+  /// sampled by the material; may be above 1. Excludes emission.
   Rgb estimate(const Vertex& vertex, PathNumbers numbers);
 
  private:

@@ -41,7 +41,7 @@ Vec3 SurfaceRecorder::uv(const Hit& hit, int set) const {
   return {(1.0f - at.u - at.v) * corner[0] + at.u * corner[1] + at.v * corner[2], 1.0f};
 }
 
-/// As Cycles has it for mist: from the point of view, or of an orthographic camera from its plane.
+/// Distance for mist, as in Cycles: from the camera, or from its plane if it is orthographic.
 float SurfaceRecorder::distance(const Vec3& world) const {
   const Camera& camera = scene_.camera();
   if (camera.type == Camera::Type::orthographic) return std::abs(camera.depth(world));

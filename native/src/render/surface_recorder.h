@@ -1,4 +1,4 @@
-// What the passes of surfaces say of the first thing that a camera ray meets.
+// Values of the surface passes at the first surface that a camera ray hits.
 #pragma once
 
 #include "render/camera_sample.h"
@@ -7,17 +7,17 @@
 
 namespace velour {
 
-/// Scratch memory of one thread.
+/// Holds scratch memory; one per thread.
 class SurfaceRecorder {
  public:
   explicit SurfaceRecorder(const Scene& scene) : scene_(scene), albedo_(scene.rec709_to_working()) {}
 
-  /// `vertex`: of `hit`, by a ray that has come to it with `throughput` left. `numbers`: of its path.
+  /// `vertex`: at `hit`, which a ray reached with throughput `throughput`. `numbers`: of its path.
   SurfaceSample record(const PassOptions& options, const Vertex& vertex, const Hit& hit, const Rgb& throughput,
                        const PathNumbers& numbers);
 
  private:
-  /// Of a set of the mesh, as it is: no material places it.
+  /// Texture coordinates of a set of the mesh, not placed by any material.
   Vec3 uv(const Hit& hit, int set) const;
   float distance(const Vec3& world) const;
 

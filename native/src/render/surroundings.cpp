@@ -8,10 +8,10 @@ namespace velour {
 namespace {
 
 constexpr int kProbes = 128;
-constexpr int kRaysOfSide = 8;   // through the picture, along each side
-constexpr int kMostHidden = 64;  // surfaces that a ray looks through
+constexpr int kRaysOfSide = 8;   // through the image, along each side
+constexpr int kMostHidden = 64;  // maximum number of hidden surfaces that a ray passes
 
-/// The instance whose back a ray meets first, if it is opaque there; kNoHit: it meets another thing, or none.
+/// The instance whose back face a ray hits first, if it is opaque there; kNoHit: it hits something else, or nothing.
 uint32_t back_met(const Scene& scene, Ray ray) {
   for (int i = 0; i < kMostHidden; ++i) {
     Hit hit;

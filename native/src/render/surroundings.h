@@ -1,4 +1,4 @@
-// Whether the camera stands inside of something.
+// Whether the camera is inside an object.
 #pragma once
 
 #include <cstdint>
@@ -8,9 +8,9 @@
 
 namespace velour {
 
-/// The instance that the camera is inside of and sees nothing but: the back of its surface is the nearest one in all of
-/// many directions about the camera and on all of many rays through the picture, and all of it that they meet is
-/// opaque. Instances that are hidden from the camera are looked through. `scene` is committed.
+/// The instance that encloses the camera and hides everything else: its back face is the nearest surface in all of many
+/// directions from the camera and on all of many rays through the image, and is opaque wherever they hit it. Instances
+/// hidden from the camera are ignored. `scene` must be committed.
 std::optional<uint32_t> surrounding_instance(const Scene& scene);
 
 }  // namespace velour

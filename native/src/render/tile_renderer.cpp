@@ -5,10 +5,10 @@
 namespace velour {
 namespace {
 
-/// Camera rays in flight at once: enough that shadow rays leave in long batches, few enough to stay in the cache.
+/// Camera rays in flight: enough for long batches of shadow rays, few enough to stay in the cache.
 constexpr int kRaysInFlight = 128;
 
-/// The alpha of what a camera ray has passed that goes on as `throughput`.
+/// Alpha of the surfaces that a camera ray has passed, given its remaining `throughput`.
 float covered(const Rgb& throughput) { return 1.0f - (throughput.r + throughput.g + throughput.b) / 3.0f; }
 
 }  // namespace
@@ -80,7 +80,7 @@ void TileRenderer::start_paths(const PixelRect& run, int first, int count) {
   aim_paths(run, count);
 }
 
-/// The camera rays of the paths, `count` a pixel.
+/// Creates the camera rays of the paths, `count` per pixel.
 void TileRenderer::aim_paths(const PixelRect& run, int count) {
   const RenderOptions& o = context_.options;
   const Vec2 size(static_cast<float>(o.width), static_cast<float>(o.height));
@@ -124,7 +124,7 @@ void TileRenderer::follow(size_t index, int depth) {
     }
     return;
   }
-  if (depth == 0 && context_.scene.is_holdout(hit)) {  // alpha 0, as Cycles has it on an opaque film, too
+  if (depth == 0 && context_.scene.is_holdout(hit)) {  // alpha 0, as in Cycles, even on an opaque film
     sample.alpha = covered(path.throughput);
     return;
   }

@@ -1,4 +1,4 @@
-// The work of one thread: camera rays of a tile, taken from bounce to bounce together.
+// Work of one thread: camera rays of a tile, advanced from bounce to bounce together.
 #pragma once
 
 #include <memory>
@@ -13,7 +13,7 @@
 
 namespace velour {
 
-/// What all threads share during a render, and do not change.
+/// Shared by all threads during a render, and constant.
 struct RenderContext {
   /// Throws Error(cancelled).
   RenderContext(const Scene& of, const RenderOptions& asked, const Progress& progress)
@@ -27,12 +27,12 @@ struct RenderContext {
   std::shared_ptr<const GgxSamplers> ggx;
   std::shared_ptr<const SkySampler> sky;
 
-  /// A pixel of the whole picture.
+  /// Camera rays per pixel of the whole image.
   int camera_rays() const { return rays_of(options.spp); }
-  /// Those of options.samples.
+  /// Range of camera rays of options.samples.
   int first_camera_ray() const { return rays_of(options.samples.begin); }
   int end_camera_ray() const { return rays_of(options.samples.end); }
-  /// Light directions of camera ray `index`: the last one takes what is left of spp.
+  /// Light directions of camera ray `index`: the last one takes the remainder of spp.
   int directions(int index) const { return std::min(options.split, options.spp - index * options.split); }
 
  private:
@@ -44,7 +44,7 @@ class TileRenderer {
   explicit TileRenderer(const RenderContext& context);
 
   /// Adds camera rays [first, first + count) of every pixel of `tile` to `film`. `log` (may be null) receives the rays.
-  /// Throws Error(cancelled) soon after a cancel.
+  /// Throws Error(cancelled) soon after a cancellation.
   void render(const PixelRect& tile, int first, int count, Film& film, RayLog* log, const Progress& progress);
 
   uint64_t rays() const { return ray_count_; }
@@ -57,21 +57,21 @@ class TileRenderer {
   void follow(size_t path, int depth);
   void add_background();
   void render_run(const PixelRect& run, int first, int count, size_t pixel, RayLog* log);
-  /// To the sums of the pixels from number `pixel` of the tile on.
+  /// Adds the samples to the sums of the pixels of the tile, from index `pixel` on.
   void add_samples(int count, size_t pixel);
 
   const RenderContext& context_;
   const PixelFootprint pixel_;
   PathsInFlight flight_;
   SurfaceRecorder recorder_;
-  std::vector<SurfaceSample> surfaces_;  // of the samples, where the film has passes that tell of them
+  std::vector<SurfaceSample> surfaces_;  // by sample, if the film has surface passes
   struct Miss {
     uint32_t sample;
     Vec3 direction;
     Rgb throughput;
   };
-  std::vector<Miss> missed_;  // camera rays that met nothing
-  // Of the tile in work:
+  std::vector<Miss> missed_;  // camera rays that hit nothing
+  // For the current tile:
   const Film* film_ = nullptr;
   std::vector<PixelSum> pixels_;
   std::vector<float> values_;

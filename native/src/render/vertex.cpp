@@ -8,7 +8,7 @@ namespace {
 
 Vec3 facing(const Vec3& v, const Vec3& towards) { return glm::dot(v, towards) < 0.0f ? -v : v; }
 
-/// Frame about unit `z` with +x along `tangent` where that gives a direction.
+/// Frame about unit `z` with +x along `tangent` unless that is degenerate.
 Frame frame_along(const Vec3& z, const Vec3& tangent) {
   const Vec3 x = tangent - glm::dot(tangent, z) * z;
   const float length_sq = glm::dot(x, x);
@@ -22,7 +22,7 @@ Frame frame_along(const Vec3& z, const Vec3& tangent) {
 Vertex::Vertex(const SurfacePoint& point, const Vec3& wv_world)
     : position(point.position),
       geometric_normal(facing(point.geometric_normal, wv_world)),
-      // Twice the bound: one for this point, one for where the ray tracer puts the triangle.
+      // Twice the bound: once for this point, once for the position of the triangle in the ray tracer.
       offset(4.0f * point.error),
       through_offset(offset),
       rounding(point.rounding),
@@ -41,7 +41,7 @@ Vertex Vertex::seen(const Scene& scene, const Ray& ray, const Hit& hit, const Ra
   const SurfaceMaterial& surface = scene.materials()[scene.material(hit)];
   if (surface.shell && scene.has_shell(hit)) {
     ShellCrossing crossing(scene, ray, hit);
-    // Whoever did not ask the shell sees its top.
+    // Rays traced without regard to the shell see its top.
     if (crossing.find()) {
       const SurfacePoint place = crossing.surface(scene.surface(crossing.top()), surface.shell_shaded);
       return {scene, place, &crossing, ray, crossing.top(), cone_at_origin, pixel};
@@ -64,9 +64,9 @@ Vertex::Vertex(const Scene& scene, const SurfacePoint& point, const ShellCrossin
   find_colors(scene, hit);
   if (surface->relief) find_relief(scene, hit);
   if (crossing != nullptr && surface->holed()) {
-    // At a point: a footprint would average the holes in, which the rays of a pixel do.
+    // At a point: a footprint would average over the holes, which the rays of a pixel do.
     site.footprint = Mat2(0.0f);
-    through_offset += crossing->height();  // what lies between has been captured
+    through_offset += crossing->height();  // the structure in between is part of the capture
     site.beyond_outline = crossing->beyond_outline(surface->material->texels());
   }
 }

@@ -1,4 +1,4 @@
-// A point of a path, ready to be shaded.
+// A point of a path, ready for shading.
 #pragma once
 
 #include <algorithm>
@@ -15,13 +15,13 @@ class ShellCrossing;
 class TableSampler;
 
 /// Surfaces are two-sided: both normals are turned to the viewer's side of the geometric surface. Where interpolation
-/// leaves the viewer below the shading horizon, the shading normal is bent towards the viewer until wv.z is
-/// kLeastCosine: continuous, no division by zero, no black rim. Light from below the geometric surface counts as
-/// nothing, unless the material transmits: then light from below both horizons counts as well.
+/// leaves the viewer below the shading horizon, the shading normal is bent toward the viewer until wv.z is
+/// kLeastCosine: continuous, no division by zero, no black rim. Light from below the geometric surface does not count
+/// unless the material transmits; then light from below both horizons counts as well.
 ///
-/// The frame is right-handed: a measured swatch can be turned, not mirrored. Where the material varies, +y is the side
-/// to which the second texture coordinate grows, so that a picture of a surface that is mapped mirrored, or seen from
-/// behind, is lit as it looks; the frame then may be left-handed.
+/// The frame is right-handed, so a measured sample can be rotated but not mirrored. Where the material varies, +y is
+/// the side on which the second texture coordinate increases, so that a texture that is mapped mirrored, or seen from
+/// behind, is lit as it looks; the frame may then be left-handed.
 struct Vertex {
   static constexpr float kLeastCosine = 0.01f;
 
@@ -29,60 +29,61 @@ struct Vertex {
   Vec3 geometric_normal;  // unit, on the viewer's side
   Frame frame;            // shading frame; z on the viewer's side
   Vec3 wv;                // local
-  float offset;           // a ray starts this far off the surface, along the geometric normal
-  float through_offset;   // and one to the other side this far against it
-  Vec3 rounding;          // as of SurfacePoint; none seen from behind
-  float terminator;
+  float offset;           // rays start this far off the surface, along the geometric normal
+  float through_offset;   // rays to the other side start this far off it, against the normal
+  Vec3 rounding;          // see SurfacePoint
+  float terminator;       // see SurfacePoint; 0 if seen from behind
   const SurfaceMaterial* surface;
   const TableSampler* table;  // null unless the strategy needs it
-  const GgxSampler* ggx;      // the same
-  RayCone cone;               // of the ray that came here, and of the one that goes on
-  SurfaceSite site;           // as good as empty where the material is uniform
+  const GgxSampler* ggx;      // null unless the strategy needs it
+  RayCone cone;               // cone of the incoming and of the continuation ray
+  SurfaceSite site;           // practically empty for uniform materials
   bool transmits = false;     // Material::transmits()
 
-  /// `wv_world`: unit, towards the viewer.
+  /// `wv_world`: unit, toward the viewer.
   Vertex(const SurfacePoint& point, const Vec3& wv_world);
-  /// The same with its surface and, where that varies, its site; `cone` at the origin of `ray`. `pixel`: of a camera
-  /// ray, null of others.
+  /// Vertex with its surface and, if the material varies, its site; `cone_at_origin`: at the origin of `ray`. `pixel`:
+  /// for camera rays; null for others.
   Vertex(const Scene& scene, const SurfacePoint& point, const Ray& ray, const Hit& hit, const RayCone& cone_at_origin,
          const PixelFootprint* pixel)
       : Vertex(scene, point, nullptr, ray, hit, cone_at_origin, pixel) {}
-  /// The same of a hit of the scene's own; where the surface has a shell, at what the ray meets there.
+  /// Vertex at a hit of the rays of the scene; if the surface has a shell, at what the ray hits in it.
   static Vertex seen(const Scene& scene, const Ray& ray, const Hit& hit, const RayCone& cone_at_origin,
                      const PixelFootprint* pixel);
 
   LightPlace light_place() const { return {position, frame.z, transmits}; }
 
-  /// Whether light from there can reach the viewer; `wl`: the same in the frame.
+  /// Whether light from direction `wl_world` can reach the viewer; `wl`: the same in the frame.
   bool receives(const Vec3& wl, const Vec3& wl_world) const {
     const float above = glm::dot(wl_world, geometric_normal);
     return (wl.z > 0.0f && above > 0.0f) || (transmits && wl.z < 0.0f && above < 0.0f);
   }
 
-  /// The same of light whose shadow ray is shadow_ray(): where the mesh stands for a smooth surface, that surface
-  /// counts.
+  /// Like receives(), for light whose shadow ray is shadow_ray(): where the mesh stands for a smooth surface, that
+  /// surface counts.
   bool receives_light(const Vec3& wl, const Vec3& wl_world) const {
     return receives(wl, wl_world) || (terminator > 0.0f && wl.z > 0.0f);
   }
 
-  /// Radiance that the surface itself sends to the viewer, in the working space.
+  /// Radiance that the surface emits toward the viewer, in the working space.
   Rgb emission() const;
 
-  /// From the side of the surface that it goes to.
+  /// Ray that starts on the side of the surface that it goes to.
   Ray ray(const Vec3& direction_world, float far) const {
     const bool through = transmits && glm::dot(direction_world, geometric_normal) < 0.0f;
     return {position + (through ? -through_offset : offset) * geometric_normal, 0.0f, direction_world, far};
   }
 
-  /// A ray towards light. Directions close to the horizon begin on the smooth surface: coarse meshes with smooth
-  /// normals show no steps. Which ones, and the transition, is Cycles' (kernel/light/sample.h, shadow_ray_offset).
+  /// Ray toward light. Directions close to the horizon start on the smooth surface, so that coarse meshes with smooth
+  /// normals show no steps. Which directions, and the transition, are as in Cycles (kernel/light/sample.h,
+  /// shadow_ray_offset).
   Ray shadow_ray(const Vec3& direction_world, float far) const {
     Ray result = ray(direction_world, far);
     if (terminator > 0.0f) result.origin += lift(direction_world) * rounding;
     return result;
   }
 
-  /// Whether a ray towards light is the one with which a path goes on in that direction.
+  /// Whether the shadow ray in that direction equals the continuation ray.
   bool rays_agree(const Vec3& direction_world) const { return !(terminator > 0.0f) || lift(direction_world) == 0.0f; }
 
  private:
@@ -92,7 +93,7 @@ struct Vertex {
     return std::clamp(smooth < terminator ? 2.0f - (flat + smooth) / terminator : 1.0f - flat / terminator, 0.0f, 1.0f);
   }
 
-  /// `crossing`: null, or what `point`, on the top of a shell, stands for.
+  /// `crossing`: the shell crossing that `point`, on the top of a shell, stands for, or null.
   Vertex(const Scene& scene, const SurfacePoint& point, const ShellCrossing* crossing, const Ray& ray, const Hit& hit,
          const RayCone& cone_at_origin, const PixelFootprint* pixel);
   void find_relief(const Scene& scene, const Hit& hit);

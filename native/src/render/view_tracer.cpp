@@ -62,14 +62,14 @@ void ViewTracer::see(const Vertex& vertex, const Path& path, int depth, SeenWeig
   if (!(weight > 0.0)) return;
   seen.view[view_bin(vertex.wv)] += weight;
   if (material_.material->varies()) see_surface(vertex, weight, seen.surface);
-  // The place counts, too, so that frames of one seed draw on their own.
+  // The position is part of the stream, so that frames with the same seed sample independently.
   auto place = static_cast<uint64_t>(depth);
   for (int i = 0; i < 3; ++i) place = mix64(place + std::bit_cast<uint32_t>(vertex.position[i]));
   draws_.add({vertex, options_.bounces - depth}, weight, RandomStream(options_.seed, path.cell, place));
 }
 
 void ViewTracer::see_surface(const Vertex& vertex, double weight, SurfaceDomain& surface) const {
-  // On a tile of so many texels that no footprint is smaller than one of them.
+  // On a tile with so many texels that no footprint is smaller than one of them.
   const Vec2 finest = tile_ * (kFinestTexels / std::max(tile_.x, tile_.y));
   add_seen(surface, footprint_taps(vertex.site.footprint, finest).level, vertex.site.uv, weight);
   const Vec3& wv = vertex.wv;

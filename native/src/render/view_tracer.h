@@ -1,4 +1,4 @@
-// The views under which camera rays, continued from bounce to bounce, meet one material.
+// Views under which camera rays, continued from bounce to bounce, hit one material.
 #pragma once
 
 #include <vector>
@@ -11,7 +11,7 @@
 
 namespace velour {
 
-/// Cells that cover the picture evenly; a camera ray goes through a random place of each.
+/// Cells that cover the image evenly; a camera ray goes through a random point of each.
 struct CameraGrid {
   uint64_t width, height;
   uint64_t cells() const { return width * height; }
@@ -20,19 +20,19 @@ struct CameraGrid {
 /// A hit of the material.
 struct SeenHit {
   Vertex vertex;
-  int bounces;  // that are left
+  int bounces;  // remaining
 };
 
-/// Weights of hits, as SceneDomain has them.
+/// Weights of hits, as in SceneDomain.
 struct SeenWeights {
   decltype(SceneDomain::view) view{};
   SurfaceDomain surface;
 };
 
-/// One a thread.
+/// One per thread.
 class ViewTracer {
  public:
-  /// Paths are those of a render with `options`, one camera ray a pixel. `draws`: how many hits to draw.
+  /// Paths are those of a render with `options`, one camera ray per pixel. `draws`: number of hits to sample.
   ViewTracer(const Scene& scene, const SurfaceMaterial& material, const CameraGrid& grid, const RenderOptions& options,
              size_t draws)
       : scene_(scene),
@@ -47,7 +47,7 @@ class ViewTracer {
   /// Follows the camera rays of cells [first, end) and adds the weights of their hits to `seen`.
   void follow(uint64_t first, uint64_t end, SeenWeights& seen);
 
-  /// Hits drawn by weight, of all rays followed so far.
+  /// Hits sampled by weight, from all rays followed so far.
   const DrawByWeight<SeenHit>& draws() const { return draws_; }
 
  private:
@@ -72,9 +72,9 @@ class ViewTracer {
   const Vec2 tile_;  // texels
   DrawByWeight<SeenHit> draws_;
   std::vector<Path> paths_, next_;
-  std::vector<Ray> rays_, next_rays_;  // of the paths
+  std::vector<Ray> rays_, next_rays_;  // by path
   std::vector<Hit> hits_;
-  std::vector<Rgb> passed_;  // of the rays, where they change their colour
+  std::vector<Rgb> passed_;  // by ray, if rays may change color
   PreparedBrdf prepared_;
 };
 

@@ -11,15 +11,15 @@ namespace {
 
 constexpr size_t kTogether = 128;
 
-/// Place `i` of an array that may be missing.
+/// Element `i` of an array that may be null.
 Rgb* behind(Rgb* passed, size_t i) { return passed != nullptr ? passed + i : nullptr; }
 
-/// The part of an array that may be missing.
+/// Part of an array that may be empty.
 std::span<const RayDecisions> part(std::span<const RayDecisions> all, size_t first, size_t count) {
   return all.empty() ? all : all.subspan(first, count);
 }
 
-/// Ways through shells that are traced together, as long as they are of one field.
+/// Ways through shells that are traced together, as long as they belong to the same field.
 class ShellWays {
  public:
   ShellWays(Hit* hits, bool* met) : hits_(hits), met_(met) {}
@@ -30,7 +30,7 @@ class ShellWays {
     way_[count_] = crossing.way();
     number_[count_++] = static_cast<uint8_t>(number);
   }
-  /// Says which of them meet what is there, and where.
+  /// Determines which of the ways hit the structure, and where.
   void trace() {
     if (count_ > 0) trace_shells(*field_, {way_, count_}, found_);
     for (size_t i = 0; i < count_; ++i) {
@@ -54,14 +54,14 @@ class ShellWays {
 
 }  // namespace
 
-/// Rays on their way, with the nearest surface that each has come to.
+/// Rays in flight, with the nearest surface that each has reached.
 struct VisibleRays::Pending {
   size_t count = 0;
   Ray ray[kTogether];
   Hit hit[kTogether];
-  Hit passed[kTogether];  // before
+  Hit passed[kTogether];  // the previous hit
   uint8_t number[kTogether];
-  uint32_t decided[kTogether];  // about how many surfaces
+  uint32_t decided[kTogether];  // number of surfaces decided about
 
   void add(const Ray& r, const Hit& h, size_t n) {
     ray[count] = r;
@@ -77,7 +77,7 @@ struct VisibleRays::Pending {
     number[to] = number[from];
     decided[to] = decided[from];
   }
-  /// Lets a ray go on behind its hit.
+  /// Makes a ray continue behind its hit.
   void pass(size_t i) {
     passed[i] = hit[i];
     go_beyond(ray[i], hit[i]);
@@ -125,7 +125,7 @@ void VisibleRays::occluded_some(std::span<const Ray> rays, uint8_t* blocked, Rgb
   Hit hit[kTogether];
   Rgb through[kTogether];
   uint8_t number[kTogether];
-  // Rays that leave a shell come to its top in any case, and are spared the question whether there is something.
+  // Rays that leave a shell hit its top in any case, so the occlusion query would be wasted.
   if (shells_) {
     std::fill_n(blocked, rays.size(), uint8_t{1});
   } else {

@@ -1,4 +1,4 @@
-// Rays that see what is there of every surface.
+// Rays that respect the alpha, shells and visibility of surfaces.
 #pragma once
 
 #include "render/ray_number.h"
@@ -6,37 +6,38 @@
 
 namespace velour {
 
-/// As EmbreeScene's, but a ray meets a surface of a material that is not opaque with the probability of its alpha
-/// there, and goes on straight otherwise: right on average. Whether it does is drawn with the ray's own numbers, or
-/// with bits of ray and triangle, so that it depends on neither threads nor order. Shadow rays draw nothing: they pass,
-/// dimmed by the alpha. What passes may change its colour: `passed` of a ray is what its light is multiplied with on
-/// the way to where it ends; it may be null where dims() is false. A shell is met where its structure is
-/// (shell_crossing.h). An instance that is hidden from a kind of ray is not met by it. Thread-safe; scenes without any
-/// of that are traced as they are.
+/// Like EmbreeScene, but a ray hits a surface of a material that is not opaque with the probability of its alpha there,
+/// and otherwise continues straight: correct on average. The decision uses the ray's own numbers, or the bits of ray
+/// and triangle, so it depends on neither threads nor order. Shadow rays decide nothing: they pass, dimmed by the
+/// alpha. A passed surface may change the color: `passed` of a ray is the factor on its light along the way to its end;
+/// it may be null where dims() is false. A shell is hit where its structure is (shell_crossing.h). An instance that is
+/// hidden from a kind of ray is not hit by it. Thread-safe. Scenes without any of these are traced directly.
 class VisibleRays {
  public:
-  /// `scene` is committed, and its materials stay.
+  /// `scene` must be committed, and its materials must not change.
   explicit VisibleRays(const Scene& scene);
 
-  /// Distances are from the origin, whatever was passed on the way. `kind`: a bit of `hidden`. `decisions`: of each
+  /// Distances are from the origin, whatever was passed on the way. `kind`: a bit of `hidden`. `decisions`: one per
   /// ray, or none.
   void intersect(std::span<const Ray> rays, Hit* hits, uint8_t kind = hidden::kFromBounces, Rgb* passed = nullptr,
                  std::span<const RayDecisions> decisions = {}) const;
   bool occluded(const Ray& ray, Rgb* passed = nullptr) const;
-  /// A batch, as EmbreeScene::occluded.
+  /// Batch version, as in EmbreeScene::occluded.
   void occluded(std::span<const Ray> rays, uint8_t* blocked, Rgb* passed = nullptr) const;
 
-  /// Whether rays may pass what they come to: else `passed` is 1 of all, and there is nothing to decide.
+  /// Whether rays may pass through surfaces. Otherwise `passed` is always 1, and there is nothing to decide.
   bool dims() const { return dims_; }
-  /// Whether shadow rays and those of bounces simply meet the nearest surface.
+  /// Whether shadow and bounce rays simply hit the nearest surface.
   bool plain() const { return sees_all(hidden::kFromShadows | hidden::kFromBounces); }
 
  private:
   struct Pending;
-  /// Replaces `hits`, the nearest ones of at most as many `rays` as Pending holds, by the nearest that they meet.
+  /// Replaces `hits`, the nearest surfaces of at most as many `rays` as Pending holds, by the nearest that do not let
+  /// the rays pass.
   void pass_on(std::span<const Ray> rays, Hit* hits, uint8_t kind, Rgb* passed,
                std::span<const RayDecisions> decisions) const;
-  /// Which of the pending rays meet what they have come to; what passes is multiplied into `passed`, by number of ray.
+  /// Decides which of the pending rays hit the surfaces that they have reached. Multiplies what passes into `passed`,
+  /// by index of the ray.
   void decide(Pending& pending, uint8_t kind, bool* met, Rgb* passed, std::span<const RayDecisions> decisions) const;
   bool meets_surface(Pending& pending, size_t i, uint8_t kind, Rgb* passed,
                      std::span<const RayDecisions> decisions) const;
@@ -47,7 +48,7 @@ class VisibleRays {
   const bool shells_;
   const bool all_opaque_;
   const bool dims_;
-  uint8_t hidden_ = 0;  // of any instance
+  uint8_t hidden_ = 0;  // union over all instances
 };
 
 }  // namespace velour

@@ -9,16 +9,16 @@
 namespace velour {
 namespace {
 
-constexpr double kOnePlace = 1e-6;  // of the extent
+constexpr double kOnePlace = 1e-6;  // welding distance, relative to the extent
 
 struct Edge {
-  uint64_t ends;  // vertices, the smaller one first
+  uint64_t ends;  // both vertices, the smaller one in the high 32 bits
   BorderEdge edge;
 };
 
 uint64_t ends_of(uint32_t a, uint32_t b) { return (uint64_t{std::min(a, b)} << 32) + std::max(a, b); }
 
-/// Those whose ends no other edge has.
+/// Edges that share their pair of end vertices with no other edge, in triangle order.
 std::vector<Edge> unshared(std::vector<Edge> edges) {
   const auto place = [](const Edge& e) { return 3 * uint64_t{e.edge.triangle} + e.edge.corner; };
   std::ranges::sort(
@@ -32,7 +32,7 @@ std::vector<Edge> unshared(std::vector<Edge> edges) {
   return single;
 }
 
-/// Gives points within a distance of each other one number, that of the first of them.
+/// Gives points within a distance of each other the same number, that of the first.
 class Welder {
  public:
   explicit Welder(double distance) : distance_(std::max(distance, 1e-300)) {}

@@ -1,4 +1,4 @@
-// Where a surface ends.
+// Border edges of a surface.
 #pragma once
 
 #include <cstdint>
@@ -9,14 +9,14 @@
 
 namespace velour {
 
-/// From corner `corner` of a triangle to the next.
+/// Edge from corner `corner` of a triangle to the next corner.
 struct BorderEdge {
   uint32_t triangle;
   uint32_t corner;
 };
 
-/// The edges of the `chosen` triangles that no other chosen triangle shares, in the order of triangles. Vertices at one
-/// place, to a millionth of the surface's extent, are one: a seam of texture coordinates is no border.
+/// Edges of the `chosen` triangles that no other chosen triangle shares, in triangle order. Vertices that coincide
+/// within a millionth of the surface's extent count as one, so a seam of texture coordinates is not a border.
 std::vector<BorderEdge> border_edges(std::span<const Vec3> positions, std::span<const glm::uvec3> triangles,
                                      const std::vector<bool>& chosen);
 

@@ -1,4 +1,4 @@
-// Boxes.
+// Bounding boxes.
 #pragma once
 
 #include <limits>
@@ -21,12 +21,12 @@ struct Bounds {
     low = glm::min(low, other.low);
     high = glm::max(high, other.high);
   }
-  /// All of `other`, which may be empty.
+  /// Whether the box contains all of `other`, which may be empty.
   bool holds(const Bounds& other) const {
     return glm::all(glm::lessThanEqual(low, other.low)) && glm::all(glm::greaterThanEqual(high, other.high));
   }
   Vec3 center() const { return 0.5f * (low + high); }
-  /// Radius of the sphere around center() that holds the box; 0 when empty.
+  /// Radius of the bounding sphere around center(); 0 for an empty box.
   float radius() const { return empty() ? 0.0f : 0.5f * glm::length(high - low); }
 };
 

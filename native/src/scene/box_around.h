@@ -1,4 +1,4 @@
-// Boxes of what is placed in the world.
+// Bounding boxes of transformed objects.
 #pragma once
 
 #include "scene/affine.h"
@@ -6,7 +6,7 @@
 
 namespace velour {
 
-/// Of the corners of `box`: never smaller than the bounds of what is in it.
+/// World-space box of the transformed corners of `box`; encloses everything in `box`.
 inline Bounds box_around(const Bounds& box, const Affine& to_world) {
   Bounds bounds;
   for (int corner = 0; corner < 8 && !box.empty(); ++corner) {

@@ -8,7 +8,7 @@
 namespace velour {
 
 std::vector<Mesh> build_meshes(std::span<const MeshArrays> arrays) {
-  constexpr size_t kMeshesOfPiece = 64;  // most are small where there are many
+  constexpr size_t kMeshesOfPiece = 64;  // meshes per task: in scenes with many, most are small
   std::vector<std::vector<Mesh>> built((arrays.size() + kMeshesOfPiece - 1) / kMeshesOfPiece);
   const Progress unwatched;
   parallel_pieces(built.size(), 0, unwatched, [&](size_t piece) {

@@ -1,4 +1,4 @@
-// Many meshes at once.
+// Builds many meshes at once.
 #pragma once
 
 #include <span>
@@ -8,7 +8,7 @@
 
 namespace velour {
 
-/// Of each its Mesh, built side by side.
+/// Builds a Mesh from each entry of `arrays`, in parallel.
 std::vector<Mesh> build_meshes(std::span<const MeshArrays> arrays);
 
 }  // namespace velour

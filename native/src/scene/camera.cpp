@@ -7,7 +7,7 @@
 namespace velour {
 namespace {
 
-/// Rigid map whose columns are the unit axes x, y, z and the origin.
+/// Rigid transform whose columns are the unit axes x, y, z and the origin.
 Affine rigid(const Vec3& x, const Vec3& y, const Vec3& z, const Vec3& origin) {
   return {{x.x, y.x, z.x, origin.x, x.y, y.y, z.y, origin.y, x.z, y.z, z.z, origin.z}};
 }
@@ -21,7 +21,7 @@ Vec2 Aperture::sample(const Vec2& u) const {
   } else {
     const float side = 2.0f * kPi / static_cast<float>(blades);
     const float corner = std::min(std::floor(u.x * static_cast<float>(blades)), static_cast<float>(blades - 1));
-    // Uniform on the triangle of the middle and two neighbouring corners.
+    // Uniform on the triangle of the center and two adjacent corners.
     const float out = std::sqrt(u.x * static_cast<float>(blades) - corner), along = u.y * out;
     const float first = rotation + (corner - 0.5f) * side, second = first + side;
     place = (out - along) * Vec2(std::cos(first), std::sin(first)) + along * Vec2(std::cos(second), std::sin(second));
@@ -33,10 +33,10 @@ Ray Camera::ray(const Vec2& picture, const Vec2& lens) const {
   const float x = window[0] + picture.x * (window[1] - window[0]);
   const float y = window[2] + picture.y * (window[3] - window[2]);
   const bool perspective = type == Type::perspective;
-  // From the lens to where the ray through its middle meets the plane in focus; to a depth of 1.
+  // Slope from the lens point to where the ray through the lens center meets the focal plane, per unit of depth.
   const Vec2 slope = (perspective ? Vec2(x, y) : Vec2(0.0f)) - lens / aperture.focus;
   const Vec3 direction(slope, -1.0f);
-  const float length = glm::length(direction);  // of the ray from one clip unit to the next
+  const float length = glm::length(direction);  // of the ray per unit of clip distance
   const Vec3 origin = camera_to_world.point(perspective ? Vec3(lens, 0.0f) : Vec3(Vec2(x, y) + lens, 0.0f));
   return {origin, clip_start * length, glm::normalize(camera_to_world.vector(direction)), clip_end * length};
 }
@@ -48,7 +48,7 @@ float Camera::depth(const Vec3& world) const {
 Camera Camera::look_at(const Vec3& eye, const Vec3& target, const Vec3& up, float fov, float aspect) {
   const Vec3 z = glm::normalize(eye - target);
   Vec3 x = glm::cross(up, z);
-  // Looking along the up direction: any horizontal axis will do, +x is the one Blender's top view has.
+  // Any horizontal axis will do when looking along `up`; +x matches Blender's top view.
   x = glm::dot(x, x) > 1e-12f ? glm::normalize(x) : Vec3(1, 0, 0);
   Camera camera;
   camera.camera_to_world = rigid(x, glm::cross(z, x), z, eye);
@@ -69,7 +69,7 @@ Camera Camera::framing(const Bounds& bounds, float aspect, int up_axis) {
   const Vec3 half = 0.5f * (bounds.high - bounds.low);
   const float tall = up_axis == 1 ? half.y : half.z;
   const float deep = up_axis == 1 ? half.z : half.y;
-  // A box without extent still needs a distance that float32 can tell from none.
+  // A box without extent still needs a distance that float32 can distinguish from 0.
   const float least = 1e-3f * std::max(glm::length(bounds.center()), 1.0f);
   const float fit = bounds.radius() > 0.0f ? std::max({tall, half.x / aspect, 1e-6f * bounds.radius()}) : least;
   const float distance = deep + kMargin * fit / std::tan(0.5f * kFov);

@@ -17,10 +17,10 @@ Vec3 unit_or_zero(const Vec3& v) {
   return length > 0 && std::isfinite(length) ? v / length : Vec3(0.0f);
 }
 
-/// What corners are told apart by.
+/// Position, normal and texture coordinate of a corner; corners are merged if all of them are equal.
 using Place = std::array<float, 8>;
 
-/// [corners] Numbers from 0 of equal places.
+/// [corners] Group of each corner, counted from 0; equal places have the same group.
 std::vector<uint32_t> welded(const std::vector<Place>& place) {
   std::vector<uint32_t> order(place.size()), number(place.size());
   std::iota(order.begin(), order.end(), 0u);
@@ -70,7 +70,7 @@ class TangentSums {
   }
   size_t slot(size_t corner, float side) const { return 2 * static_cast<size_t>(group_[corner]) + (side < 0 ? 1 : 0); }
 
-  /// Of the triangle's picture; 0 where that has no area.
+  /// CornerTangent::side of a triangle; 0 if it has no area in texture space.
   float side(size_t triangle) const {
     const Vec2 a = uv(3 * triangle + 1) - uv(3 * triangle), b = uv(3 * triangle + 2) - uv(3 * triangle);
     const float area = a.x * b.y - a.y * b.x;
@@ -100,7 +100,7 @@ class TangentSums {
   std::span<const Vec3> normals_;
   std::span<const Vec2> uvs_;
   std::vector<uint32_t> group_;  // of each corner
-  std::vector<Vec3> sum_;        // two a group: of pictures that are not mirrored, and of such that are
+  std::vector<Vec3> sum_;        // two per group: of triangles with side 1 and with side -1
 };
 
 }  // namespace

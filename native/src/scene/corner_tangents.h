@@ -1,4 +1,4 @@
-// Tangents of normal maps, as the programs that bake them have them.
+// Tangents for normal maps, in the convention of the programs that bake them.
 #pragma once
 
 #include <span>
@@ -8,17 +8,17 @@
 
 namespace velour {
 
-/// Of a corner: unit `direction` in which the first texture coordinate grows, normal to the corner's normal; the second
-/// one's is `side` cross(normal, direction), with a side of 1, or -1 where the picture lies mirrored.
+/// Tangent at a corner. `direction`: unit, perpendicular to the corner's normal, in which the first texture coordinate
+/// grows. The bitangent is `side` cross(normal, direction), where `side` is 1, or -1 if the texture is mirrored.
 struct CornerTangent {
   Vec3 direction;
   float side;
 };
 
-/// 3 a triangle: the tangent space of Mikkelsen 2008 ("MikkTSpace"), on the triangles as they are. Corners of one
-/// position, normal and texture coordinate share what the triangles about them have of one side, weighted by the angle
-/// there; triangles whose picture has no area take what is there. Triangles that share a place but no edge are one
-/// group here. Normals are unit; texture coordinates that are not finite count as 0.
+/// Tangent space of Mikkelsen 2008 ("MikkTSpace") on the given triangles, 3 tangents per triangle. Corners with the
+/// same position, normal and texture coordinate share the mean tangent of their triangles of the same side, weighted by
+/// angle; triangles without area in texture space take one of those. Unlike in MikkTSpace, triangles that share a
+/// vertex but no edge form one group. Normals are unit; non-finite texture coordinates count as 0.
 std::vector<CornerTangent> corner_tangents(std::span<const Vec3> positions, std::span<const glm::uvec3> triangles,
                                            std::span<const Vec3> corner_normals, std::span<const Vec2> corner_uvs);
 

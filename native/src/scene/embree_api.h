@@ -1,4 +1,4 @@
-// Embree's entry points, bound by dlsym. Included by embree_*.cpp alone: nothing else sees Embree.
+// Embree's entry points, bound with dlsym. Included by embree_*.cpp only; nothing else sees Embree.
 #pragma once
 
 #if VELOUR_EMBREE_MAJOR >= 4
@@ -11,7 +11,7 @@
 
 namespace velour {
 
-/// Table of the functions we use. Their types come from the headers, so a mismatch is a compile error.
+/// Table of the functions in use. Their types come from Embree's headers, so a mismatch is a compile error.
 struct EmbreeApi {
   PrivateLibrary library{"libembree" + std::to_string(RTC_VERSION_MAJOR) + ".so." + std::to_string(RTC_VERSION_MAJOR),
                          "install Embree " + std::string(RTC_VERSION_STRING) + " or put its library beside Velour's."};
@@ -48,12 +48,12 @@ struct EmbreeApi {
 #endif
 #undef VELOUR_EMBREE
 
-  // Embree 3 takes a context, Embree 4 optional arguments at the end: the whole difference is here.
+  // Embree 3 takes a context, Embree 4 optional arguments at the end. All differences between them are confined here.
   //
-  // Batches: every ray takes the single-ray path through the hierarchy, so what it meets does not depend on its
-  // neighbours. Embree 3's stream call does just that for incoherent rays, without the cost of a call a ray: 10.7
-  // million hemisphere shadow rays a second on a bunny of 69 thousand triangles, against 7.0 for rtcOccluded1, 8.5 and
-  // 8.9 for packets of 8 and 16, 5.2 for the coherent stream (3.13.5, AVX-512, one thread).
+  // Batches: every ray takes the single-ray path through the hierarchy, so its hit does not depend on its neighbors.
+  // Embree 3's stream call does the same for incoherent rays without the cost of one call per ray: 10.7 million
+  // hemisphere shadow rays per second on a bunny of 69 thousand triangles, against 7.0 for rtcOccluded1, 8.5 and 8.9
+  // for packets of 8 and 16, and 5.2 for the coherent stream (3.13.5, AVX-512, one thread).
 #if VELOUR_EMBREE_MAJOR >= 4
   void intersect(RTCScene scene, RTCRayHit* rays, unsigned count) const {
     for (unsigned i = 0; i < count; ++i) rtcIntersect1(scene, rays + i, nullptr);
@@ -61,9 +61,9 @@ struct EmbreeApi {
   void occluded(RTCScene scene, RTCRay* rays, unsigned count) const {
     for (unsigned i = 0; i < count; ++i) rtcOccluded1(scene, rays + i, nullptr);
   }
-  // Embree 4 has no streams. Packets of 8 with this flag: 11 million a second over a tile of 33 thousand triangles
-  // repeated by instances, against 5.7 for single rays and 11.7 for packets of 16, which are no faster than single rays
-  // with AVX2, where those of 8 make 10.7 (4.3.3, AVX-512, one thread). Without AVX all are alike.
+  // Embree 4 has no streams. Packets of 8 with this flag trace 11 million rays per second over a tile of 33 thousand
+  // triangles repeated by instances, single rays 5.7, packets of 16 11.7 (4.3.3, AVX-512, one thread). With AVX2,
+  // packets of 8 reach 10.7 and packets of 16 are no faster than single rays. Without AVX all are alike.
   void occluded_coherent(RTCScene scene, RTCRay* rays, unsigned count) const {
     RTCOccludedArguments arguments;
     rtcInitOccludedArguments(&arguments);
@@ -105,10 +105,10 @@ struct EmbreeApi {
     Context context;
     rtcOccluded1M(scene, &context, rays, count, sizeof(RTCRay));
   }
-  // Parallel rays from places near each other, whose packets follow one path through the hierarchy. Over a tile of 32
-  // thousand triangles repeated by instances: 20 to 30 million a second from neighbouring texels' first hits, where the
-  // other stream makes 7 and rtcOccluded16 with this flag 20 to 29 (without it, 3.13.5 never returns from a scene of
-  // instances); 10 to 11 from hits of the next bounce in the order of their places, against 5.5.
+  // Parallel rays with nearby origins, whose packets follow one path through the hierarchy. Over a tile of 32 thousand
+  // triangles repeated by instances: 20 to 30 million rays per second from the first hits of adjacent texels, against 7
+  // for the other stream and 20 to 29 for rtcOccluded16 with this flag (without it, 3.13.5 never returns from a scene
+  // with instances); 10 to 11 million from hits of the next bounce in spatial order, against 5.5.
   void occluded_coherent(RTCScene scene, RTCRay* rays, unsigned count) const {
     Context context;
     context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
@@ -117,7 +117,7 @@ struct EmbreeApi {
 #endif
 };
 
-/// Loaded at the first call; throws Error when Embree is missing.
+/// Loads Embree at the first call. Throws Error if it is missing.
 inline const EmbreeApi& embree() {
   static const EmbreeApi api;
   return api;

@@ -17,7 +17,7 @@
 namespace velour {
 namespace {
 
-/// How long a cancel may have to wait.
+/// Interval between checks for a cancel while waiting for a build.
 constexpr std::chrono::milliseconds kTurn{2};
 
 bool count_bytes(void* counter, ssize_t bytes, bool /*post*/) {
@@ -27,7 +27,7 @@ bool count_bytes(void* counter, ssize_t bytes, bool /*post*/) {
 
 }  // namespace
 
-/// Of some scenes, one after the other, on a thread of its own.
+/// Builds scenes one after the other on a thread of its own.
 class EmbreeMeshes::Build {
  public:
   Build(RTCDevice device, const std::vector<RTCScene>& scenes, int threads) : device_(device), threads_(threads) {
@@ -47,7 +47,7 @@ class EmbreeMeshes::Build {
   Build(const Build&) = delete;
   Build& operator=(const Build&) = delete;
 
-  /// Drops all but those of `scenes`.
+  /// Cancels the builds of all scenes that are not in `scenes`.
   void keep(const std::vector<RTCScene>& scenes) {
     for (Item& item : items_) item.is_dropped = std::ranges::find(scenes, item.scene) == scenes.end();
   }
@@ -58,7 +58,7 @@ class EmbreeMeshes::Build {
   void join() {
     if (thread_.joinable()) thread_.join();
   }
-  /// After join().
+  /// Valid after join().
   RTCError error() const { return error_; }
   bool has_built(RTCScene scene) const {
     return std::ranges::any_of(items_, [scene](const Item& i) { return i.scene == scene && i.is_built; });
@@ -91,7 +91,7 @@ class EmbreeMeshes::Build {
 
   RTCError commit(Item& item, tbb::task_arena& arena) const {
     RTCError error = RTC_ERROR_NONE;
-    arena.execute([&] {  // another thread may do it, and has its own errors
+    arena.execute([&] {  // may run on another thread, and Embree keeps errors per thread
       api_.rtcSetSceneProgressMonitorFunction(item.scene, goes_on, &item);
       api_.rtcJoinCommitScene(item.scene);
       api_.rtcSetSceneProgressMonitorFunction(item.scene, nullptr, nullptr);
@@ -175,7 +175,7 @@ RTCGeometry EmbreeMeshes::placed(uint32_t number, const Affine& place) const {
 
 void EmbreeMeshes::await(const Progress* progress) {
   do {
-    if (progress != nullptr) progress->check();  // first: a build may end within the turn
+    if (progress != nullptr) progress->check();  // first, because a build may end within one interval
   } while (!build_->ends_within(kTurn));
   build_->join();
   const RTCError error = build_->error();
@@ -216,7 +216,7 @@ RTCScene EmbreeMeshes::scene_of(std::span<const Vec3> positions, std::span<const
   return scene;
 }
 
-/// In the place of a scene whose build has failed, of which Embree does not say what a second one does.
+/// Replaces a scene whose build has failed: Embree does not specify what building it again does.
 void EmbreeMeshes::renew(RTCScene& scene) const {
   RTCScene fresh = new_scene();
   api_.rtcAttachGeometryByID(fresh, api_.rtcGetGeometry(scene, 0), 0);

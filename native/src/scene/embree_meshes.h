@@ -1,4 +1,4 @@
-// Meshes with their hierarchies: what several scenes may share. Included by embree_*.cpp alone: nothing else sees
+// Meshes with their hierarchies, which several scenes may share. Included by embree_*.cpp only; nothing else sees
 // Embree.
 #pragma once
 
@@ -22,18 +22,19 @@ class EmbreeMeshes {
   EmbreeMeshes(const EmbreeMeshes&) = delete;
   EmbreeMeshes& operator=(const EmbreeMeshes&) = delete;
 
-  /// As of EmbreeScene.
+  /// See EmbreeScene::add_mesh() and set_mesh().
   uint32_t add(std::span<const Vec3> positions, std::span<const glm::uvec3> triangles);
   void set(uint32_t number, std::span<const Vec3> positions, std::span<const glm::uvec3> triangles);
-  /// Builds those of `numbers` that are new. A cancel ends the waiting, not the building: that goes on, for the next
-  /// call to wait for, unless its mesh gives way to another.
+  /// Builds the meshes among `numbers` that are not built yet. A cancel ends the wait, not the build: the next call
+  /// waits for it, except for meshes that have been replaced or are not among its `numbers`.
   void build(std::span<const uint32_t> numbers, int threads, const Progress* progress);
-  /// The triangles of a mesh in another place, not committed; the caller releases them, before the mesh gives way.
+  /// Uncommitted geometry with the mesh's triangles transformed by `place`. The caller must release it before the mesh
+  /// is replaced, because both share an index buffer.
   RTCGeometry placed(uint32_t number, const Affine& place) const;
   uint64_t triangles(uint32_t number) const { return sizes_.at(number).triangles; }
 
   RTCScene new_scene() const;
-  /// Throws what stands for an error of Embree.
+  /// Throws the Error that corresponds to Embree's error code, if any.
   static void check(RTCError error);
 
   RTCDevice device() const { return device_; }
@@ -49,7 +50,7 @@ class EmbreeMeshes {
   RTCScene scene_of(std::span<const Vec3> positions, std::span<const glm::uvec3> triangles) const;
   /// The unbuilt scenes among `numbers`.
   std::vector<RTCScene> unbuilt_scenes(std::span<const uint32_t> numbers) const;
-  /// Until the build has ended, whose meshes are no longer unbuilt then.
+  /// Waits until build_ has ended and takes the meshes that it built from unbuilt_.
   void await(const Progress* progress);
   void renew(RTCScene& scene) const;
 
@@ -58,8 +59,8 @@ class EmbreeMeshes {
   RTCDevice device_ = nullptr;
   std::vector<RTCScene> scenes_;
   std::vector<Size> sizes_;
-  std::vector<uint32_t> unbuilt_;  // of them, by number
-  std::unique_ptr<Build> build_;   // that goes on, or whose end nobody has seen
+  std::vector<uint32_t> unbuilt_;  // numbers of the meshes without a hierarchy
+  std::unique_ptr<Build> build_;   // running, or not yet waited for
 };
 
 }  // namespace velour

@@ -12,7 +12,7 @@ namespace {
 
 static_assert(RTC_INVALID_GEOMETRY_ID == kNoHit);
 
-/// Rays handed to Embree at once: their copies stay in the first-level cache.
+/// Rays passed to Embree per call, few enough for their copies to stay in the L1 cache.
 constexpr size_t kRayBatch = 64;
 
 void to_embree(const Ray& ray, RTCRay& r) {
@@ -37,7 +37,7 @@ struct EmbreeScene::Impl {
     uint32_t mesh;
     Affine object_to_world;
     Mat3 normal_to_world;
-    float front;  // -1: mirrored, so that corners in the world turn the other way
+    float front;  // -1 if mirrored, which reverses the winding in world space; else 1
   };
 
   const EmbreeApi& api = embree();
@@ -95,7 +95,7 @@ struct EmbreeScene::Impl {
     RTCError error = RTC_ERROR_NONE;
     tbb::task_arena arena(arena_concurrency(threads));
     if (progress != nullptr) api.rtcSetSceneProgressMonitorFunction(top, goes_on, const_cast<Progress*>(progress));
-    arena.execute([&] {  // another thread may do it, and has its own errors
+    arena.execute([&] {  // may run on another thread, and Embree keeps errors per thread
       api.rtcJoinCommitScene(top);
       error = api.rtcGetDeviceError(meshes->device());
     });
@@ -150,7 +150,7 @@ void EmbreeScene::commit(int threads, const Progress* progress, Levels levels) {
   Impl& s = *impl_;
   s.release_top();
   s.levels = s.repeats_much() ? Levels::two : levels;
-  std::vector<uint32_t> built;  // by themselves
+  std::vector<uint32_t> built;  // meshes that need hierarchies of their own
   if (s.levels == Levels::two) {
     for (const Impl::Instance& instance : s.instances) built.push_back(instance.mesh);
   }
@@ -182,7 +182,7 @@ bool EmbreeScene::occluded(const Ray& ray) const {
 
 namespace {
 
-/// `trace` gets a batch of Embree's own rays.
+/// Calls trace(rays, count) for each batch, converted to Embree's own rays.
 template <typename Trace>
 void occluded_by_batches(std::span<const Ray> rays, uint8_t* blocked, const Trace& trace) {
   RTCRay query[kRayBatch];

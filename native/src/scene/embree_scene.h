@@ -1,6 +1,6 @@
-// Rays. The only header over Embree; embree_scene.cpp and embree_meshes.cpp (with embree_api.h) see Embree's own
-// headers and hide the difference between Embree 3 and 4. Embree is opened privately (dlopen + dlsym), so that another
-// Embree already in the process - Blender's - cannot be bound by accident.
+// Ray tracing. The only public header over Embree: embree_scene.cpp and embree_meshes.cpp (with embree_api.h) include
+// Embree's own headers and hide the differences between Embree 3 and 4. Embree is opened privately (dlopen + dlsym), so
+// that another Embree already in the process - Blender's - cannot be bound by accident.
 #pragma once
 
 #include <cstdint>
@@ -26,19 +26,19 @@ inline constexpr uint32_t kNoHit = 0xffffffffu;
 
 struct Hit {
   float distance;
-  // World, not normalised, towards the front: the side that sees the mesh's corners counter-clockwise in object space,
-  // so that the outside of a mirrored instance stays outside.
+  // World space, not normalized, towards the front: the side from which the mesh's corners are counterclockwise in
+  // object space, so that the outside of a mirrored instance stays outside.
   Vec3 geometric_normal;
   float u, v;                  // barycentric weights of vertices 1 and 2
   uint32_t triangle;           // of the mesh
-  uint32_t instance = kNoHit;  // kNoHit: the ray met nothing
-  /// What VisibleRays has found behind the crossing of a shell (ShellHit); NaN: it was not asked.
+  uint32_t instance = kNoHit;  // kNoHit: the ray hit nothing
+  /// Found by VisibleRays behind the crossing of a shell (ShellHit); NaN: not computed.
   float shell_begin = 0, shell_s = std::numeric_limits<float>::quiet_NaN();
 };
 
-/// Meshes and instances of them. Build, then trace from any number of threads. Changes need another commit(). A scene
-/// that changes has two levels, so that its meshes stay built. One that stays as it is has one, with the triangles of
-/// all instances in their places: a mesh that is turned renders in a fifth less time.
+/// Meshes and instances of them. After commit(), any number of threads may trace. Changes need another commit(). A
+/// scene that changes has two levels, so that its meshes stay built. A static scene has one level with the transformed
+/// triangles of all instances, which takes a fifth less time to render a rotated mesh.
 class EmbreeScene {
  public:
   EmbreeScene();
@@ -46,37 +46,37 @@ class EmbreeScene {
   EmbreeScene(const EmbreeScene&) = delete;
   EmbreeScene& operator=(const EmbreeScene&) = delete;
 
-  /// Copies the geometry. Returns the mesh's number.
+  /// Copies the geometry and returns the mesh's number.
   uint32_t add_mesh(std::span<const Vec3> positions, std::span<const glm::uvec3> triangles);
-  /// Puts another mesh in the place of one; without triangles it takes no memory.
+  /// Replaces a mesh. A mesh without triangles takes no memory.
   void set_mesh(uint32_t number, std::span<const Vec3> positions, std::span<const glm::uvec3> triangles);
-  /// Takes the meshes of `other`, which is committed, in the place of its own: no geometry is copied, no mesh is built
-  /// again. Neither may add meshes while the other is traced.
+  /// Replaces this scene's meshes by those of `other`, which is committed. Copies no geometry and rebuilds no mesh.
+  /// Neither scene may add meshes while the other is traced.
   void share_meshes(const EmbreeScene& other);
   /// Returns the instance's number, counted from 0.
   uint32_t add_instance(uint32_t mesh, const Affine& object_to_world);
   void clear_instances();
   enum class Levels { one, two };
-  /// Builds; uses at most `threads` threads (0: all). A scene whose only instance has the identity map has one level in
-  /// any case; else one level is made only where instances repeat little: where they have more than kMostRepeated
-  /// triangles for each of their meshes, there are two. Throws Error(cancelled) soon after `progress` was: what is
-  /// built of meshes for two levels goes on, and another commit() waits for it.
+  /// Builds with at most `threads` threads (0: all). A scene whose only instance has the identity transform always has
+  /// one level. Otherwise there are two if instances repeat their meshes much: if they have more than kMostRepeated
+  /// triangles per triangle of their meshes. Throws Error(cancelled) soon after `progress` is cancelled; builds of
+  /// meshes for two levels continue, and another commit() waits for them.
   void commit(int threads, const Progress* progress = nullptr, Levels levels = Levels::two);
   static constexpr double kMostRepeated = 1.5;
 
-  /// As committed.
+  /// Levels of the committed scene.
   Levels levels() const;
 
   void intersect(const Ray& ray, Hit& hit) const;
   bool occluded(const Ray& ray) const;
-  /// A batch; blocked[i] is 1 where ray i meets anything. Rays of one batch should start near each other.
+  /// Traces a batch; blocked[i] is 1 if ray i hits anything, else 0. Rays of a batch should start near each other.
   void occluded(std::span<const Ray> rays, uint8_t* blocked) const;
   void intersect(std::span<const Ray> rays, Hit* hits) const;
-  /// The same for parallel rays whose neighbours in the batch are neighbours in space, traced in packets: two to three
-  /// times as fast there, slower elsewhere. What a ray meets may depend, at the edge of a triangle, on its packet.
+  /// Like occluded(), but traces packets: two to three times as fast for parallel rays whose neighbors in the batch are
+  /// neighbors in space, slower for others. At triangle edges, a ray's result may depend on its packet.
   void occluded_coherent(std::span<const Ray> rays, uint8_t* blocked) const;
 
-  /// Bytes that Embree holds for this scene and those that it shares meshes with.
+  /// Bytes that Embree holds for this scene and all scenes that share its meshes.
   uint64_t bytes() const;
 
  private:
@@ -91,8 +91,8 @@ struct EmbreeInfo {
 };
 EmbreeInfo embree_info();
 
-/// Throws Error(version_mismatch) when Embree is not the version that this library was compiled for, or when a known
-/// ray does not hit a known triangle. Cheap; the result is not cached across failures.
+/// Throws Error(version_mismatch) if Embree is not the version that this library was compiled for, or if a known ray
+/// misses a known triangle. Cheap; failures are not cached.
 void embree_self_test();
 
 }  // namespace velour

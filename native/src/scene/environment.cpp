@@ -49,7 +49,7 @@ Environment Environment::constant(const Rgb& radiance) {
 
 Environment Environment::image(const EquirectangularPixels& pixels, float strength, const Mat3& world_to_image) {
   check(pixels);
-  checked(strength, world_to_image);  // before the work
+  checked(strength, world_to_image);  // before the image is built
   Environment e;
   e.image_ = std::make_shared<const EquirectangularImage>(pixels);
   return e.placed(strength, world_to_image);

@@ -53,7 +53,7 @@ void EquirectangularImage::build_marginal(const std::vector<double>& mean) {
   const size_t h = mean.size();
   std::copy(mean.begin(), mean.end(), row_node_.begin() + 1);
   std::vector<double> bands(h + 1);
-  bands.front() = 0.25 * mean.front();  // half a row, from 0 at the pole
+  bands.front() = 0.25 * mean.front();  // half a row high, with density 0 at the pole
   bands.back() = 0.25 * mean.back();
   for (size_t y = 1; y < h; ++y) bands[y] = 0.5 * (mean[y - 1] + mean[y]);
   marginal_cdf_.resize(h + 2);
@@ -69,7 +69,7 @@ void EquirectangularImage::look_up(const EnvironmentPlacement& placement, const 
   equirectangular_look_up(*this, placement, world, radiance, pdf);
 }
 
-/// The column's cell, and what draw_columns reads of it.
+/// Finds the column's cell and stores what draw_columns reads.
 void EquirectangularImage::find_column(EquirectangularDraws& draws, int i, int first) const {
   const auto y = static_cast<size_t>(draws.row[i]);
   const float* cdf = &row_cdf_[y * (static_cast<size_t>(width_) + 1)];
@@ -82,8 +82,8 @@ void EquirectangularImage::find_column(EquirectangularDraws& draws, int i, int f
   draws.right[i] = texel[1].node;
 }
 
-// Passes, each of which calls for the memory of the next: tables and texels of a large image are in no near cache, and
-// their latency is paid once instead of once a direction.
+// Each pass prefetches the memory of the next: the tables and texels of a large image exceed the near caches, and their
+// latency is then paid once instead of once per direction.
 void EquirectangularImage::sample(const EnvironmentPlacement& placement, std::span<const Vec2> u,
                                   DirectionBatch& world) const {
   const int count = static_cast<int>(u.size()), padded = (count + 15) / 16 * 16;

@@ -1,7 +1,7 @@
-// The image of an Environment as a sampled density. Internal to scene/.
+// Look-up and sampling of an Environment's image. Internal to scene/.
 //
-// Rows run from the top (theta = 0). Texel (x, y) has its centre at u = (x + 1/2) / W, theta = pi (y + 1/2) / H. Every
-// texel holds radiance and the density's node g = luminance sin(theta), so that one fetch serves both.
+// Rows run from the top (theta = 0). Texel (x, y) has its center at u = (x + 1/2) / W, theta = pi (y + 1/2) / H. Every
+// texel stores radiance and the density's node g = luminance sin(theta), so that one fetch reads both.
 #pragma once
 
 #include <vector>
@@ -16,7 +16,7 @@ struct EquirectangularDraws;
 
 struct alignas(16) EnvironmentTexel {
   float r, g, b;
-  float node;  // luminance(rgb) sin(theta of the row's centre)
+  float node;  // luminance(rgb) sin(theta of the row's center)
 };
 
 class EquirectangularImage {
@@ -25,14 +25,14 @@ class EquirectangularImage {
 
   void look_up(const EnvironmentPlacement& placement, const DirectionBatch& world, RgbBatch& radiance,
                ScalarBatch& pdf) const;
-  /// One direction for each of `u`.
+  /// Samples one direction for each of `u`.
   void sample(const EnvironmentPlacement& placement, std::span<const Vec2> u, DirectionBatch& world) const;
   float mean_luminance() const { return mean_luminance_; }
   uint64_t bytes() const;
-  /// Counts of the given pixels that no light can have.
+  /// Counts of invalid values among the given pixels.
   const ValueFaults& faults() const { return faults_; }
 
-  // What the SIMD kernels read.
+  // Read by the SIMD kernels.
   int width() const { return width_; }
   int height() const { return height_; }
   const EnvironmentTexel* row(int y) const { return &texels_[static_cast<size_t>(y) * stride_]; }
@@ -40,42 +40,42 @@ class EquirectangularImage {
 
  private:
   void store_row(const EquirectangularPixels& pixels, int y);
-  /// The cells of row `y`; returns the mean node.
+  /// Builds the cells of row `y` and returns its mean node.
   double build_row(int y);
   void build_marginal(const std::vector<double>& mean);
   void find_column(EquirectangularDraws& draws, int i, int first) const;
 
   int width_, height_;
-  size_t stride_;  // texels a stored row: W + 2, the last and the first column repeated on the other side
+  size_t stride_;  // texels per stored row: W + 2, because the last and first columns are repeated at the other end
   ValueFaults faults_;
   std::vector<EnvironmentTexel> texels_;
   float mean_luminance_ = 0;
   float density_scale_ = 0;  // pdf = node * density_scale_ / sin(theta)
 
-  // Cell j of a row lies between the centres of texels j - 1 and j (wrapped).
+  // Cell j of a row lies between the centers of texels j - 1 and j (wrapped).
   std::vector<float> row_cdf_;
   std::vector<uint16_t> row_guide_;
   std::vector<float> row_node_, marginal_cdf_;  // MarginalTable
   std::vector<int32_t> marginal_guide_;
 };
 
-/// Texel coordinates of a batch of world directions: column cell and the place in it, likewise rows.
+/// Texel coordinates of a batch of world directions: column and row cells, and the positions in them.
 struct alignas(64) EquirectangularCoordinates {
   int32_t x[DirectionBatch::kCapacity], y[DirectionBatch::kCapacity];  // cell 0..W-1, 0..H
   float fx[DirectionBatch::kCapacity], fy[DirectionBatch::kCapacity];  // in [0, 1]
   float inverse_sin[DirectionBatch::kCapacity];  // of theta; falls to 0 over the half row beside a pole
 };
 
-// Kernels, run-time dispatched SIMD. Angles are within 8e-7 radians: a polynomial of our own, exact to 1.6e-8, in
-// float32.
+// Run-time dispatched SIMD kernels. Angles are within 8e-7 radians: a polynomial with a relative error of 1.6e-8,
+// evaluated in float32.
 
 void equirectangular_coordinates(const EquirectangularImage& image, const Mat3& world_to_image,
                                  const DirectionBatch& world, EquirectangularCoordinates& out);
 /// Bilinear radiance and density.
 void equirectangular_look_up(const EquirectangularImage& image, const EnvironmentPlacement& placement,
                              const DirectionBatch& world, RgbBatch& radiance, ScalarBatch& pdf);
-/// World directions of `count` places: columns `u`, rows `v` from the top, both as shares of the image's sides, padded
-/// to 16 and aligned.
+/// World directions of `count` points of the image, columns `u` and rows `v` from the top, as fractions of its width
+/// and height. The arrays are aligned and padded to a multiple of 16.
 void equirectangular_directions(const Mat3& world_to_image, const float* u, const float* v, int count,
                                 DirectionBatch& world);
 

@@ -14,14 +14,14 @@ namespace HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
-/// Place of `u` between `low` and `high`, in [0, 1].
+/// Relative position of `u` between `low` and `high`, in [0, 1].
 template <class D, class V = hn::Vec<D>>
 HWY_INLINE V place_between(D d, V u, V low, V high) {
   const V share = hn::Div(hn::Sub(u, low), hn::Max(hn::Sub(high, low), hn::Set(d, 1e-30f)));
   return hn::Min(hn::Max(share, hn::Zero(d)), hn::Set(d, 1.0f));
 }
 
-/// Where in [0, 1] the density that runs linearly from `a` to `b` reaches the share `u` of its mass; u for no density.
+/// Inverse cdf at `u` of the density on [0, 1] that runs linearly from `a` to `b`; u if both are 0.
 template <class D, class V = hn::Vec<D>>
 HWY_INLINE V invert_linear(D d, V a, V b, V u) {
   const V one = hn::Set(d, 1.0f);
@@ -34,7 +34,7 @@ HWY_INLINE V invert_linear(D d, V a, V b, V u) {
   return hn::IfThenElse(some, t, u);
 }
 
-/// The cell of `cdf` that holds `u`, from where the guide says it is.
+/// The cell of `cdf` that contains `u`; the search starts at `cell`, the guide's entry.
 template <class DI, class V, class VI = hn::Vec<DI>>
 HWY_INLINE VI find_cells(DI di, const float* cdf, VI cell, int cells, V u) {
   const hn::RebindToFloat<DI> d;
@@ -60,9 +60,9 @@ void draw_rows_simd(const MarginalTable& table, EquirectangularDraws& draws, int
   const V zero = hn::Zero(d), half = hn::Set(d, 0.5f), one = hn::Set(d, 1.0f);
   const V height = hn::Set(d, static_cast<float>(table.height));
   for (int at = 0; at < count; at += static_cast<int>(hn::Lanes(d))) {
-    // A band between two rows, one of the two in proportion to their nodes, and the place in the band by the row's
-    // share there, which falls linearly to 0 at the other row: together the bilinear density. All three come from v, so
-    // that neighbours in u remain neighbours in azimuth.
+    // Samples a band between two rows, one of the two in proportion to their nodes, and the position in the band by
+    // that row's weight, which falls linearly to 0 at the other row: together the bilinear density. All three come from
+    // v, so that neighbors in u remain neighbors in azimuth.
     const V v = hn::Load(d, draws.v + at);
     const auto guided =
         hn::Min(hn::ConvertTo(di, hn::Mul(v, hn::Set(d, static_cast<float>(bands)))), hn::Set(di, bands - 1));

@@ -1,4 +1,4 @@
-// Draws of an environment's image in flight: kernels of EquirectangularImage::sample, run-time dispatched SIMD.
+// Run-time dispatched SIMD kernels of EquirectangularImage::sample.
 #pragma once
 
 #include <cstdint>
@@ -7,8 +7,8 @@
 
 namespace velour {
 
-/// The density of rows: cell i of the cdf, a band, lies between the centres of rows i - 1 and i, the first and the last
-/// end at a pole.
+/// Marginal density of the rows. Cell i of the cdf, a band, lies between the centers of rows i - 1 and i; the first and
+/// the last band end at a pole.
 struct MarginalTable {
   int height;
   const float* cdf;      // [height + 2]
@@ -16,17 +16,18 @@ struct MarginalTable {
   const float* node;     // [height + 2], mean node of row i - 1; 0 at both ends
 };
 
+/// Samples in progress.
 struct alignas(64) EquirectangularDraws {
   static constexpr int kCapacity = DirectionBatch::kCapacity;
-  float u[kCapacity], v[kCapacity];  // numbers in [0, 1), in the end the place as shares of the image's sides
-  int32_t row[kCapacity];            // whose density u draws the column from
-  // Of the column's cell in that row: its number, the cdf at both ends, the density's nodes at both ends.
+  float u[kCapacity], v[kCapacity];  // random numbers in [0, 1), then the point as fractions of the image's sides
+  int32_t row[kCapacity];            // row from whose density the column is sampled
+  // The column's cell in that row: its index, the cdf at both ends, the density's nodes at both ends.
   float cell[kCapacity], low[kCapacity], high[kCapacity], left[kCapacity], right[kCapacity];
 };
 
-/// From v to `row` and the place v.
+/// Samples `row` and replaces v by the point's v.
 void draw_rows(const MarginalTable& table, EquirectangularDraws& draws, int count);
-/// From u and the cell's numbers to the place u.
+/// Replaces u by the point's u, sampled within the cell.
 void draw_columns(int width, EquirectangularDraws& draws, int count);
 
 }  // namespace velour

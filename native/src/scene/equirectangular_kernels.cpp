@@ -8,7 +8,7 @@
 #define HWY_TARGET_INCLUDE "scene/equirectangular_kernels.cpp"
 #include <hwy/foreach_target.h>
 
-// Only after that one:
+// Must follow foreach_target.h:
 #include <hwy/contrib/math/math-inl.h>
 #include <hwy/highway.h>
 
@@ -20,7 +20,7 @@ namespace HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
-constexpr float kLargest = std::numeric_limits<float>::max();  // what overflows stays a number
+constexpr float kLargest = std::numeric_limits<float>::max();  // radiance that overflows is clamped to it
 
 /// atan(a) / pi for a in [0, 1]: atan(a)/a as a polynomial of degree 8 in a^2, relative error 1.6e-8 (minimax by
 /// reweighted least squares).
@@ -70,7 +70,7 @@ void coordinates_simd(const EquirectangularImage& image, const Mat3& world_to_im
     const auto turn = hn::Mul(half, upper_atan2_over_pi(d, hn::Abs(y), x));  // |phi| / (2 pi)
     const auto u = hn::Sub(half, hn::CopySign(turn, y));
     const auto theta = upper_atan2_over_pi(d, r, z);  // / pi
-    // Column cells are counted from half a texel left of the image's edge, row cells from half a row above the pole.
+    // Column cells start half a texel left of the image's edge, row cells half a row above the pole.
     const auto px = hn::MulAdd(u, width, half);
     const auto py = hn::Mul(theta, height);
     const auto cx = hn::Floor(px);
@@ -95,11 +95,11 @@ void look_up_simd(const EquirectangularImage& image, const EnvironmentPlacement&
   for (int i = 0; i < world.count; ++i) {
     above[i] = &image.row(std::max(at.y[i] - 1, 0))[at.x[i]].r;
     below[i] = &image.row(std::min(at.y[i], image.height() - 1))[at.x[i]].r;
-    // All texels are on their way before the first is needed. Two share a line more often than not.
+    // All texels are prefetched before the first is needed. Two adjacent ones usually share a cache line.
     __builtin_prefetch(above[i]);
     __builtin_prefetch(below[i]);
   }
-  const hn::CappedTag<float, 4> d;  // the four numbers of a texel at once, where there are four lanes
+  const hn::CappedTag<float, 4> d;  // all four numbers of a texel at once if there are four lanes
   for (int i = 0; i < world.count; ++i) {
     const auto fx = hn::Set(d, at.fx[i]), fy = hn::Set(d, at.fy[i]);
     alignas(16) float texel[4];

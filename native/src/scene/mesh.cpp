@@ -12,7 +12,7 @@ namespace {
 
 Vec3 unit(const Vec3d& v) { return Vec3(v / glm::length(v)); }
 
-/// A direction that can be normalised in float32.
+/// Whether a direction can be normalized in float32.
 bool usable_normal(const Vec3& n) {
   const float length_sq = glm::dot(n, n);
   return length_sq > 1e-30f && std::isfinite(length_sq);
@@ -34,7 +34,7 @@ Mesh::Mesh(const MeshArrays& arrays) {
   const size_t count = kept.size();
   dropped_ = static_cast<uint32_t>(arrays.triangles.size() - count);
   positions_.assign(arrays.positions.begin(), arrays.positions.end());
-  // What no triangle names may hold anything; the ray tracer must not see it.
+  // Unused vertices may hold anything, which the ray tracer must not see.
   for (Vec3& p : positions_) {
     if (!usable_position(p)) p = Vec3(0.0f);
   }
@@ -189,7 +189,7 @@ Vec3 Mesh::smooth_tangent(uint32_t triangle, const Vec2& uv, const Mat2& map) co
   const Vec3 normal = glm::normalize(space[2]);
   const Vec3 x = space[0] - glm::dot(space[0], normal) * normal;
   const Vec3 y = tangents_[3 * static_cast<size_t>(triangle)].side * glm::cross(normal, x);
-  // The first column of the map's inverse, but for its length.
+  // First column of the inverse of `map`, up to a positive factor.
   return (glm::determinant(map) < 0.0f ? -1.0f : 1.0f) * (map[1].y * x - map[0].y * y);
 }
 

@@ -11,7 +11,7 @@
 namespace velour {
 namespace {
 
-/// Embree's own bound on coordinates; beyond it triangles vanish silently.
+/// Embree's own bound on coordinates, beyond which triangles vanish silently.
 constexpr float kReach = 1.8e18f;
 
 void check_length(size_t found, size_t expected, const char* what) {
@@ -20,7 +20,7 @@ void check_length(size_t found, size_t expected, const char* what) {
          ".");
 }
 
-/// `more` of further sets, `first` of the first.
+/// `more`: number of coordinates in all further sets; `first`: in the first set.
 void check_more_uvs(size_t more, size_t first) {
   if (more == 0 || (first > 0 && more % first == 0)) return;
   refuse("A mesh has " + std::to_string(more) +
@@ -28,7 +28,7 @@ void check_more_uvs(size_t more, size_t first) {
          " of its first.");
 }
 
-/// What a triangle names that is not there.
+/// Error message if a triangle names a missing corner or vertex.
 std::optional<std::string> missing(const MeshArrays& arrays, size_t triangle) {
   const auto lacks = [&](const char* what, size_t number, size_t count, const char* plural) {
     return "Triangle " + std::to_string(triangle) + " names " + what + " " + std::to_string(number) +

@@ -1,4 +1,4 @@
-// Meshes from files, whatever their format.
+// Reads meshes from files of any supported format.
 #pragma once
 
 #include <string>
@@ -7,7 +7,7 @@
 
 namespace velour {
 
-/// PLY by the extension .ply (any case), Wavefront OBJ otherwise. Throws Error with the file's name.
+/// Reads PLY if the extension is .ply (in any case), else Wavefront OBJ. Throws Error with the file's name.
 Mesh read_mesh(const std::string& path);
 
 }  // namespace velour

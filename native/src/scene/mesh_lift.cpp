@@ -26,13 +26,14 @@ Mesh Mesh::lifted(std::span<const ShellHeights> heights, const Mat3& metric) con
   const Mat3 inverse = glm::inverse(metric);
   mesh.positions_.insert(mesh.positions_.end(), positions_.begin(), positions_.end());
   for (uint32_t v = 0; v < count; ++v) {
-    // Normals go to the world by the inverse transpose, so what comes back of the unit normal is `inverse` times them.
+    // Normals transform by the inverse transpose, so the world-space normal, brought back to object space, is `inverse`
+    // times the object's.
     const Vec3 back = inverse * up[v];
     const float square = glm::dot(up[v], back);
     up[v] = square > 0 ? back / std::sqrt(square) : Vec3(0.0f);
     mesh.positions_[count + v] += up[v] * of_vertex[v].top;
   }
-  std::unordered_map<uint32_t, uint32_t> lower;  // the vertex below one of the top
+  std::unordered_map<uint32_t, uint32_t> lower;  // bottom vertex by the top vertex above it
   const auto below = [&](uint32_t v) {
     const auto [found, is_new] = lower.emplace(v, static_cast<uint32_t>(mesh.positions_.size()));
     if (is_new) mesh.positions_.push_back(positions_[v - count] + up[v - count] * of_vertex[v - count].bottom);
@@ -66,7 +67,7 @@ void Mesh::add_side(const BorderEdge& edge, const std::array<glm::uvec3, 2>& qua
 Mesh::SidePoint Mesh::on_side(uint32_t triangle, const Vec2& uv) const {
   const uint32_t number = triangle - first_side();
   const BorderEdge& edge = sides_[number / 2];
-  const bool lower = number % 2 == 0;  // the half with two corners at the bottom
+  const bool lower = number % 2 == 0;  // the triangle with two corners at the bottom
   const float along = std::min(1.0f, lower ? uv.x + uv.y : uv.x), height = lower ? uv.y : uv.x + uv.y;
   float weight[3] = {0, 0, 0};
   weight[edge.corner] = 1 - along;

@@ -1,5 +1,5 @@
-// Read here and not by tinyobjloader, which names no line of a fault, reads "1,5" as 1, knows no continued lines, and
-// cuts polygons into other triangles where the origin is elsewhere.
+// tinyobjloader is not used: it does not name the line of an error, reads "1,5" as 1, does not support continued lines,
+// and its triangulation depends on the position of the origin.
 #include "scene/obj_file.h"
 
 #include <algorithm>
@@ -17,7 +17,7 @@ namespace {
 
 constexpr uint32_t kNone = UINT32_MAX;
 
-/// A corner of a face: places in the file's lists, from 0; kNone: not named.
+/// A corner of a face: indices into the file's lists, from 0; kNone: not given.
 struct ObjCorner {
   uint32_t position, uv, normal;
 };
@@ -27,14 +27,14 @@ struct ObjContent {
   std::vector<Vec2> uvs;
   std::vector<ObjCorner> corners;
   struct Face {
-    uint32_t first, count;  // of `corners`
+    uint32_t first, count;  // range of `corners`
     bool smooth;
   };
   std::vector<Face> faces;
   size_t too_small = 0;  // faces of fewer than three corners
 };
 
-/// Goes through the lines of a file, with backslashes, comments and any kind of line end.
+/// Parses a file line by line, with continuation lines, comments and any kind of line end.
 class ObjReader {
  public:
   ObjReader(std::span<const uint8_t> bytes, const std::string& path)
@@ -70,14 +70,14 @@ class ObjReader {
   static bool is_space(char c) { return c == ' ' || c == '\t' || c == '\v' || c == '\f'; }
   static bool is_line_end(char c) { return c == '\n' || c == '\r'; }
 
-  /// Steps over a line end of one or two characters.
+  /// Skips a line end of one or two characters.
   void skip_line_end() {
     if (at_ < text_.size() && text_[at_] == '\r' && at_ + 1 < text_.size() && text_[at_ + 1] == '\n') ++at_;
     if (at_ < text_.size()) ++at_;
     ++lines_read_;
   }
 
-  /// Sets `line_` to the next line; lines that end in a backslash go on in the one after.
+  /// Sets `line_` to the next line, joined with the following ones as long as lines end in a backslash.
   void next_line() {
     line_number_ = lines_read_ + 1;
     const size_t begin = at_;
@@ -99,7 +99,7 @@ class ObjReader {
     end_line();
   }
 
-  /// A comment may end in the backslash of a folder's name.
+  /// Lines with comments do not continue: a comment may end in the backslash of a folder's name.
   static bool continues(std::string_view line) {
     return line.ends_with('\\') && line.find('#') == std::string_view::npos;
   }
@@ -109,7 +109,7 @@ class ObjReader {
     line_ = line_.substr(0, line_.find('#'));
   }
 
-  /// The next word of the line, which is consumed; empty: there is none.
+  /// Consumes and returns the next word of the line; empty at its end.
   std::string_view word() {
     size_t begin = 0;
     while (begin < line_.size() && is_space(line_[begin])) ++begin;
@@ -153,7 +153,8 @@ class ObjReader {
     smooth_ = !group.empty() && group != "off" && group != "0";
   }
 
-  /// A place in a list of `count` so far, from an index of the file: from 1, or from the end if negative.
+  /// Converts an index of the file, counted from 1 or, if negative, from the end of the `count` entries so far, to one
+  /// counted from 0.
   uint32_t place(std::string_view text, size_t count, const char* what) const {
     int64_t index = 0;
     const std::string_view digits = text.starts_with('+') ? text.substr(1) : text;
@@ -195,7 +196,7 @@ class ObjReader {
     content_.faces.push_back({first, static_cast<uint32_t>(count), smooth_});
   }
 
-  /// Faces may name what comes later in the file.
+  /// Done at the end, because faces may name entries that come later in the file.
   void check_indices() {
     const auto check = [&](uint32_t place, size_t count, const char* what) {
       if (place != kNone && place >= count)
@@ -214,7 +215,7 @@ class ObjReader {
   }
 
   std::string_view text_, line_;
-  std::string joined_;  // a line of several, which `line_` is a part of
+  std::string joined_;  // a line joined from several, which `line_` refers to
   const std::string& path_;
   size_t at_ = 0;
   uint64_t lines_read_ = 0, line_number_ = 0;
@@ -223,14 +224,14 @@ class ObjReader {
   std::vector<uint64_t> face_lines_;
 };
 
-/// What a Mesh is built from, beside the positions.
+/// Arrays for a Mesh, apart from the positions.
 struct ObjArrays {
-  std::vector<glm::uvec3> triangles;  // of corners
+  std::vector<glm::uvec3> triangles;  // corner indices
   std::vector<uint32_t> corner_vertices;
   std::vector<Vec3> corner_normals;
   std::vector<Vec2> corner_uvs;
   std::vector<uint8_t> smooth;
-  size_t without_normals = 0, without_uvs = 0;  // faces
+  size_t without_normals = 0, without_uvs = 0;  // numbers of faces
 
   explicit ObjArrays(const ObjContent& content) {
     for (const ObjCorner& corner : content.corners) corner_vertices.push_back(corner.position);
@@ -252,7 +253,7 @@ struct ObjArrays {
     }
   }
 
-  /// A face that does not name all of them has none: zero normals stand for the triangle's own.
+  /// A face with attributes at only some corners counts as having none; zero normals stand for the triangle's own.
   void add_attributes(const ObjContent& content, std::span<const ObjCorner> face) {
     const bool normals = std::ranges::none_of(face, [](const ObjCorner& c) { return c.normal == kNone; });
     const bool uvs = std::ranges::none_of(face, [](const ObjCorner& c) { return c.uv == kNone; });

@@ -1,5 +1,5 @@
-// One-dimensional densities that run linearly over equal cells, sampled by inversion: monotone in u, so a stratified u
-// stays stratified.
+// One-dimensional densities that are linear within cells of equal width. Sampling by inversion is monotone in u, so a
+// stratified u stays stratified.
 #pragma once
 
 #include <algorithm>
@@ -8,9 +8,9 @@
 
 namespace velour {
 
-/// Fills `cdf` [cells + 1], the running share of the mass at each cell's edge, and `guide` [cells] from the masses of
-/// at most 65536 cells; returns their sum. All zero: uniform. guide[k] is the cell that holds u = k / cells, so that
-/// the search of find_cell takes O(1) steps on average [CA74].
+/// Fills `cdf` [cells + 1], the cumulative fraction of the mass at each cell's edge, and `guide` [cells] from the
+/// masses of at most 65536 cells, and returns their sum. All zero: uniform. guide[k] is the cell that contains
+/// u = k / cells, so that the search in find_cell takes O(1) steps on average [CA74].
 template <typename Index>
 double build_cells(const std::vector<double>& mass, float* cdf, Index* guide) {
   const size_t cells = mass.size();
@@ -35,7 +35,7 @@ inline size_t guide_place(float u, int cells) {
   return static_cast<size_t>(std::min(static_cast<int>(u * static_cast<float>(cells)), cells - 1));
 }
 
-/// The cell that holds `u`; `cell` is guide[guide_place(u, cells)].
+/// The cell that contains `u`; `cell` is guide[guide_place(u, cells)].
 inline int find_cell(const float* cdf, int cell, int cells, float u) {
   while (cell > 0 && cdf[cell] > u) --cell;  // u * cells may have been rounded up
   while (cell + 1 < cells && cdf[cell + 1] <= u) ++cell;

@@ -21,7 +21,7 @@ enum class Number { int8, uint8, int16, uint16, int32, uint32, float32, float64 
 struct Property {
   std::string name;
   Number type = Number::float32;
-  std::optional<Number> count;  // a list's; nothing: a single number
+  std::optional<Number> count;  // type of a list's length; empty: a single number
 };
 
 struct Element {
@@ -50,7 +50,7 @@ std::optional<Number> number_named(const std::string& name) {
   return std::nullopt;
 }
 
-/// Reads the file's words and numbers one after the other.
+/// Reads the file's header lines and numbers sequentially.
 class Reader {
  public:
   Reader(std::span<const uint8_t> bytes, const std::string& path) : bytes_(bytes), path_(path) {}
@@ -59,7 +59,7 @@ class Reader {
 
   [[noreturn]] void refuse(const std::string& why) const { throw Error(Status::bad_data, path_ + ": " + why); }
 
-  /// A line of the header, without its end: "\n", "\r\n" or "\r", of all lines that of the first.
+  /// Reads a line of the header, without its end: "\n", "\r\n" or "\r", as in the first line.
   std::string line() {
     const auto rest = bytes_.subspan(at_);
     const auto longest = rest.first(std::min<size_t>(kMaxLine, rest.size()));
@@ -74,7 +74,7 @@ class Reader {
 
   double number(Number type) { return format == Format::ascii ? ascii_number() : binary_number(type); }
 
-  /// Throws when `count` things cannot be in what is left, each of which takes at least `bytes` bytes.
+  /// Throws unless the rest of the file can hold `count` items of at least `bytes` bytes each.
   void expect(uint64_t count, uint64_t bytes, const std::string& what) const {
     if (count > (bytes_.size() - at_) / std::max<uint64_t>(1, bytes)) {
       refuse("it says that it holds " + std::to_string(count) + " " + what + ", but it is too short for them.");
@@ -84,7 +84,7 @@ class Reader {
  private:
   static constexpr size_t kMaxLine = 4096;
 
-  /// Binary numbers may begin with the byte of "\n", so that of a file with "\r" it is not part of a line end.
+  /// In a file with "\r" line ends, a "\n" after the header is not part of a line end but may begin a binary number.
   void find_line_end(std::span<const uint8_t> head) {
     const auto found = std::ranges::find_if(head, [](uint8_t c) { return c == '\n' || c == '\r'; });
     const bool lone = found != head.end() && *found == '\r' && (found + 1 == head.end() || found[1] != '\n');
@@ -191,7 +191,7 @@ std::vector<Element> read_header(Reader& reader) {
     } else if (word == "element") {
       Element element;
       if (!(words >> element.name >> element.count)) reader.refuse("an element of its header has no name and count.");
-      // A second list of vertices could have no normals, and corners would look for them past the end of the first's.
+      // If a second vertex list lacked normals, its corners would index past the end of the first list's normals.
       if (std::ranges::find(elements, element.name, &Element::name) != elements.end()) {
         reader.refuse("its header has two elements named '" + element.name + "'; make them one.");
       }
@@ -208,10 +208,10 @@ struct Content {
   std::vector<Vec2> uvs;          // of vertices
   std::vector<uint32_t> corners;  // vertices of the faces, one after the other; checked at the end
   std::vector<uint32_t> face_sizes;
-  std::vector<Vec2> corner_uvs;  // as MeshLab writes them; empty: of no face, else of all corners
+  std::vector<Vec2> corner_uvs;  // "texcoord", as written by MeshLab: for all corners or none
 };
 
-/// Bytes that one of `element` takes at the least.
+/// Minimum number of bytes of one entry of `element`.
 uint64_t least_bytes(const Element& element, Format format) {
   uint64_t bytes = 0;
   for (const Property& p : element.properties) {
@@ -220,7 +220,7 @@ uint64_t least_bytes(const Element& element, Format format) {
   return bytes;
 }
 
-/// Where a vertex's property goes: x, y, z, nx, ny, nz, s, t; nothing: nowhere.
+/// Index of a vertex property in x, y, z, nx, ny, nz, s, t; empty for others.
 std::optional<size_t> place_of(const std::string& name) {
   constexpr std::array<const char*, 8> kNames = {"x", "y", "z", "nx", "ny", "nz", "s", "t"};
   const std::string same = name == "u" || name == "texture_u" ? "s" : name == "v" || name == "texture_v" ? "t" : name;
@@ -276,7 +276,7 @@ void read_polygon(Reader& reader, const Property& property, Content& content) {
   content.face_sizes.push_back(static_cast<uint32_t>(count));
 }
 
-/// Two numbers for each corner of the face that was read last or is read next; others leave it without.
+/// Reads two numbers per corner of the face. `uvs` is later resized to the face's number of corners.
 void read_corner_uvs(Reader& reader, const Property& property, std::vector<Vec2>& uvs) {
   const uint64_t count = read_count(reader, property);
   reader.expect(count, reader.format == Format::ascii ? 2 : bytes_of(property.type), "texture coordinates of a face");
@@ -309,7 +309,7 @@ void read_faces(Reader& reader, const Element& element, Content& content) {
   }
 }
 
-/// Triangles of the faces' corners.
+/// Cuts the faces into triangles of corner indices.
 std::vector<glm::uvec3> cut_faces(const Content& content) {
   PolygonTriangles cutter;
   std::vector<glm::uvec3> triangles;

@@ -1,4 +1,4 @@
-// Stanford PLY: ascii, and binary of both byte orders.
+// Stanford PLY files, ASCII and binary in both byte orders.
 #pragma once
 
 #include <string>
@@ -7,10 +7,10 @@
 
 namespace velour {
 
-/// Vertices by x, y, z, with normals (nx, ny, nz) and texture coordinates (s, t or u, v) where it has them; polygons by
-/// vertex_indices or vertex_index, cut into triangles, with texture coordinates of corners (texcoord) where they have
-/// them. Elements come in any order; others, and other properties, are skipped.
-/// Throws Error(io, bad_data) with the file's name; never reads or allocates more than the file's size asks for.
+/// Reads vertices (x, y, z), with normals (nx, ny, nz) and texture coordinates (s, t or u, v) if present, and polygons
+/// (vertex_indices or vertex_index), cut into triangles, with texture coordinates of corners (texcoord) if present.
+/// Elements may come in any order; other elements and properties are skipped.
+/// Throws Error(io, bad_data) with the file's name; never reads or allocates more than the file's size justifies.
 Mesh read_ply(const std::string& path);
 
 }  // namespace velour

@@ -6,7 +6,7 @@
 namespace velour {
 namespace {
 
-/// Twice the area times the unit normal, about the first corner: exact far from the origin, too.
+/// Twice the area times the unit normal. Relative to the first corner, to stay exact far from the origin.
 Vec3d newell_normal(std::span<const Vec3> corners) {
   Vec3d sum(0);
   const Vec3d origin(corners[0]);
@@ -31,7 +31,7 @@ std::span<const glm::uvec3> PolygonTriangles::cut(std::span<const Vec3> corners)
   return triangles_;
 }
 
-/// Drops the axis that is closest to the normal; mirrors the plane if that turned the polygon around.
+/// Projects along the axis that is closest to the normal; swaps the other two if the polygon would become clockwise.
 void PolygonTriangles::project(std::span<const Vec3> corners) {
   const Vec3d normal = newell_normal(corners), size = glm::abs(normal);
   const int dropped = size.x > size.y ? (size.x > size.z ? 0 : 2) : (size.y > size.z ? 1 : 2);
@@ -44,13 +44,13 @@ void PolygonTriangles::project(std::span<const Vec3> corners) {
   }
 }
 
-/// Positive: a, b, c turn left.
+/// Positive if a, b, c turn left.
 double PolygonTriangles::turn(uint32_t a, uint32_t b, uint32_t c) const {
   const glm::dvec2 ab = points_[b] - points_[a], ac = points_[c] - points_[a];
   return ab.x * ac.y - ab.y * ac.x;
 }
 
-/// Along the diagonal that leaves both triangles inside; of a convex one that of corners 0 and 2.
+/// Cuts along the diagonal that leaves both triangles inside; along corners 0 and 2 if the quad is convex.
 void PolygonTriangles::cut_quad() {
   const double first = std::min(turn(0, 1, 2), turn(0, 2, 3)), second = std::min(turn(1, 2, 3), turn(1, 3, 0));
   if (first > 0 || first >= second) {
@@ -62,7 +62,7 @@ void PolygonTriangles::cut_quad() {
   }
 }
 
-/// Whether no other corner lies in the triangle of `corner` and its neighbors. Only corners that turn right can.
+/// Whether `corner` turns left and no other corner lies in its triangle. Only corners that do not turn left can.
 bool PolygonTriangles::is_ear(uint32_t corner) const {
   const uint32_t a = previous_[corner], c = next_[corner];
   if (turn(a, corner, c) <= 0) return false;
@@ -84,7 +84,7 @@ void PolygonTriangles::clip_ears() {
   }
   uint32_t corner = 0;
   for (uint32_t left = count, tried = 0; left > 2;) {
-    // A polygon that crosses itself, or is a line, may have no ear: then any corner is cut off.
+    // A polygon that intersects itself or is degenerate may have no ear; then any corner is cut off.
     if (!is_ear(corner) && tried < left) {
       corner = next_[corner];
       ++tried;
@@ -96,7 +96,7 @@ void PolygonTriangles::clip_ears() {
     previous_[c] = a;
     --left;
     tried = 0;
-    corner = next_[c];  // every other corner: fans of slivers are avoided
+    corner = next_[c];  // skips a corner, which avoids fans of slivers
   }
 }
 

@@ -1,4 +1,4 @@
-// Polygons of mesh files, cut into triangles.
+// Triangulation of polygons.
 #pragma once
 
 #include <cstdint>
@@ -11,15 +11,15 @@
 namespace velour {
 
 /// Cuts simple polygons, convex or not, into count - 2 triangles by ear clipping (Meisters 1975) in the plane of the
-/// polygon's normal (Newell). The result does not depend on where the origin is or which corner is the first, up to the
-/// choice of diagonals. Polygons that cross themselves give some triangles, too. Holds memory between calls.
+/// polygon's normal (Newell). Up to the choice of diagonals, the result does not depend on the origin or the first
+/// corner. Self-intersecting polygons also give some triangles. Reuses its memory between calls.
 class PolygonTriangles {
  public:
-  /// More corners would take too long: the time grows with the square of their number.
+  /// Maximum number of corners. The time grows with its square.
   static constexpr size_t kMaxCorners = 20000;
 
-  /// The positions of the polygon's corners, in order; at least 3 and at most kMaxCorners. Returns corners by their
-  /// place in `corners`, valid until the next call.
+  /// `corners`: positions of the polygon's corners in order, at least 3 and at most kMaxCorners. Returns triangles of
+  /// indices into `corners`, valid until the next call.
   std::span<const glm::uvec3> cut(std::span<const Vec3> corners);
 
  private:

@@ -10,8 +10,8 @@
 namespace velour {
 namespace {
 
-/// Bound of the rounding error of a world coordinate made from terms of `magnitude`: a sum of three products in the
-/// object, then of three products and a shift in the world, is 8 roundings of their absolute values.
+/// Bound of the rounding error of a world coordinate computed from terms of `magnitude`: a sum of three products in
+/// object space, then of three products and a translation, takes 8 roundings relative to their absolute values.
 float position_error(const Affine& map, const Vec3& magnitude) {
   float largest = 0.0f;
   for (const float* m = map.m; m < map.m + 12; m += 4) {
@@ -37,7 +37,7 @@ void require_placements(const std::vector<TextureMap>& placements, size_t materi
 
 bool needs_tangents(const SurfaceMaterial& material) { return material.relief || material.brushed; }
 
-/// Whether shells of the two make the same tops of meshes, and fold where the others do.
+/// Whether both materials' shells lift meshes to the same tops, with the same folds.
 bool have_same_tops(const SurfaceMaterial& a, const SurfaceMaterial& b) {
   if (!a.shell || !b.shell) return !a.shell && !b.shell;
   const OcclusionVolume &one = a.shell->volume(), &other = b.shell->volume();
@@ -215,7 +215,7 @@ void Scene::make_tangents() {
         std::ranges::none_of(i.materials, [&](uint32_t m) { return needs_tangents(materials_[m]); }))
       continue;
     mesh.make_tangents();
-    drop_tops(i.mesh);  // they have copies
+    drop_tops(i.mesh);  // they are copies without tangents
   }
 }
 
@@ -223,7 +223,7 @@ Bounds Scene::bounds_of_instances() const {
   Bounds bounds;
   for (const Instance& i : instances_) {
     const Mesh& mesh = geometry_changed_ ? meshes_[i.mesh] : traced_mesh(i);
-    // Of a hundred thousand instances few are at the border, and only there do their corners matter.
+    // Exact bounds matter only for instances at the border, which are few among a hundred thousand.
     if (!bounds.holds(box_around(mesh.bounds(), i.object_to_world))) bounds.add(bounds_of(mesh, i.object_to_world));
   }
   return bounds;
@@ -290,7 +290,7 @@ TexturePoint Scene::texture_of_mesh(const Hit& hit, size_t set) const {
   const auto edge = [&](int k) {
     return Vec3d(instance.object_to_world.vector(mesh.positions()[corner[k]] - mesh.positions()[corner[0]]));
   };
-  // The gradients have the products uv[k] - uv[0] with the edges: a sum of the edges' dual vectors.
+  // The dot products of the gradients with the edges are uv[k] - uv[0], so they are sums of the edges' dual vectors.
   const Vec3d e1 = edge(1), e2 = edge(2), normal = glm::cross(e1, e2);
   const double square = glm::dot(normal, normal);
   if (!(square > 0.0)) return {};
@@ -340,8 +340,8 @@ SurfacePoint Scene::surface(const Hit& hit) const {
   return point;
 }
 
-/// A parabola over the triangle through its corners, from their normals, as Cycles has it (shadow_ray_offset; after
-/// Hanika 2021, "Hacking the Shadow Terminator"). Nothing where the surface is hollow: rays must not begin below it.
+/// Offset to a paraboloid through the triangle's corners, from their normals, as in Cycles (shadow_ray_offset; after
+/// Hanika 2021, "Hacking the Shadow Terminator"). Zero where the surface is concave: rays must not begin below it.
 Vec3 Scene::rounding(const Instance& instance, const Hit& hit) const {
   const Mesh& mesh = traced_mesh(instance);
   const glm::uvec3 corners = mesh.triangles()[hit.triangle];

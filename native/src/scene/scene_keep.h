@@ -1,4 +1,4 @@
-// What others work out from a state of a scene, kept with that scene.
+// Cache for data derived from a state of a scene, kept with that scene.
 #pragma once
 
 #include <cstdint>
@@ -11,7 +11,7 @@ namespace velour {
 /// One object, of one type, for one revision of a scene. Thread-safe.
 class SceneKeep {
  public:
-  /// The T of `revision`; T() where there is none yet. Whoever holds one of another revision keeps that.
+  /// The T of `revision`, default-constructed at the first call. Holders of a T of another revision keep theirs.
   template <typename T>
   std::shared_ptr<T> of(uint64_t revision) {
     const std::lock_guard lock(mutex_);

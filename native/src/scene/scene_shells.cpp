@@ -11,7 +11,7 @@
 namespace velour {
 namespace {
 
-/// The map's transpose times itself: lengths of the object in the world.
+/// M^T M of the transform's linear part M, which measures object-space vectors in world space.
 Mat3 metric_of(const Affine& map) {
   const Vec3 x = map.vector({1, 0, 0}), y = map.vector({0, 1, 0}), z = map.vector({0, 0, 1});
   return {{glm::dot(x, x), glm::dot(x, y), glm::dot(x, z)},
@@ -96,7 +96,7 @@ void Scene::lift(Instance& instance) {
     instance.tile_width[s] = given > 0 && covered > 0 ? given : covered;
     height[s] = {shell->volume().bottom * instance.tile_width[s], shell->volume().top * instance.tile_width[s]};
   }
-  // Instances alike but for their place share their top.
+  // Instances that differ only in position and rotation share their top.
   const Mat3 metric = metric_of(instance.object_to_world);
   std::vector<uint32_t> key{instance.mesh};
   for (const ShellHeights& h : height) {
@@ -144,8 +144,8 @@ void Scene::warn_of_folds(const Instance& instance, uint32_t slot, const ShellHe
                             in_metres(instance.tile_width[slot]) + " wide).");
 }
 
-/// Of a tile that covers one unit of the texture coordinates, on average over the slot's triangles; 0 where they have
-/// no area.
+/// Width in meters of a tile that covers one unit of the texture coordinates, averaged over the slot's triangles; 0 if
+/// they have no area in texture space.
 float Scene::tile_width(const Instance& instance, uint32_t slot) const {
   const Mesh& mesh = meshes_[instance.mesh];
   const ShellField& shell = *materials_[instance.materials[slot]].shell;
@@ -182,7 +182,7 @@ ShellFrame Scene::shell(const Hit& hit, const Vec3& direction) const {
   ShellFrame frame;
   const SurfaceMaterial& surface = materials_[material(hit)];
   frame.field = surface.shell.get();
-  // Distances end at the reach: an edge farther out would fill the shell.
+  // Stored distances end at the reach; a softer edge would fill the shell.
   frame.softness = std::min(surface.shell_softness, 1.8f * frame.field->volume().reach);
   frame.scale = 1 / instance.tile_width[slot(hit)];
   const Vec3 mean = (1 - hit.u - hit.v) * normal[0] + hit.u * normal[1] + hit.v * normal[2];
@@ -190,7 +190,7 @@ ShellFrame Scene::shell(const Hit& hit, const Vec3& direction) const {
   const std::span<const Vec2, 3> uv = mesh.corner_uvs(hit.triangle);
   const Vec2 d1 = uv[1] - uv[0], d2 = uv[2] - uv[0];
   frame.uv = uv[0] + hit.u * d1 + hit.v * d2;
-  // What changes along the edges, and the direction in terms of them.
+  // Expresses the tangential direction in terms of the edges, along which normal and texture coordinates are known.
   const Vec3d e1 = edge(1), e2 = edge(2), across = glm::cross(e1, e2);
   const Vec3 along = direction - glm::dot(direction, frame.normal) * frame.normal;
   const float length = glm::length(along);

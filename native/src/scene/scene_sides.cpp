@@ -7,9 +7,9 @@
 namespace velour {
 namespace {
 
-/// Two sides of a folded border lie behind each other; so many of them are told apart.
+/// Maximum number of sides that a ray passes before next_side() gives up; the sides of a folded border overlap.
 constexpr int kMostAgainst = 64;
-constexpr float kStep = 0x1p-20f;  // of the distance: the ray tracer's own error
+constexpr float kStep = 0x1p-20f;  // relative to the distance: the ray tracer's own error
 
 uint32_t add_sides(const Mesh& mesh, EmbreeScene& to) {
   std::vector<Vec3> positions;
@@ -32,7 +32,7 @@ uint32_t add_sides(const Mesh& mesh, EmbreeScene& to) {
 
 void Scene::build_sides(int threads) {
   sides_.reset();
-  std::unordered_map<uint32_t, uint32_t> numbers;  // by those in rays_
+  std::unordered_map<uint32_t, uint32_t> numbers;  // in sides_, by the number in rays_
   for (Instance& instance : instances_) {
     instance.sides = kNoHit;
     const Mesh& mesh = traced_mesh(instance);

@@ -1,4 +1,4 @@
-// The surface that rays meet of a mesh whose materials have shells (VOTF).
+// The surface that rays hit in place of a mesh whose materials have shells (VOTF).
 #pragma once
 
 #include <limits>
@@ -10,23 +10,23 @@
 
 namespace velour {
 
-/// Where a shell folds over itself: its height or depth exceeds the radius with which the surface bends there.
+/// Folds of a shell over itself, where its height or depth exceeds the surface's radius of curvature.
 struct ShellFolds {
   uint64_t triangles = 0, all = 0;
-  float least_radius = std::numeric_limits<float>::infinity();  // metres, of those triangles
+  float least_radius = std::numeric_limits<float>::infinity();  // of curvature on those triangles, meters
 
-  /// A triangle in the world, unit normals, and from where to where the shell reaches over it.
+  /// Adds a triangle: corners in world space, unit normals, and the extent of the shell over it.
   void add(const Vec3 (&corner)[3], const Vec3 (&normal)[3], const ShellHeights& shell);
 };
 
 struct ShellTop {
   Mesh mesh;
-  std::vector<ShellFolds> folds;  // of each slot
-  uint32_t number = kNoHit;       // in the hierarchy; kNoHit: it is not there
+  std::vector<ShellFolds> folds;  // per slot
+  uint32_t number = kNoHit;       // in the hierarchy; kNoHit: not there
   bool is_shown = true;
 };
 
-/// By all that they depend on, of which the mesh's number is the first. Their places in memory stay.
+/// Keyed by everything that a top depends on, the mesh's number first. Addresses of tops stay valid.
 using ShellTops = std::map<std::vector<uint32_t>, ShellTop>;
 
 }  // namespace velour

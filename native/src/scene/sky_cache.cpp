@@ -12,7 +12,7 @@ namespace velour {
 namespace {
 
 constexpr char kKind[] = "sky";
-constexpr char kVersion[] = "1";  // of the fit too: another method must not read the mixtures of this one
+constexpr char kVersion[] = "1";  // also of the fit: another fitting method must not read this one's mixtures
 constexpr uint64_t kMostBytes = uint64_t{1} << 24;
 constexpr size_t kMostLobes = 4096;
 
@@ -75,7 +75,7 @@ std::string sky_cache_path(const std::string& folder, const EquirectangularImage
 std::optional<SkyMixture> read_sky(const std::string& path) {
   try {
     return mixture_of(decode_tensors(read_file(path, kMostBytes), path, {{"lobes.", "fit."}, kMostBytes}));
-  } catch (const Error&) {  // missing, truncated, another format: all the same to a cache
+  } catch (const Error&) {  // missing, truncated, or another format
     return std::nullopt;
   }
 }

@@ -1,4 +1,4 @@
-// Fits of skies kept between renders, by the content of the image. Internal to scene/.
+// Disk cache of environment fits, keyed by the content of the image. Internal to scene/.
 #pragma once
 
 #include <optional>
@@ -8,14 +8,14 @@
 
 namespace velour {
 
-/// "FOLDER/sky-<SHA-256 of size, texels and options>.exr": texels as radiance, so another strength is another file and
-/// another rotation the same.
+/// "FOLDER/sky-<SHA-256 of size, texels and options>.exr". The texels do not include the placement, so one file serves
+/// every strength and rotation.
 std::string sky_cache_path(const std::string& folder, const EquirectangularImage& image, const SkyFitOptions& options);
 
-/// Nothing when there is no such file or when it is not, in every entry, a mixture: it is then fitted anew.
+/// Empty if the file is missing or any of its entries is invalid; the caller then fits again.
 std::optional<SkyMixture> read_sky(const std::string& path);
 
-/// Atomic. False when it could not be written.
+/// Writes atomically. Returns false if the file cannot be written.
 bool write_sky(const std::string& path, const SkyMixture& sky);
 
 }  // namespace velour

@@ -16,16 +16,16 @@ namespace {
 
 constexpr int kStepsARound = 4, kLastSteps = 12;
 constexpr size_t kTestDirections = 1500;
-constexpr size_t kBlocksAPiece = 16;  // cells of one task: fixed, so that sums do not depend on the threads
+constexpr size_t kBlocksAPiece = 16;  // blocks per task; fixed, so that sums do not depend on the number of threads
 
 struct Moved {
   Vec3d center;
   double bandwidth;
 };
 
-/// Centre and bandwidth of the moments (divided by their weight) taken about `from`.
+/// Center and bandwidth of a lobe from moments about `from`, divided by their weight.
 Moved moved(const Vec3d& from, const Vec3d& d, double q) {
-  // |from + d|^2 with the shortening by spread: 1 - 2 q + |d|^2.
+  // |from + d|^2, shortened by the spread, is 1 - 2 q + |d|^2.
   const double lost = std::clamp(2 * q - glm::dot(d, d), 0.0, 1.0);
   const Vec3d mean = from + d;
   const double length = glm::length(mean);
@@ -69,7 +69,7 @@ class SkyFit {
 
   Vec3d center(size_t k) const { return glm::normalize(Vec3d(lobes_.x[k], lobes_.y[k], lobes_.z[k])); }
 
-  /// Responsibilities of all cells, summed in the order of the cells.
+  /// Expectation step: sums the moments over all cells, in the order of the cells.
   void expect() {
     progress_.check();
     const size_t n = lobes_.size(), blocks = (points_.size() + kSkyBlock - 1) / kSkyBlock;
@@ -86,7 +86,7 @@ class SkyFit {
     for (size_t i = 0; i < pieces_.size(); ++i) moments_[i % n] += pieces_[i];
   }
 
-  /// One step of expectation maximisation. Lobes that nothing is left to are dropped.
+  /// One step of expectation maximization. Drops lobes that have lost their energy.
   void step() {
     expect();
     const SkyLobes old = std::move(lobes_);
@@ -100,7 +100,7 @@ class SkyFit {
     }
   }
 
-  /// The worst lobes each give birth to one at the image's excess within them. False when there is no excess.
+  /// Each of the worst lobes spawns a lobe at the image's excess within it. Returns false if there is no excess.
   bool give_birth() {
     expect();
     std::vector<size_t> order(lobes_.size());
@@ -149,7 +149,7 @@ class SkyFit {
   }
 
   SkyMixture result() {
-    expect();  // colours by the responsibilities of the final lobes
+    expect();  // colors from the responsibilities of the final lobes
     SkyMixture sky;
     for (size_t k = 0; k < lobes_.size(); ++k) {
       const SkyMoments& m = moments_[k];

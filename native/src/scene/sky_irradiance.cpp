@@ -22,7 +22,7 @@ std::array<float, 9> harmonics(const Vec3& w) {
           0.546274f * (w.x * w.x - w.y * w.y)};
 }
 
-/// Coefficients of the clipped cosine, one for each degree of the harmonics.
+/// Coefficients of the clamped cosine for the nine harmonics, which depend on their degree only.
 constexpr float kCosine[9] = {kPi, 2 * kPi / 3, 2 * kPi / 3, 2 * kPi / 3, kPi / 4, kPi / 4, kPi / 4, kPi / 4, kPi / 4};
 
 }  // namespace

@@ -1,4 +1,4 @@
-// How much light an environment brings to a plane, whatever stands before it.
+// Unoccluded irradiance of a plane in an environment.
 #pragma once
 
 #include <array>
@@ -7,8 +7,9 @@
 
 namespace velour {
 
-/// Irradiance (luminance) by the direction of the plane's normal, as nine spherical harmonics [RH01], from draws of the
-/// environment: within a few per cent of it, more behind a sun, and never below a twentieth of its mean.
+/// Irradiance (luminance) as a function of the plane's normal, as nine spherical harmonics [RH01], from samples of the
+/// environment. Accurate to a few per cent, worse on planes that face away from a sun; at least a twentieth of the
+/// mean.
 class SkyIrradiance {
  public:
   SkyIrradiance() = default;  // black

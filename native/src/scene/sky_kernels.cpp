@@ -17,7 +17,7 @@ namespace HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
-/// exp(-bandwidth |w - c|^2 / 2) with the difference and the half square left for the caller.
+/// w - c and half its square, with the kernel exp(-bandwidth |w - c|^2 / 2).
 template <class D, class V = hn::Vec<D>>
 struct Offset {
   HWY_INLINE Offset(D d, V x, V y, V z, float cx, float cy, float cz)
@@ -30,11 +30,11 @@ struct Offset {
   V dx, dy, dz, half_sq;
 };
 
-/// A block's cells, padded with cells without energy.
+/// Cells of a block, padded with cells without energy.
 struct alignas(64) Block {
   float x[kSkyBlock], y[kSkyBlock], z[kSkyBlock], spread[kSkyBlock], energy[kSkyBlock], area[kSkyBlock];
   float r[kSkyBlock], g[kSkyBlock], b[kSkyBlock];
-  float inverse[kSkyBlock], chi[kSkyBlock], excess[kSkyBlock];  // 1 / density, and what exceeds it
+  float inverse[kSkyBlock], chi[kSkyBlock], excess[kSkyBlock];  // 1 / density; see SkyMoments
   int count;
 };
 
@@ -71,7 +71,7 @@ void densities(D d, const SkyLobes& lobes, Block& block, float* scratch) {
     const auto excess = hn::Max(hn::Sub(hn::Load(d, block.energy + i), expected), hn::Zero(d));
     hn::Store(hn::Div(hn::Set(d, 1.0f), total), d, block.inverse + i);
     hn::Store(excess, d, block.excess + i);
-    // One texel that nothing expects yet must not drown the sums.
+    // A single texel that no lobe covers yet must not dominate the sums.
     const auto ratio = hn::Min(hn::Div(excess, expected), hn::Set(d, 1e12f));
     hn::Store(hn::Mul(excess, ratio), d, block.chi + i);
   }

@@ -15,7 +15,7 @@ SkyMixture image_mixture(const EquirectangularImage& image, const SkyFitOptions&
   const std::string path = sky_cache_path(folder, image, options);
   if (auto kept = read_sky(path)) return *std::move(kept);
   const SkyMixture sky = fit_sky(image, options, progress);
-  write_sky(path, sky);  // a folder that refuses it costs the next render its fit, nothing else
+  write_sky(path, sky);  // on failure, the next render only has to fit again
   return sky;
 }
 

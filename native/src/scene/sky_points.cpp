@@ -22,7 +22,7 @@ class Gathering {
   explicit Gathering(const EquirectangularImage& image)
       : image_(image), columns_(static_cast<size_t>(image.width()) + 1) {
     sum_energy();
-    // Azimuth of a column's centre: Blender's u = 1/2 - phi / (2 pi).
+    // Azimuth of a column's center: Blender's u = 1/2 - phi / (2 pi).
     for (int x = 0; x < image.width(); ++x) {
       const double phi = 2 * kPiD * (0.5 - (x + 0.5) / image.width());
       cosine_.push_back(std::cos(phi));
@@ -85,7 +85,7 @@ class Gathering {
       const EnvironmentTexel* row = image_.row(y) + 1;
       const double share = solid_angle(y), t = theta(y + 0.5);
       const double z = std::cos(t), sine = std::sin(t);
-      // A bilinear footprint has twice the variance of its texel, whose mean loses area / (4 pi) of its length.
+      // A texel's mean direction is shorter by area / (4 pi); a bilinear footprint has twice the texel's variance.
       const double shortened = 1 - share / (2 * kPiD);
       for (int x = cell.x0; x < cell.x1; ++x) {
         const auto at = static_cast<size_t>(x);

@@ -1,5 +1,5 @@
-// A few directions side by side: the unit of work of every evaluation kernel. SIMD lanes run over directions, so that
-// one lobe is broadcast and no horizontal sum is needed.
+// Batches of directions, the unit of work of every evaluation kernel. SIMD lanes run over directions, so a lobe is
+// broadcast and no horizontal sum is needed.
 #pragma once
 
 #include <span>
@@ -21,7 +21,7 @@ struct alignas(64) DirectionBatch {
     z[i] = d.z;
   }
   void push(const Vec3& d) { set(count++, d); }
-  /// Holds draw(u) for each of `numbers`, not padded.
+  /// Sets the batch to draw(u) for each of `numbers`, without padding.
   template <typename Draw>
   void fill(std::span<const Vec2> numbers, Draw&& draw) {
     count = 0;
@@ -33,7 +33,7 @@ struct alignas(64) DirectionBatch {
   }
 };
 
-/// One RGB value a direction of a batch.
+/// One RGB value per direction of a batch.
 struct alignas(64) RgbBatch {
   float r[DirectionBatch::kCapacity], g[DirectionBatch::kCapacity], b[DirectionBatch::kCapacity];
 
@@ -45,7 +45,7 @@ struct alignas(64) RgbBatch {
   }
 };
 
-/// One scalar a direction of a batch.
+/// One scalar per direction of a batch.
 struct alignas(64) ScalarBatch {
   float v[DirectionBatch::kCapacity];
 };

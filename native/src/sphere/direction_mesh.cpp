@@ -9,7 +9,7 @@ namespace {
 
 using Vec2d = glm::dvec2;
 
-/// From the point opposite the normal: the hemisphere becomes the unit disk.
+/// Projects the hemisphere onto the unit disk, from the pole -z. Directions below the horizon are moved to it.
 Vec2d stereographic(const Vec3& direction) {
   const Vec3d d(direction);
   if (d.z < 0) {
@@ -24,8 +24,8 @@ double area(const Vec2d& a, const Vec2d& b, const Vec2d& c) {
   return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
 }
 
-/// Whether `p` lies in the circle through the corners of a counter-clockwise triangle. Ties - rings have four
-/// directions on a circle - are outside, by a margin well above rounding.
+/// Whether `p` lies in the circle through the corners of a counter-clockwise triangle. Ties (rings put four directions
+/// on one circle) count as outside, with a margin well above rounding errors.
 bool in_circle(const Vec2d& a, const Vec2d& b, const Vec2d& c, const Vec2d& p) {
   const Vec2d u = a - p, v = b - p, w = c - p;
   const double uu = glm::dot(u, u), vv = glm::dot(v, v), ww = glm::dot(w, w);
@@ -42,13 +42,13 @@ DirectionMesh::DirectionMesh(std::span<const Vec3> directions) {
   fill_grid();
 }
 
-/// Bowyer and Watson: points come one by one; the triangles whose circle holds the new point make room for a fan.
+/// Bowyer-Watson: inserts one point at a time and replaces the triangles whose circumcircle contains it by a fan.
 void DirectionMesh::triangulate() {
   const auto n = static_cast<uint32_t>(points_.size());
-  points_.insert(points_.end(), {{-1e4, -1e4}, {1e4, -1e4}, {0, 1e4}});  // a triangle around everything
+  points_.insert(points_.end(), {{-1e4, -1e4}, {1e4, -1e4}, {0, 1e4}});  // a triangle that encloses all points
   triangles_ = {{n, n + 1, n + 2}};
   for (uint32_t p = 0; p < n; ++p) {
-    std::map<std::array<uint32_t, 2>, bool> edges;  // of the hole; those met both ways are inside
+    std::map<std::array<uint32_t, 2>, bool> edges;  // of removed triangles; inner ones occur both ways
     std::erase_if(triangles_, [&](const Triangle& t) {
       if (!in_circle(points_[t[0]], points_[t[1]], points_[t[2]], points_[p])) return false;
       for (size_t k = 0; k < 3; ++k) edges[{t[k], t[(k + 1) % 3]}] = true;
@@ -62,7 +62,7 @@ void DirectionMesh::triangulate() {
   }
   std::erase_if(triangles_, [&](const Triangle& t) { return std::max({t[0], t[1], t[2]}) >= n; });
   points_.resize(n);
-  // The great triangle's corners are not at infinity: slivers along the outline may be missing, which on_outline hides.
+  // The enclosing triangle is finite, so slivers along the outline may be missing; on_outline covers these gaps.
   std::sort(triangles_.begin(), triangles_.end());
 }
 
@@ -75,7 +75,7 @@ void DirectionMesh::find_outline() {
     if (times == 1) outline_.push_back(edge);
   }
   if (!triangles_.empty()) return;
-  // Points on a line, or fewer than three: the line, in its order.
+  // Collinear points, or fewer than three: the outline is the sorted line through them.
   std::vector<uint32_t> order(points_.size());
   std::iota(order.begin(), order.end(), 0u);
   std::sort(order.begin(), order.end(), [&](uint32_t a, uint32_t b) {
@@ -101,7 +101,7 @@ void DirectionMesh::fill_grid() {
   for (size_t i = 0; i < cells.size(); ++i) {
     const Vec2d middle = (Vec2d(i % kGrid, i / kGrid) + 0.5) * (2.0 / kGrid) - 1.0;
     std::array<double, 3> weight;
-    // Most of a cell is in the triangle of its middle.
+    // Test the triangle that contains the center of the cell first: it usually covers most of the cell.
     std::stable_partition(cells[i].begin(), cells[i].end(),
                           [&](uint32_t t) { return inside(corners_[t], middle, weight); });
     first_.push_back(static_cast<uint32_t>(meeting_.size()));

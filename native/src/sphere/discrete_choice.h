@@ -1,13 +1,13 @@
-// Choosing one of several by a random number, and keeping what is left of the number.
+// Discrete sampling with a random number that is remapped for reuse.
 #pragma once
 
 #include <algorithm>
 
 namespace velour {
 
-/// Index i with cdf[i - 1] <= u < cdf[i] among `n` >= 1 running sums, the last of which is 1. `u` in [0, 1) becomes its
-/// place between the two, again in [0, 1). In double: each choice stretches the steps of a 24-bit number by the inverse
-/// of the probability. Bisection without a branch to predict.
+/// Returns the index i with cdf[i - 1] <= u < cdf[i] of `n` >= 1 running sums, the last of which is 1. Remaps `u` in
+/// [0, 1) to its relative position between the two, again in [0, 1). `u` is a double because each choice widens the
+/// steps of a 24-bit number by the inverse of the probability. Branchless bisection.
 inline int choose_index(const float* cdf, int n, double& u) {
   int first = 0;
   while (n > 1) {
@@ -20,7 +20,7 @@ inline int choose_index(const float* cdf, int n, double& u) {
   return first;
 }
 
-/// The middle of a 24-bit number's step. What choices leave of it is never 0, which for a lobe would be the antipode.
+/// Moves a 24-bit number to the middle of its step, so choices never remap it to 0, which is the antipode of a lobe.
 inline double middle_of_step(float u) { return u + 0x1p-25; }
 
 }  // namespace velour

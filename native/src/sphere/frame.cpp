@@ -4,11 +4,11 @@ namespace velour {
 
 Mat3 rotation_between(const Vec3& from_float, const Vec3& to_float) {
   // Rodrigues' formula with axis v = from x to (length sin) and c = from . to (cos): R = c I + [v] + v v^T / (1 + c).
-  // In double, because 1 + c cancels for nearly opposed directions.
+  // Computed in double because 1 + c cancels for nearly opposite directions.
   const Vec3d from = glm::normalize(Vec3d(from_float)), to = glm::normalize(Vec3d(to_float));
   const double c = glm::dot(from, to);
   if (c < -1.0 + 1e-10) {
-    const Vec3d axis = glm::normalize(Vec3d(Frame::about(from_float).x));  // half a turn: R = 2 a a^T - I
+    const Vec3d axis = glm::normalize(Vec3d(Frame::about(from_float).x));  // rotation by pi: R = 2 a a^T - I
     return Mat3(2.0 * glm::outerProduct(axis, axis) - glm::dmat3(1.0));
   }
   const Vec3d v = glm::cross(from, to);

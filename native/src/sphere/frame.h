@@ -9,7 +9,7 @@ namespace velour {
 struct Frame {
   Vec3 x{1, 0, 0}, y{0, 1, 0}, z{0, 0, 1};
 
-  /// Frame about unit `axis`; continuous except across axis.z = 0 sign change (Duff et al. 2017, JCGT 6(1), Listing 3).
+  /// Frame about unit `axis`; continuous except where axis.z changes sign (Duff et al. 2017, JCGT 6(1), Listing 3).
   static Frame about(const Vec3& axis) {
     const float sign = std::copysign(1.0f, axis.z);
     const float a = -1.0f / (sign + axis.z);
@@ -22,7 +22,7 @@ struct Frame {
   Vec3 to_local(const Vec3& v) const { return {glm::dot(v, x), glm::dot(v, y), glm::dot(v, z)}; }
 };
 
-/// Smallest rotation that takes unit `from` to unit `to`. Opposed directions turn about an axis normal to `from`.
+/// Smallest rotation that takes unit `from` to unit `to`. Opposite directions rotate about an axis normal to `from`.
 Mat3 rotation_between(const Vec3& from, const Vec3& to);
 
 }  // namespace velour

@@ -1,4 +1,4 @@
-// Directions on both sides of a surface, made of those of one hemisphere.
+// Sampling of both sides of a surface with samplers of one hemisphere.
 #pragma once
 
 #include <algorithm>
@@ -7,12 +7,12 @@
 
 namespace velour {
 
-/// In the plane z = 0.
+/// Reflects `w` in the plane z = 0.
 inline Vec3 mirrored(const Vec3& w) { return {w.x, w.y, -w.z}; }
 
-/// Draws a direction for each of `u`: with probability `share` a mirrored one. `draw`(whether they will be mirrored,
-/// numbers, batch to fill) is called at most once for each; its numbers are in [0, 1)^2 again. (0, 0, -1), which
-/// mixtures give where a half vector faces away, would be a direction here; it becomes (0, 0, 0).
+/// Samples a direction for each of `u`; with probability `share` it is mirrored. `draw`(whether they will be mirrored,
+/// numbers, batch to fill) is called at most once per side, with numbers remapped to [0, 1)^2. Mixtures return
+/// (0, 0, -1) where a half vector faces away; here that would be a valid direction, so it becomes (0, 0, 0).
 template <typename Draw>
 void sample_sides(std::span<const Vec2> u, float share, DirectionBatch& wl, const Draw& draw) {
   constexpr float kBelowOne = 0x1.fffffep-1f;

@@ -1,5 +1,5 @@
-// The few operations of formulas that are written once, for one number and for several side by side (srbf/lanes-inl.h):
-// here of one.
+// Scalar versions of the operations used by formulas that are written once for scalars and SIMD lanes
+// (srbf/lanes-inl.h).
 #pragma once
 
 #include <algorithm>
@@ -10,7 +10,7 @@ namespace velour {
 inline float square_root(float x) { return std::sqrt(x); }
 inline float larger(float a, float b) { return std::max(a, b); }
 inline float smaller(float a, float b) { return std::min(a, b); }
-/// Both are computed.
+/// Both `yes` and `no` are evaluated.
 inline float select(bool condition, float yes, float no) { return condition ? yes : no; }
 
 }  // namespace velour

@@ -1,4 +1,4 @@
-// The sphere as a square of cells, for tables over directions.
+// Octahedral map of the sphere to a square grid of cells, for tables over directions.
 #pragma once
 
 #include <algorithm>
@@ -7,8 +7,7 @@
 
 namespace velour {
 
-/// Octahedral map [ED08]: unit direction -> [0, 1]^2. Cells of equal side differ in solid angle by less than 3.4
-/// times.
+/// Octahedral map [ED08]: unit direction -> [0, 1]^2. Solid angles of cells of equal side differ by a factor below 3.4.
 inline Vec2 octahedral_from(const Vec3& w) {
   const float scale = 1.0f / (std::abs(w.x) + std::abs(w.y) + std::abs(w.z));
   Vec2 p(w.x * scale, w.y * scale);
@@ -26,7 +25,7 @@ inline Vec3 octahedral_to(const Vec2& square) {
   return glm::normalize(w);
 }
 
-/// Cell 0 .. side^2 - 1 that holds unit `w`.
+/// Index in [0, side^2) of the cell that contains unit `w`.
 inline int octahedral_cell(const Vec3& w, int side) {
   const Vec2 p = octahedral_from(w) * static_cast<float>(side);
   const int x = std::clamp(static_cast<int>(p.x), 0, side - 1), y = std::clamp(static_cast<int>(p.y), 0, side - 1);

@@ -9,7 +9,7 @@ namespace velour {
 Quadrature gauss_legendre(int n, double a, double b) {
   Quadrature q{std::vector<double>(static_cast<size_t>(n)), std::vector<double>(static_cast<size_t>(n))};
   for (int i = 0; i < n; ++i) {
-    double x = -std::cos(kPiD * (i + 0.75) / (n + 0.5));  // Tricomi's start; Newton then converges in a few steps
+    double x = -std::cos(kPiD * (i + 0.75) / (n + 0.5));  // Tricomi's initial guess; Newton converges in a few steps
     double derivative = 1.0;
     for (int step = 0; step < 100; ++step) {
       double p0 = 1.0, p1 = x;

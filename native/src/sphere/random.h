@@ -8,7 +8,7 @@
 
 namespace velour {
 
-/// Finaliser of SplitMix64 (Steele, Lea, Flood 2014): a bijection of 64 bits with full avalanche.
+/// Finalizer of SplitMix64 (Steele, Lea, Flood 2014): a bijection of 64 bits with full avalanche.
 inline uint64_t mix64(uint64_t x) {
   x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9ULL;
   x = (x ^ (x >> 27)) * 0x94d049bb133111ebULL;
@@ -18,8 +18,8 @@ inline uint64_t mix64(uint64_t x) {
 /// Upper 24 bits of `bits` as a float in [0, 1); the largest value is 1 - 2^-24.
 inline float unit_float(uint64_t bits) { return static_cast<float>(bits >> 40) * 0x1p-24f; }
 
-/// Numbers of one sample of one stream (a pixel, a texel, a facet ray). Cheap to make; holds no generator state but a
-/// dimension counter.
+/// Random numbers of one sample of one stream (a pixel, a texel, a facet ray). Cheap to construct; its only generator
+/// state is a dimension counter.
 class RandomStream {
  public:
   RandomStream(uint64_t seed, uint64_t stream, uint64_t sample)

@@ -11,15 +11,15 @@ uint32_t reversed(uint32_t x) {
   return (x >> 16) | (x << 16);
 }
 
-/// Each output bit depends on the input bits at and below it: products with even numbers carry upwards only [LK11].
+/// Each output bit depends on the input bits at and below it: multiplying by even numbers only carries upward [LK11].
 uint32_t carry_upwards(uint32_t x, uint32_t seed) {
   x += seed;
   for (const uint32_t factor : kOwenFactors) x ^= x * factor;
   return x;
 }
 
-/// Output bit i is the sum modulo 2 of the input bits j that contain i as a set of binary digits, which is where
-/// C(j, i) is odd (Lucas): five butterflies instead of 32 direction numbers.
+/// Output bit i is the sum modulo 2 of the input bits j with (i & j) == i, which is where C(j, i) is odd (Lucas). Five
+/// butterflies replace 32 direction numbers.
 uint32_t pascal(uint32_t x) {
   x ^= (x & 0xaaaaaaaau) >> 1;
   x ^= (x & 0xccccccccu) >> 2;
@@ -37,7 +37,7 @@ void sobol_points(uint64_t key, uint32_t first, std::span<Vec2> points) {
   const auto unit = [](uint32_t bits) { return static_cast<float>(bits >> 8) * 0x1p-24f; };
   for (uint32_t i = 0; i < points.size(); ++i) {
     const uint32_t index = owen_scramble(first + i, seeds.order);
-    // owen_scramble(reversed(index)), less two reversals that undo each other; the second alike.
+    // owen_scramble(reversed(index)) without two reversals that cancel; likewise for y.
     points[i] = {unit(reversed(carry_upwards(index, seeds.x))), unit(reversed(carry_upwards(pascal(index), seeds.y)))};
   }
 }

@@ -1,4 +1,4 @@
-// Small vectors, and the names that the whole library uses for them.
+// Small vector types of the whole library.
 //
 // Directions are unit vectors that point away from the surface. Unless a name ends in `_world` they live in the local
 // shading frame: +z is the normal, +x the tangent, +y = cross(+z, +x). `wl` points to the light, `wv` to the viewer.
@@ -12,7 +12,7 @@ using Vec2 = glm::vec2;
 using Vec3 = glm::vec3;
 using Vec3d = glm::dvec3;
 using Mat2 = glm::mat2;  // column-major, as GLM
-using Mat3 = glm::mat3;  // the same
+using Mat3 = glm::mat3;  // column-major
 using Rgb = glm::vec3;   // linear Rec. 709 unless stated
 
 inline constexpr float kPi = 3.14159265358979323846f;

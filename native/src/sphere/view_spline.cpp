@@ -26,13 +26,13 @@ std::vector<double> ViewSpline::sites() const {
   return theta;
 }
 
-/// Three neighbours at most touch a site, so the equations are tridiagonal; their diagonal dominates.
+/// At most three adjacent nodes affect a site, so the system is tridiagonal; it is also diagonally dominant.
 void ViewSpline::interpolate(std::span<double> values, bool odd) const {
   const auto theta = sites();
-  std::vector<double> after(theta.size());  // the next unknown's factor, once those before are eliminated
+  std::vector<double> after(theta.size());  // coefficient of the next unknown after forward elimination
   for (size_t i = 0; i < theta.size(); ++i) {
     const auto taps = at(PolarView<double>{theta[i], 1, 0});
-    double row[3] = {0, 0, 0};  // of the unknowns i - 1, i, i + 1
+    double row[3] = {0, 0, 0};  // coefficients of the unknowns i - 1, i, i + 1
     for (int k = 0; k < taps.count; ++k) {
       const int column = taps.node[k] - static_cast<int>(i) + 1;
       if (column >= 0 && column < 3) row[column] += odd ? taps.odd_weight[k] : taps.weight[k];
@@ -56,7 +56,7 @@ std::vector<double> cut_corners(std::span<const double> control) {
   return finer;
 }
 
-/// Of rows of `width`, each with its corners cut; transposed.
+/// Applies cut_corners to each row of `width` values; the result is transposed.
 std::vector<double> cut_rows(std::span<const double> control, size_t width) {
   const size_t rows = control.size() / width;
   std::vector<double> finer;
@@ -79,7 +79,7 @@ std::vector<double> ViewSpline::halved(std::span<const double> control, bool odd
   std::vector<double> whole{odd ? -control[0] : control[0]};
   whole.insert(whole.end(), control.begin(), control.end());
   auto finer = cut_corners(whole);
-  finer.erase(finer.begin());  // the mirror image of the next
+  finer.erase(finer.begin());  // mirror image of the next value
   return finer;
 }
 

@@ -1,9 +1,9 @@
-// Quadratic B-splines over view directions: how parameters vary smoothly with the view.
+// Quadratic B-splines over view directions, for parameters that vary smoothly with the view.
 //
-// The view is placed in the unit disk at radius r = theta_v / (pi / 2) and its own azimuth. Isotropic: one radius of
-// that disk, mirrored at its centre; otherwise a square grid over the disk, which has no seam and no pole. A spline of
-// a range of views covers the part of the radius, or of the disk about its centre, that the range takes; views outside
-// have the value of the range's nearest.
+// A view maps to the unit disk, at radius r = theta_v / (pi / 2) and its own azimuth. Isotropic splines cover one
+// radius of that disk, mirrored at the center; the others a square grid over the disk, which has no seam and no pole.
+// A spline of a view range covers only that part of the radius, or of the disk about its center; views outside the
+// range have the value of the nearest view inside.
 #pragma once
 
 #include <algorithm>
@@ -15,7 +15,7 @@
 
 namespace velour {
 
-/// A view by its angles: the polar one, radians up to pi / 2, and the azimuth, 1 and 0 at the normal.
+/// A view by its polar angle (radians, up to pi / 2) and its azimuth, whose cosine and sine are 1 and 0 at the normal.
 template <class T>
 struct PolarView {
   T theta, cos_phi, sin_phi;
@@ -26,15 +26,15 @@ inline Vec3d direction_of(const PolarView<double>& view) {
   return {sine * view.cos_phi, sine * view.sin_phi, std::cos(view.theta)};
 }
 
-/// The nodes that a view touches. Sums over them are the spline's value there, once differentiable.
+/// The nodes that affect a view. Their weighted sum is the value of the spline, which is once differentiable.
 template <class T>
 struct ViewTapsOf {
   static constexpr int kMost = 9;
   int count = 0;
   int node[kMost];
   T weight[kMost];
-  /// The weights for components that change sign across the normal (what points along the view's azimuth).
-  /// Isotropic splines only; elsewhere equal to `weight`.
+  /// Weights for components that change sign across the normal (those along the azimuth of the view).
+  /// Isotropic splines only; equal to `weight` in others.
   T odd_weight[kMost];
 
   void add(int to, T even, T odd) {
@@ -58,28 +58,28 @@ class ViewSpline {
 
   bool isotropic() const { return isotropic_; }
   int cells() const { return cells_; }
-  /// Along the radius, or along a side of the square.
+  /// Number of nodes along the radius or along a side of the square.
   int side() const { return cells_ + (mirrored_ ? 1 : 2); }
   int node_count() const { return isotropic_ ? side() : side() * side(); }
-  /// With each interval cut into `times`: what this spline can be, that one can be.
+  /// Splits each interval into `times`; the result can represent every spline that this one can.
   ViewSpline refined(int times) const {
     ViewSpline finer = *this;
     finer.cells_ *= times;
     return finer;
   }
-  /// The control values that refined(2) has for what `control` are here; `odd` for components that change sign at the
+  /// Converts control values of this spline to those of refined(2); `odd` for components that change sign at the
   /// normal.
   std::vector<double> halved(std::span<const double> control, bool odd) const;
-  /// The view that is mostly a node's own: in the middle of what it reaches, or the nearest to it that there is.
+  /// The view on which a node has most influence: the center of its support, or the nearest view to it.
   PolarView<double> view_of(int node) const;
-  /// Of isotropic splines, for each node a polar angle that is mostly its own: the middles of the intervals, the end,
-  /// and the beginning unless it is mirrored there. Values at these determine the spline.
+  /// Isotropic splines only. For each node a polar angle on which it has most influence: the middles of the intervals,
+  /// the end, and the beginning unless it is mirrored there. Values at these angles determine the spline.
   std::vector<double> sites() const;
-  /// Makes of the values at sites() the control values, in place; `odd` for components that change sign at the normal.
+  /// Converts values at sites() to control values in place; `odd` for components that change sign at the normal.
   void interpolate(std::span<double> values, bool odd) const;
-  /// Of unit `wv`, on or above the horizon.
+  /// Taps of unit `wv`, on or above the horizon.
   ViewTaps at(const Vec3d& wv) const { return at(polar_view(wv)); }
-  /// The same in any precision: fits want double, renderers float.
+  /// Works in any precision: fits use double, renderers float.
   template <class T>
   ViewTapsOf<T> at(const PolarView<T>& view) const;
 
@@ -110,7 +110,7 @@ ViewTapsOf<T> ViewSpline::at(const PolarView<T>& view) const {
   if (isotropic_) {
     const CellWeights<T> c(r * size, cells_);
     const int first = c.cell - (mirrored_ ? 1 : 0);
-    // Where the radius begins at the normal, the node before the first is the first's own mirror image.
+    // If the radius begins at the normal, the node before the first is the mirror image of the first.
     if (first < 0) {
       taps.add(0, c.weight[0] + c.weight[1], c.weight[1] - c.weight[0]);
     } else {
@@ -131,8 +131,8 @@ ViewTapsOf<T> ViewSpline::at(const PolarView<T>& view) const {
   return taps;
 }
 
-/// 0 for a view along the normal, 1 from some degrees on: an isotropic material has no direction to stretch along
-/// there. 1 - exp(-(theta_v / 2.5 degrees)^2).
+/// Rises from 0 at the normal to 1 within a few degrees: 1 - exp(-(theta_v / 2.5 degrees)^2). At the normal an
+/// isotropic material has no direction to stretch along.
 double pole_fade(double theta_v);
 inline double pole_fade(const Vec3d& wv) { return pole_fade(polar_view(wv).theta); }
 

@@ -1,4 +1,4 @@
-// Arrays from the start of a cache line.
+// Arrays aligned to cache lines.
 #pragma once
 
 #include <algorithm>
@@ -8,7 +8,7 @@
 
 namespace velour {
 
-/// Uninitialised. Of a plain type.
+/// Uninitialized array of a trivial type.
 template <class T>
 class AlignedArray {
  public:

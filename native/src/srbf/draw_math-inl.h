@@ -1,4 +1,4 @@
-// How lobes are drawn, lane by lane. Included once for each instruction set, by sources that Highway compiles so.
+// SIMD sampling of lobes. Included once per instruction set by sources that use foreach_target.h.
 #if defined(VELOUR_SRBF_DRAW_MATH_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef VELOUR_SRBF_DRAW_MATH_INL_H_
 #undef VELOUR_SRBF_DRAW_MATH_INL_H_
@@ -21,17 +21,16 @@ struct Vector {
   V x, y, z;
 };
 
-/// d = 1 - cos of the zenith about a Gaussian's centre, kernel_sample in float: -log(u + rest e^-2l) / l. `rest` = 1 -
-/// u and both have all their digits; so have `tail` = e^-2l and `whole` = 1 - tail.
+/// d = 1 - cos of the zenith about the center of a Gaussian (kernel_sample in float): -log(u + rest e^-2l) / l. `u` and
+/// `rest` = 1 - u both have full precision; so do `tail` = e^-2l and `whole` = 1 - tail.
 template <class D, class V = hn::Vec<D>>
 HWY_INLINE V gaussian_zenith(D d, V bandwidth, V tail, V whole, V u, V rest) {
-  // The logarithm is long to wait for; the reciprocal is ready by then.
+  // The latency of the logarithm hides that of the division.
   const V width_sq = hn::Div(hn::Set(d, 1.0f), bandwidth);
   return hn::Mul(minus_log(d, hn::MulAdd(rest, tail, u), hn::Mul(rest, whole)), width_sq);
 }
 
-/// Sine and cosine of 2 pi a, a in [0, 1), absolute errors below 1.2e-7: from the nearest quarter turn, by Taylor
-/// series.
+/// Sine and cosine of 2 pi a, a in [0, 1), absolute errors below 1.2e-7: Taylor series about the nearest quarter turn.
 template <class D, class V = hn::Vec<D>>
 HWY_INLINE void sin_cos_of_turns(D d, V a, V& sine, V& cosine) {
   const hn::RebindToSigned<D> di;
@@ -55,7 +54,7 @@ HWY_INLINE void sin_cos_of_turns(D d, V a, V& sine, V& cosine) {
   cosine = hn::Xor(hn::IfThenElse(odd, s, c), sign(hn::Add(quarter, one)));
 }
 
-/// Of a zenith, by its sine and cosine, and an azimuth in turns; in Frame::about(axis).
+/// Direction in Frame::about(axis) of a zenith, given by `sine` and cosine `z`, and an azimuth in turns.
 template <class D, class V = hn::Vec<D>>
 HWY_INLINE Vector<V> about_axis(D d, const Vector<V>& axis, V sine, V z, V azimuth) {
   V sin_phi, cos_phi;

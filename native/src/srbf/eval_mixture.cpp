@@ -36,7 +36,7 @@ struct AbelPoissonLobe {
   }
 };
 
-/// The sums over the lobes, of one direction a lane.
+/// Sums over the lobes, one direction per lane.
 template <class V>
 struct Sums {
   V r, g, b, density;
@@ -47,7 +47,7 @@ HWY_INLINE Sums<hn::Vec<D>> no_sums(D d) {
   return {hn::Zero(d), hn::Zero(d), hn::Zero(d), hn::Zero(d)};
 }
 
-/// One lobe, the same in every lane.
+/// Loads one lobe into every lane.
 struct OneLobe {
   template <class D>
   HWY_INLINE hn::Vec<D> operator()(D d, const float* value) const {
@@ -55,7 +55,8 @@ struct OneLobe {
   }
 };
 
-/// Two lobes by turns: each direction has two lanes. Of the odd last lobe, beside zeros: a lobe of coefficient 0.
+/// Loads two lobes into alternating lanes; each direction has two lanes. An odd last lobe is paired with zeros, a lobe
+/// of coefficient 0.
 template <size_t kLobes>
 struct TwoLobes {
   template <class D>
@@ -80,7 +81,7 @@ HWY_INLINE void add_lobe(D d, const Load& load, const LobeMixture& m, int j, V w
   sum.density = hn::MulAdd(load(d, m.density + j), kernel, sum.density);
 }
 
-/// Adds the cosine's part and stores.
+/// Adds the cosine term and stores.
 template <bool kColors, class D, class V = hn::Vec<D>>
 HWY_INLINE void store(D d, const LobeMixture& m, V wz, const Sums<V>& sum, int at, RgbBatch* value, ScalarBatch& pdf) {
   const V cosine = hn::Max(wz, hn::Zero(d));
@@ -101,7 +102,7 @@ HWY_INLINE void eval_vector(D d, const LobeMixture& m, const DirectionBatch& w, 
   store<kColors>(d, m, wz, sum, at, value, pdf);
 }
 
-/// Eight directions or fewer, two lobes at a time in sixteen lanes.
+/// Evaluates up to eight directions, two lobes at a time in sixteen lanes.
 template <class Lobe, bool kColors, class D>
 HWY_INLINE void eval_pairs(D d, const LobeMixture& m, const DirectionBatch& w, int at, RgbBatch* value,
                            ScalarBatch& pdf) {

@@ -15,7 +15,7 @@ namespace HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
-/// A lobe in every lane, or one lobe a lane.
+/// Loads the same lobe into every lane, or one lobe per lane.
 struct SameLobe {
   template <class D>
   HWY_INLINE hn::Vec<D> operator()(D d, const float* value) const {
@@ -29,11 +29,11 @@ struct LobeALane {
   }
 };
 
-/// What the lobes need of a light direction, in their frame.
+/// The data of a light direction that lobes need, in their frame.
 template <class V>
 struct Light {
   Vector<V> wl, wv;
-  V half_gain;  // |wl + wv|^2 / 2 - 1: what the Jacobian of half lobes has beyond that of light lobes
+  V half_gain;  // |wl + wv|^2 / 2 - 1: factor of the Jacobian of half lobes, minus the 1 of light lobes
 };
 
 template <class V>
@@ -46,11 +46,11 @@ HWY_INLINE Sums<hn::Vec<D>> no_sums(D d) {
   return {hn::Zero(d), hn::Zero(d), hn::Zero(d), hn::Zero(d)};
 }
 
-/// The four sums over the lanes.
+/// Sums the lanes of all four members.
 template <class D>
 HWY_INLINE void sum_lanes(D d, const Sums<hn::Vec<D>>& sum, float* total) {
 #if HWY_TARGET != HWY_SCALAR && !HWY_HAVE_SCALABLE
-  // All four at once, half as many lanes at a time, then side by side.
+  // Reduces all four at once: halves the vectors down to four lanes, then interleaves them.
   if constexpr (hn::MaxLanes(D()) > 4) {
     const hn::Half<D> h;
     const auto fold = [&](auto v) { return hn::Add(hn::LowerHalf(h, v), hn::UpperHalf(h, v)); };
@@ -87,7 +87,7 @@ HWY_INLINE V gaussian(D d, const Vector<V>& psi, V x, V y, V z, V bandwidth) {
 template <bool kDensity, class Load, class D, class V = hn::Vec<D>>
 HWY_INLINE void add_lobe(D d, const Load& load, const WarpedMixture& m, int j, const Light<V>& light, Sums<V>& sum) {
   const V half = load(d, m.half + j);
-  // The sum first: wl and wv nearly opposed cancel exactly.
+  // Add before stretching: nearly opposite wl and wv then cancel exactly.
   const V yx = hn::MulAdd(half, light.wv.x, light.wl.x), yy = hn::MulAdd(half, light.wv.y, light.wl.y);
   const V qz = hn::MulAdd(half, light.wv.z, light.wl.z);
   const V s_xy = load(d, m.s_xy + j);
@@ -110,7 +110,7 @@ HWY_INLINE void add_lobe(D d, const Load& load, const WarpedMixture& m, int j, c
   sum.density = hn::MulAdd(hn::Mul(load(d, m.density + j), drawn), jacobian, sum.density);
 }
 
-/// `pdf` null: the value alone.
+/// Without kDensity, evaluates only the value and ignores `pdf`.
 template <bool kDensity, class D, class V = hn::Vec<D>>
 HWY_INLINE void eval_directions(D d, const WarpedMixture& m, const DirectionBatch& w, int at, RgbBatch& f,
                                 ScalarBatch* pdf) {

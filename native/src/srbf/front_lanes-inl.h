@@ -1,5 +1,4 @@
-// Some lanes of vectors, moved to the front. Included once for each instruction set, by sources that Highway compiles
-// so.
+// Moves selected lanes of vectors to the front. Included once per instruction set by sources that use foreach_target.h.
 #if defined(VELOUR_SRBF_FRONT_LANES_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef VELOUR_SRBF_FRONT_LANES_INL_H_
 #undef VELOUR_SRBF_FRONT_LANES_INL_H_
@@ -17,8 +16,9 @@ namespace HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
-/// The lanes of a mask, in order; what comes behind them is anything. In place of Compress: on x86 before AVX-512
-/// Highway makes that of a table that GCC copies to the stack for each vector, which takes longer than most kernels.
+/// Moves the lanes of a mask to the front, in order; the lanes behind them are unspecified. Replaces Compress: on x86
+/// before AVX-512 Highway implements it with a table that GCC copies to the stack for each vector, which takes longer
+/// than most kernels.
 template <class D>
 class FrontLanes {
  public:
@@ -33,7 +33,7 @@ class FrontLanes {
 
   size_t count() const { return count_; }
 
-  /// D2: numbers of the same size.
+  /// Lanes of D2 have the same size as those of D.
   template <class D2>
   HWY_INLINE hn::Vec<D2> of(D2 d, hn::Vec<D2> v) const {
 #if HWY_TARGET == HWY_AVX2 || HWY_TARGET == HWY_SSE4 || HWY_TARGET == HWY_SSSE3

@@ -1,4 +1,4 @@
-// Which lanes a mask of up to eight has.
+// Table of the lanes in masks of up to eight lanes.
 #pragma once
 
 #include <cstddef>
@@ -6,7 +6,7 @@
 
 namespace velour {
 
-/// Of each mask, the first lane first; then zeros.
+/// Lanes of each mask in ascending order, followed by zeros.
 struct FrontLaneTable {
   uint8_t lane[256][8];
 

@@ -7,7 +7,7 @@ namespace velour {
 
 namespace {
 
-/// D = 1 - 2 b t + b^2 with t = 1 - d: a sum of two terms that are never negative.
+/// D = 1 - 2 b t + b^2 with t = 1 - d, as a sum of two non-negative terms.
 double abel_poisson_denominator(double b, double d) { return (1 - b) * (1 - b) + 2 * b * d; }
 
 double abel_poisson_value(double b, double d) {
@@ -15,22 +15,22 @@ double abel_poisson_value(double b, double d) {
   return (1 - b) * (1 + b) / (denominator * std::sqrt(denominator));
 }
 
-/// d = -log(u + (1 - u) e^-2l) / l, method 6.2. Broad lobes need the form that keeps its digits where the logarithm is
-/// near 0; the others do not, and plain exp and log cost a third of expm1 and log1p.
+/// d = -log(u + (1 - u) e^-2l) / l, method 6.2. Broad lobes need expm1 and log1p for precision where the logarithm is
+/// near 0; the others use plain exp and log, which cost a third.
 double gaussian_sample(double l, double u) {
   if (l == 0) return 2 * (1 - u);
   if (l < 1) return -std::log1p((1 - u) * std::expm1(-2 * l)) / l;
   return -std::log(u + (1 - u) * std::exp(-2 * l)) / l;
 }
 
-/// Method 6.2 with S - (1 - b) written out, so that d keeps its digits near the centre.
+/// Method 6.2 with S - (1 - b) expanded, so that d stays precise near the center.
 double abel_poisson_sample(double b, double u) {
   const double split = (1 - b) + 2 * b * u;
   const double s = (1 - b) * (1 + b) / split;
   return (1 - b) * (1 - u) / split * (s + (1 - b));
 }
 
-/// |la a + lb b| as a sum of squares: exact for opposed as for equal centres.
+/// |la a + lb b| as a sum of squares, accurate for both opposite and equal centers.
 double product_bandwidth(const Vec3d& a, double la, const Vec3d& b, double lb) {
   const Vec3d sum = a + b;
   return std::sqrt((la - lb) * (la - lb) + la * lb * glm::dot(sum, sum));

@@ -1,7 +1,6 @@
-// The two kernels of spherical radial basis functions, in forms that keep their digits (method: [T06];
-// docs/equations.md).
+// The two kernels of spherical radial basis functions, in numerically stable forms (method: [T06]; docs/equations.md).
 //
-// A kernel depends on d = 1 - eta . xi alone, 0 <= d <= 2. `d` must come from |eta - xi|^2 / 2, never from a
+// A kernel depends only on d = 1 - eta . xi, 0 <= d <= 2. `d` must come from |eta - xi|^2 / 2, never from a
 // subtraction of two numbers near one. Everything here is double; the float SIMD forms live in eval_mixture.cpp and are
 // tested against these.
 #pragma once
@@ -23,15 +22,15 @@ inline double one_minus_dot(const Vec3d& a, const Vec3d& b) {
   return 0.5 * glm::dot(diff, diff);
 }
 
-/// G(d).
+/// Value G(d).
 double kernel_value(Kernel kernel, double bandwidth, double d);
 /// Integral of G over the sphere: (2 pi / l) (1 - exp(-2 l)) for the Gaussian (4 pi at l = 0), 4 pi for Abel-Poisson.
 double kernel_integral(Kernel kernel, double bandwidth);
-/// Inverse of the distribution of d for `u` in [0, 1): u = 0 gives d = 2 and u -> 1 gives d -> 0 for the Gaussian, the
-/// same sense for Abel-Poisson. Exact closed forms; stays in [0, 2].
+/// Inverse of the distribution of d for `u` in [0, 1): u = 0 gives d = 2 and u -> 1 gives d -> 0 for the Gaussian, and
+/// likewise for Abel-Poisson. Exact closed forms; stays in [0, 2].
 double kernel_sample(Kernel kernel, double bandwidth, double u);
 
-/// Of the Gaussian as a density: 1 - mean cosine about its centre, 1 - (coth(l) - 1 / l); and its inverse, between
+/// 1 - mean cosine about the center of the Gaussian as a density, 1 - (coth(l) - 1 / l); and its inverse, between
 /// kMinMeanBandwidth and kMaxMeanBandwidth. [BDGS05]
 double gaussian_one_minus_mean(double bandwidth);
 double gaussian_bandwidth_of_mean(double one_minus_mean);
@@ -41,7 +40,7 @@ inline constexpr double kMinMeanBandwidth = 0.05, kMaxMeanBandwidth = 1e7;
 /// e^(-la-lb) sinh(R)/R) and two Abel-Poisson kernels.
 double kernel_convolution(Kernel kernel, const Vec3d& a, double bandwidth_a, const Vec3d& b, double bandwidth_b);
 
-/// Pointwise product of two Gaussians = `scale` times one Gaussian. Opposed equal lobes give bandwidth 0, any centre.
+/// Pointwise product of two Gaussians = `scale` times one Gaussian. Opposite equal lobes give bandwidth 0, any center.
 struct GaussianProduct {
   Vec3d center;
   double bandwidth;

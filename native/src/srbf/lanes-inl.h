@@ -1,6 +1,6 @@
-// Numbers side by side that formulas take like one (sphere/number_math.h has the operations of one). Included once for
-// each instruction set, by sources that Highway compiles so. Sums of products stay unfused, so every instruction set
-// gives the bits of the formula of one number.
+// SIMD lanes that formulas use like scalars (sphere/number_math.h has the scalar operations). Included once per
+// instruction set by sources that use foreach_target.h. Multiplications and additions are never fused, so every
+// instruction set gives the same bits as the scalar formula.
 #if defined(VELOUR_SRBF_LANES_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef VELOUR_SRBF_LANES_INL_H_
 #undef VELOUR_SRBF_LANES_INL_H_
@@ -25,7 +25,7 @@ using velour::smaller;
 using velour::square_root;
 
 #if HWY_HAVE_SCALABLE
-// Vectors whose size the compiler does not know cannot be members: one number at a time.
+// Scalable vectors cannot be members, so these targets process one number at a time.
 using Lanes = float;
 inline constexpr int kLanes = 1;
 HWY_INLINE Lanes load_lanes(const float* from) { return *from; }
@@ -59,7 +59,7 @@ HWY_INLINE Lanes load_lanes(const float* from) { return Lanes(hn::Load(LanesTag(
 HWY_INLINE void store_lanes(Lanes lanes, float* to) { hn::Store(lanes.v, LanesTag(), to); }
 #endif
 
-/// Directions side by side.
+/// One direction per lane.
 struct LanesVec3 {
   Lanes x, y, z;
 };

@@ -11,7 +11,7 @@ namespace {
 constexpr int kZeniths = 256, kDraws = 377;
 constexpr double kGolden = 0.6180339887498949;
 
-/// Of the directions `zenith` away from a centre (both by sine and cosine), the share above the horizon.
+/// Share above the horizon of the directions at angle `zenith` from a center (both given by sine and cosine).
 double share_above(const glm::dvec2& center, const glm::dvec2& zenith) {
   const double needed = -center.y * zenith.y, reach = center.x * zenith.x;
   if (needed <= -reach) return 1;
@@ -39,7 +39,7 @@ double reflected_light(const WarpedLobe& lobe, const Vec3d& wv) {
     const double kernel = warped_kernel(lobe, wl, wv), cosine = wl.z;
     sum += kernel * cosine / (kernel * warp_jacobian(lobe, wl, wv) / integral + cosine / kPiD);
   };
-  for (int i = 0; i < kDraws; ++i) {  // of a Fibonacci lattice, one of the lobe and one of the cosine
+  for (int i = 0; i < kDraws; ++i) {  // a Fibonacci lattice samples both the lobe and the cosine
     const double u = (i + 0.5) / kDraws, phi = 2 * kPiD * std::fmod(i * kGolden, 1.0);
     const double c = std::cos(phi), s = std::sin(phi);
     const double d = kernel_sample(Kernel::gaussian, lobe.bandwidth, u), sine = std::sqrt(d * (2 - d));

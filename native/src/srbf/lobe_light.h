@@ -1,4 +1,4 @@
-// How much light a lobe is of.
+// Integrals of lobes over the upper hemisphere.
 #pragma once
 
 #include "srbf/kernel.h"
@@ -6,12 +6,12 @@
 
 namespace velour {
 
-/// The integral over the upper hemisphere of a kernel about a centre of this polar cosine, -1 to 1.
+/// Integral over the upper hemisphere of a kernel whose center has this polar cosine, -1 to 1.
 double kernel_integral_above(Kernel kernel, double bandwidth, double cosine);
 
-/// The integral of a lobe's kernel times the cosine over light directions above the horizon, seen from unit `wv`:
-/// times the coefficient, its part of the directional albedo. Relative error of 1e-3 for most lobes, of 1e-2 where the
-/// horizon cuts most of them off.
+/// Integral of a lobe's kernel times the cosine over light directions above the horizon, viewed from unit `wv`. Times
+/// the coefficient it is the lobe's part of the directional albedo. The relative error is 1e-3 for most lobes and 1e-2
+/// where the horizon cuts off most of the lobe.
 double reflected_light(const WarpedLobe& lobe, const Vec3d& wv);
 
 }  // namespace velour

@@ -47,7 +47,7 @@ void LobeMixture::finish(float defensive_share) {
   cosine_share = defensive_share + (1 - defensive_share) * (diffuse / (diffuse + total));
   const float scale = (1 - cosine_share) / total;
   for (int j = 0; j < count; ++j) density[j] *= scale;
-  for (int j = 0; j < count; ++j) cdf[j] /= total;  // a quotient, not a product: the last one is then exactly 1
+  for (int j = 0; j < count; ++j) cdf[j] /= total;  // dividing makes the last one exactly 1
 }
 
 }  // namespace velour

@@ -10,7 +10,7 @@
 #define HWY_TARGET_INCLUDE "srbf/lobe_products.cpp"
 #include <hwy/foreach_target.h>
 
-// Only after that one:
+// These must follow foreach_target.h:
 #include <hwy/contrib/math/math-inl.h>
 #include <hwy/highway.h>
 
@@ -24,15 +24,16 @@ namespace HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
-/// 1 - exp(-2R): what a lobe of bandwidth R > 0 holds of what it would on a plane. 1 in float from 9 on.
+/// 1 - exp(-2R): integral of a lobe of bandwidth R > 0, relative to that on a plane. Rounds to 1 in float for R > 9.
 template <class D, class V = hn::Vec<D>>
 HWY_INLINE V share_of_ball(D d, V bandwidth) {
   if (hn::AllTrue(d, hn::Gt(bandwidth, hn::Set(d, 9.0f)))) return hn::Set(d, 1.0f);
   return hn::Neg(hn::Expm1(d, hn::Mul(hn::Set(d, -2.0f), bandwidth)));
 }
 
-/// Share of a lobe above a horizon whose normal it meets under cosine `c`: the normal distribution of c sqrt(bandwidth)
-/// (a narrow lobe is a Gaussian of that deviation), as the logistic function nearest to it.
+/// Share of a lobe above a horizon whose normal is at cosine `c` to its center: the normal distribution function of
+/// c sqrt(bandwidth), because a narrow lobe is a Gaussian of variance 1 / bandwidth, approximated by a logistic
+/// function.
 template <class D, class V = hn::Vec<D>>
 HWY_INLINE V share_above(D d, V c, V bandwidth) {
   const V x = hn::Mul(hn::Mul(hn::Set(d, 1.702f), c), hn::Sqrt(bandwidth));
@@ -56,13 +57,13 @@ void multiply_simd(const GaussianLobe& a, const LobeBlock& others, const Vec3* n
     const V product = hn::Mul(la, lb), difference = hn::Sub(la, lb);
     const V sum_sq = hn::Max(hn::Sub(hn::Set(d, 4.0f), distance_sq), hn::Zero(d));
     const V exact = hn::Sqrt(hn::MulAdd(product, sum_sq, hn::Mul(difference, difference)));
-    // Two broad lobes that oppose each other: la a + lb b is all rounding and no direction. A lobe this flat has none
-    // to keep, so it takes a's.
+    // For two broad opposite lobes, la a + lb b is only rounding error. The direction of a lobe this flat does not
+    // matter, so it takes that of a.
     const auto no_axis = hn::Lt(exact, flat);
     const V r = hn::Max(exact, flat);
     const V exponent = hn::Div(hn::Mul(product, distance_sq), hn::Add(r, hn::Add(la, lb)));
     const size_t to = static_cast<size_t>(out.count) + at;
-    // Most of a sky is far from a highlight: exp(-88) of it is nothing.
+    // Most lobes of an environment are far from a highlight; exp(-88) is negligible.
     if (hn::AllTrue(d, hn::Gt(exponent, hn::Set(d, 88.0f)))) {
       hn::StoreU(hn::Zero(d), d, out.mass + to);
       continue;
@@ -97,7 +98,8 @@ float total_simd(const LobeProducts& products) {
   return hn::GetLane(hn::SumOfLanes(d, sum));
 }
 
-/// Copies the products of at least `least` to `mixture`, in order, their masses to its densities; returns how many.
+/// Copies products with a mass of at least `least` to `mixture`, in order, and their masses to its densities; returns
+/// their number.
 int keep_simd(const LobeProducts& products, float least, LobeMixture& mixture) {
   // Whole vectors are written.
   static_assert(LobeProducts::kCapacity + LobeProducts::kLanes <= LobeMixture::kCapacity);
@@ -118,7 +120,7 @@ int keep_simd(const LobeProducts& products, float least, LobeMixture& mixture) {
   return static_cast<int>(count);
 }
 
-/// Masses, in `density` and summed up in `cdf`, become densities and probabilities.
+/// Converts masses in `density` and their running sums in `cdf` to densities and probabilities.
 void normalize_simd(float sum, LobeMixture& mixture) {
   const hn::CappedTag<float, LobeProducts::kLanes> d;
   const auto total = hn::Set(d, sum);
@@ -128,7 +130,7 @@ void normalize_simd(float sum, LobeMixture& mixture) {
     const auto whole = hn::Mul(hn::Set(d, 2 * kPi), share_of_ball(d, r));
     const auto mass = hn::LoadU(d, mixture.density + at);
     hn::StoreU(hn::Div(hn::Mul(mass, r), hn::Mul(total, whole)), d, mixture.density + at);
-    // A quotient, not a product: the last one is then exactly 1.
+    // Dividing makes the last one exactly 1.
     hn::StoreU(hn::Div(hn::LoadU(d, mixture.cdf + at), total), d, mixture.cdf + at);
   }
 }
@@ -181,7 +183,7 @@ void multiply_lobes(const GaussianLobe& lobe, std::span<const LobeBlock> others,
   for (const LobeBlock& block : others) multiply(lobe, block, normal, products);
 }
 
-constexpr float kSmallest = std::numeric_limits<float>::min();  // lanes that fill up have no mass
+constexpr float kSmallest = std::numeric_limits<float>::min();  // excludes padding lanes, which have no mass
 
 bool keep_products(const LobeProducts& products, float least, LobeMixture& mixture) {
   const float total = VELOUR_SIMD_DISPATCH(total_simd)(products);
@@ -189,7 +191,7 @@ bool keep_products(const LobeProducts& products, float least, LobeMixture& mixtu
   mixture.clear(Kernel::gaussian);
   mixture.cosine_share = 0;
   mixture.count = VELOUR_SIMD_DISPATCH(keep_simd)(products, std::max(least * total, kSmallest), mixture);
-  if (mixture.count == 0) {  // evenly spread: the best one stands for all
+  if (mixture.count == 0) {  // evenly spread: the best one represents all
     const float best = *std::max_element(products.mass, products.mass + products.count);
     mixture.count = VELOUR_SIMD_DISPATCH(keep_simd)(products, best, mixture);
   }

@@ -10,7 +10,7 @@
 namespace velour {
 namespace {
 
-/// How much of its length the sum of two nodes' moments loses: energy times the growth of 1 - mean cosine.
+/// Length lost by adding the moments of two nodes: energy times the growth of 1 - mean cosine.
 double spread_by_joining(const Vec3d& a, const Vec3d& b) {
   return glm::length(a) + glm::length(b) - glm::length(a + b);
 }
@@ -60,12 +60,12 @@ LobeTree::Node LobeTree::joined(int first, int second) const {
   return node;
 }
 
-/// Each node without a parent knows the cheapest of those behind it. A join changes two places of the row, so that few
-/// of the others have to look again.
+/// Each root stores its cheapest partner among the roots behind it. A join changes only two entries of the list, so few
+/// of the others have to search again.
 void LobeTree::join_all() {
   struct Root {
     int node;
-    size_t partner;  // its place, behind this one
+    size_t partner;  // index of a later root
     double cost;
   };
   std::vector<Root> roots;
@@ -102,8 +102,8 @@ void LobeTree::join_all() {
   }
 }
 
-/// Of the product of `lobe` with `node`: its mass, times how far the products with the node's children are from one
-/// Gaussian (the sine between the two as vectors of functions), plus what their masses differ by.
+/// Error of replacing the products of `lobe` with the children of `node` by that with `node`: their mass times the sine
+/// of the angle between both as vectors of a function space, plus the difference of their masses.
 double LobeTree::misfit(const Node& node, const GaussianLobe& lobe) const {
   if (node.child[0] < 0) return 0;
   const Weighted whole = product(lobe, node.lobe);

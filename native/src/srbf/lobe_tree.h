@@ -1,4 +1,4 @@
-// A hierarchy over many Gaussian lobes, so that few nodes stand for all of them: fine where it matters, coarse
+// A hierarchy over many Gaussian lobes, so that a few nodes can represent all of them: fine where it matters, coarse
 // elsewhere.
 #pragma once
 
@@ -10,17 +10,17 @@
 namespace velour {
 
 /// Leaves are the lobes; an inner node is the Gaussian that has the integral and the mean direction of all lobes under
-/// it (the von Mises-Fisher density of the greatest likelihood [BDGS05]). Built from below: the two nodes are joined
-/// whose energy spreads least by it. Immutable; thread-safe.
+/// it (the maximum-likelihood von Mises-Fisher density [BDGS05]). Built bottom-up by joining the two nodes whose energy
+/// spreads least. Immutable; thread-safe.
 class LobeTree {
  public:
-  /// Lobes of amplitude 0 are left out. Quadratic in the number of lobes.
+  /// Skips lobes of amplitude 0. Quadratic in the number of lobes.
   explicit LobeTree(const GaussianLobes& lobes);
 
   bool empty() const { return nodes_.empty(); }
-  /// At most `most` (> 0) nodes under which every lobe lies exactly once. From the root on, that node is opened whose
-  /// product with `lobe` is told worst by one Gaussian; a lobe of bandwidth 0 asks about the nodes themselves. The
-  /// nodes come in the order of the tree: neighbours are near each other, so that evenly spread random numbers stay so.
+  /// Returns at most `most` (> 0) nodes that together contain every lobe exactly once. Starting at the root, opens the
+  /// node whose product with `lobe` is approximated worst by one Gaussian; a lobe of bandwidth 0 judges the nodes
+  /// themselves. Nodes are in tree order, which keeps neighbors together, so stratified random numbers stay stratified.
   std::vector<GaussianLobe> cut(const GaussianLobe& lobe, int most) const;
 
  private:

@@ -20,7 +20,7 @@ using Lanes = hn::CappedTag<float, MultivariateLobes::kPadding>;
 
 constexpr uint32_t kNumbers = MultivariateLobe::kNumbers;
 
-/// The arguments' numbers, in all lanes.
+/// The components of the arguments, to be broadcast to all lanes.
 struct Broadcast {
   explicit Broadcast(const LobeArguments& at) {
     for (uint32_t i = 0; i < kNumbers; ++i) value[i] = at[static_cast<int>(i)];
@@ -30,15 +30,15 @@ struct Broadcast {
 
 constexpr uint32_t kBlock = MultivariateLobes::kPadding, kRows = kNumbers + 1;
 
-/// Of as many lobes of a block as there are lanes.
+/// Values of consecutive lobes of a block, one per lane.
 template <class D, class V = hn::Vec<D>>
 HWY_INLINE V lobe_values(D d, const Broadcast& at, const float* exponent) {
   const auto row = [&](uint32_t i) { return hn::Load(d, exponent + i * kBlock); };
-  // Two chains of sums, so that one need not wait for the other.
+  // Two independent chains of sums hide latency.
   V even = row(kNumbers), odd = hn::Mul(hn::Set(d, at.value[1]), row(1));
   for (uint32_t i = 0; i < kNumbers; i += 2) even = hn::MulAdd(hn::Set(d, at.value[i]), row(i), even);
   for (uint32_t i = 3; i < kNumbers; i += 2) odd = hn::MulAdd(hn::Set(d, at.value[i]), row(i), odd);
-  // Rounding may leave a peak a little above 2^0: exp2_nonpositive takes that.
+  // Rounding may leave a peak slightly above 2^0, which exp2_nonpositive tolerates.
   return exp2_nonpositive(d, hn::Add(even, odd));
 }
 
@@ -56,7 +56,7 @@ struct Sums {
   hn::Vec<Lanes> r, g, b;
 };
 
-/// `blocks`: of lobes, coefficients and colours that begin at these addresses; both of the latter are moved on.
+/// Adds the values of `padded` lobes times coefficients and colors; advances `coefficient` and `color` past them.
 HWY_INLINE void add_sums(const LobeArguments& at, const float* exponent, uint32_t padded, const float*& coefficient,
                          const float*& color, Sums& sums) {
   const Lanes d;

@@ -11,18 +11,18 @@
 namespace velour {
 
 /// g(wl, wv) = G(wl) G(wv) G(h) P(wl . wv) with G(w) = exp(bandwidth (w . center - 1)) and h the half vector, a
-/// multivariate SRBF with three arguments [T11], and P(c) = exp(phase c - |phase|) for what shadows do when the light
-/// stands behind the viewer: they hide behind what casts them (the opposition effect [H86]). Exponents add, so it takes
-/// one exponential. Each vector is center times bandwidth; a zero leaves its argument out. Values in (0, 1].
+/// multivariate SRBF with three arguments [T11]. P(c) = exp(phase c - |phase|) models the opposition effect [H86]: with
+/// the light behind the viewer, shadows hide behind their casters. Exponents add, so a lobe takes one exponential. Each
+/// vector is center times bandwidth; a zero vector omits its argument. Values in (0, 1].
 struct MultivariateLobe {
   Vec3 light{0.0f}, view{0.0f}, half{0.0f};
   float phase = 0;
 
-  /// All of it as numbers: the vectors' components, then the phase's.
+  /// The lobe as numbers: the components of the vectors, then the phase.
   static constexpr int kNumbers = 10;
   float& operator[](int i) { return i == 9 ? phase : (i < 3 ? light : i < 6 ? view : half)[i % 3]; }
   float operator[](int i) const { return const_cast<MultivariateLobe&>(*this)[i]; }
-  /// Arguments, of which number i belongs to i / 3: what their peaks are 1 for.
+  /// Number i belongs to argument i / 3; length() is the bandwidth of an argument.
   static constexpr int kArguments = 4;
   float length(int argument) const {
     return argument == 3 ? std::abs(phase) : glm::length(argument == 0 ? light : argument == 1 ? view : half);
@@ -42,9 +42,9 @@ inline Vec3 half_vector(const DirectionPair& pair) {
 struct LobeArguments {
   explicit LobeArguments(const DirectionPair& pair)
       : wl(pair.wl), wv(pair.wv), half(half_vector(pair)), phase(glm::dot(pair.wl, pair.wv)) {}
-  /// By the numbers that a lobe weighs them with.
+  /// The component that number i of a lobe multiplies.
   float operator[](int i) const { return i == 9 ? phase : (i < 3 ? wl : i < 6 ? wv : half)[i % 3]; }
-  /// In a frame that `turn` leads to.
+  /// The arguments in the frame that `turn` maps to.
   LobeArguments turned(const Mat3& turn) const {
     LobeArguments at = *this;
     at.wl = turn * wl;
@@ -56,7 +56,7 @@ struct LobeArguments {
   float phase;  // cosine of the angle between both, in any frame
 };
 
-/// Lobes in the order they are given, as arrays that are padded to whole vectors by lobes of value 0. Immutable.
+/// Lobes in the given order, as arrays padded to whole vectors with lobes of value 0. Immutable.
 class MultivariateLobes {
  public:
   static constexpr uint32_t kPadding = 16;
@@ -66,7 +66,7 @@ class MultivariateLobes {
   uint32_t size() const { return size_; }
   uint32_t padded() const { return padded_; }
 
-  /// Of every lobe, padding included; `values` of padded() floats, aligned to 64 bytes.
+  /// Writes the value of every lobe, including padding, to `values`: padded() floats, aligned to 64 bytes.
   void values(const LobeArguments& at, float* values) const;
 
  private:
@@ -74,18 +74,18 @@ class MultivariateLobes {
                         const float* coefficient);
 
   uint32_t size_, padded_;
-  // [block of 16][11][16]: the numbers of the lobes and the constant, for powers of 2.
+  // [block of 16][11][16]: numbers of the lobes and the constant term, scaled for powers of 2.
   AlignedArray<float> exponent_;
 };
 
-/// Lobes in the frame of their arguments, then others in a frame that is turned.
+/// Lobes in the frame of their arguments, followed by lobes in a rotated frame.
 struct ColoredLobes {
   const MultivariateLobes &lobes, &turned;
-  const float* color;  // of both with their padding: [block of 16][3][16], aligned to 64 bytes
+  const float* color;  // of both, with padding: [block of 16][3][16], aligned to 64 bytes
 };
 
-/// The sum of coefficient times colour times value. `turn` leads to the turned frame; `coefficient` of all lobes with
-/// their padding, aligned to 64 bytes. Run-time dispatched SIMD.
+/// Sum of coefficient times color times value. `turn` maps to the rotated frame; `coefficient` has a value per lobe,
+/// including padding, and is aligned to 64 bytes. Run-time dispatched SIMD.
 Vec3 lobe_sums(const ColoredLobes& lobes, const DirectionPair& pair, const Mat3& turn, const float* coefficient);
 
 }  // namespace velour

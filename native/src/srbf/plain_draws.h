@@ -1,12 +1,12 @@
-// Lobes of a warped mixture drawn from as they are.
+// Sampling density of a warped mixture from its own lobes.
 #pragma once
 
 #include "srbf/warped_mixture.h"
 
 namespace velour {
 
-/// Gives `mixture`, whose value is set, the density of its lobes in proportion to luminance times integral over psi,
-/// without regard to horizon and cosine, with a share of `cosine` of the cosine about the normal.
+/// Sets the density of `mixture`, whose value is already set: its lobes in proportion to luminance times integral over
+/// psi, ignoring horizon and cosine, plus the cosine about the normal with a share of `cosine`.
 void draw_plain_lobes(WarpedMixture& mixture, float cosine);
 
 }  // namespace velour

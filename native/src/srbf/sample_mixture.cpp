@@ -10,7 +10,7 @@
 #define HWY_TARGET_INCLUDE "srbf/sample_mixture.cpp"
 #include <hwy/foreach_target.h>
 
-// Only after that one:
+// These must follow foreach_target.h:
 #include <hwy/contrib/math/math-inl.h>
 #include <hwy/highway.h>
 
@@ -62,7 +62,7 @@ HWY_INLINE void directions_of(D tag, const LobeDraws& draws, DirectionBatch& w) 
   }
 }
 
-/// A single draw has no vector to wait for.
+/// A single sample uses scalars, which have lower latency.
 template <class Zenith>
 HWY_INLINE void directions_of(const LobeDraws& draws, DirectionBatch& w) {
   if (draws.count == 1) return directions_of<Zenith>(hn::CappedTag<float, 1>(), draws, w);

@@ -19,7 +19,7 @@ namespace HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
-/// Component of the mixture, the first of which is the cosine: how many running sums are at most u, in [0, 1).
+/// Index of the component, where 0 is the cosine: the number of running sums that are at most u, in [0, 1).
 template <class D>
 HWY_INLINE int component_of(D d, const WarpedMixture& m, float u) {
   int component = m.cosine() <= u;
@@ -33,7 +33,7 @@ HWY_INLINE void choose(const WarpedMixture& m, const Vec2& u, WarpedDraws& draws
   const int passed = m.padded % 16 == 0 ? component_of(hn::CappedTag<float, 16>(), m, u.x)
                                         : component_of(hn::CappedTag<float, 8>(), m, u.x);
   const int component = std::min(passed, m.count);  // the last sum may be rounded to less than 1
-  // u + 2^-25, the middle of its step, lies between two sums; both differences keep their digits.
+  // u + 2^-25, the middle of its step, lies between two sums; both differences are precise.
   const float below = m.sums[m.kSums - 2 + component], up_to = m.sums[m.kSums - 1 + component];
   const float scale = 1 / (up_to - below);
   const float left = std::clamp((u.x - below + 0x1p-25f) * scale, 0.0f, 1 - 0x1p-24f);
@@ -41,7 +41,7 @@ HWY_INLINE void choose(const WarpedMixture& m, const Vec2& u, WarpedDraws& draws
   draws.push(m, component - 1, left, rest, u.y);
 }
 
-/// psi of the draws at `at`, in their parameterisations.
+/// psi of the samples at `at`, in their parameterizations.
 template <class D, class V = hn::Vec<D>>
 HWY_INLINE Vector<V> psi_of(D d, const WarpedDraws& draws, int at) {
   const V zero = hn::Zero(d), one = hn::Set(d, 1.0f), two = hn::Set(d, 2.0f);
@@ -56,7 +56,7 @@ HWY_INLINE Vector<V> psi_of(D d, const WarpedDraws& draws, int at) {
   return about_axis(d, axis, sine, z, hn::Load(d, draws.azimuth + at));
 }
 
-/// wl of psi: eta = normalize(S^-1 psi), in half space mirrored; -z where there is none.
+/// wl of psi: eta = normalize(S^-1 psi), about which half space reflects wv; -z if there is no direction.
 template <class D, class V = hn::Vec<D>>
 HWY_INLINE Vector<V> unwarped(D d, const WarpedMixture& m, const WarpedDraws& draws, int at, const Vector<V>& psi) {
   const V zero = hn::Zero(d), one = hn::Set(d, 1.0f), s_xy = hn::Load(d, draws.s_xy + at);
@@ -78,7 +78,7 @@ HWY_INLINE Vector<V> unwarped(D d, const WarpedMixture& m, const WarpedDraws& dr
           hn::IfThenZeroElse(lost, hn::MulAdd(s, x, hn::Mul(c, y))), hn::IfThenElse(lost, hn::Neg(one), z)};
 }
 
-/// A single draw has no vector to wait for.
+/// A single sample uses scalars, which have lower latency.
 Vec3 sample_one_simd(const WarpedMixture& m, const Vec2& u) {
   const hn::CappedTag<float, 1> d;
   WarpedDraws draws;

@@ -1,6 +1,6 @@
-// The two functions that Highway's headers want of its library, which Velour therefore does not link. Inside Blender
-// that library would be Blender's own copy, found first whatever version it is, and the bits of its answer mean other
-// instruction sets from one version to the next.
+// Replaces the two functions that Highway's headers need from its library, so Velour does not link it. Inside Blender
+// the loader would find Blender's own copy first, whatever its version, and the bits of its answer change meaning from
+// one version to the next.
 #include <hwy/targets.h>
 
 #include "srbf/simd_dispatch.h"
@@ -13,10 +13,10 @@ namespace hwy {
 namespace {
 
 #if defined(__x86_64__)
-/// Asks the processor, and whether the operating system keeps the registers.
+/// Checks the processor, and whether the operating system saves the registers.
 #define VELOUR_HAS(feature) (__builtin_cpu_supports(feature) != 0)
 
-/// A bit of register ecx of the instruction cpuid: for what clang 14 does not know by name.
+/// Tests a bit of register ecx of the instruction cpuid, for features whose names clang 14 does not know.
 bool has_bit(unsigned leaf, unsigned bit) {
   unsigned eax = 0, ebx = 0, ecx = 0, edx = 0;
   return __get_cpuid(leaf, &eax, &ebx, &ecx, &edx) != 0 && (ecx >> bit & 1) != 0;
@@ -37,7 +37,8 @@ bool has_avx3() {
          VELOUR_HAS("avx512bw") && VELOUR_HAS("avx512cd");
 }
 
-/// What velour's kernels are compiled for (HWY_TARGETS); newer sets count as the best of these.
+/// Supported targets among those that the kernels are compiled for (HWY_TARGETS); newer sets count as the best of
+/// these.
 int64_t detect() {
   int64_t found = HWY_STATIC_TARGET;
   if (has_ssse3()) found |= HWY_SSSE3;

@@ -6,12 +6,12 @@
 
 namespace velour::detail {
 
-/// Our own choice, not Highway's: that one belongs to the process, and its other users (image codecs in Blender, say)
-/// must not feel our pin.
+/// Velour's own target. Highway's is process-wide, and restricting it would affect its other users (such as image
+/// codecs in Blender).
 hwy::ChosenTarget& chosen_simd_target();
 
 }  // namespace velour::detail
 
-/// In place of HWY_DYNAMIC_DISPATCH: the function of the table made by HWY_EXPORT(function) for simd_target().
+/// Replaces HWY_DYNAMIC_DISPATCH: selects from the table of HWY_EXPORT(function) the one for simd_target().
 #define VELOUR_SIMD_DISPATCH(function) \
   (*(HWY_DISPATCH_TABLE(function)[::velour::detail::chosen_simd_target().GetIndex()]))

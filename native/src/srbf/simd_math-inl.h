@@ -1,5 +1,4 @@
-// Elementary functions of the SIMD kernels. Included once for each instruction set, by sources that Highway compiles
-// so.
+// Elementary functions of the SIMD kernels. Included once per instruction set by sources that use foreach_target.h.
 #if defined(VELOUR_SRBF_SIMD_MATH_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef VELOUR_SRBF_SIMD_MATH_INL_H_
 #undef VELOUR_SRBF_SIMD_MATH_INL_H_
@@ -15,8 +14,8 @@ namespace HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
-/// 2^y for -127 <= y <= 127, exactly 0 below 2^-126.5. Relative error 1.7e-7, of which 9.2e-8 is the polynomial: the
-/// minimax of degree 5 on [-1/2, 1/2] with p(0) = 1 (coefficients by our own exchange iteration).
+/// 2^y for -127 <= y <= 127, exactly 0 below 2^-126.5. Relative error 1.7e-7, of which 9.2e-8 is due to the polynomial:
+/// the minimax of degree 5 on [-1/2, 1/2] with p(0) = 1 (coefficients by our own exchange iteration).
 template <class D, class V = hn::Vec<D>>
 HWY_INLINE V exp2_in_range(D d, V y) {
   const hn::RebindToSigned<D> di;
@@ -34,13 +33,13 @@ HWY_INLINE V exp2_in_range(D d, V y) {
   return hn::Mul(p, power);
 }
 
-/// The same for y <= 0: 0 far below.
+/// 2^y for y <= 0; 0 below the range.
 template <class D, class V = hn::Vec<D>>
 HWY_INLINE V exp2_nonpositive(D d, V y) {
-  return exp2_in_range(d, hn::Max(y, hn::Set(d, -127.0f)));  // exponent field 0: the number 0
+  return exp2_in_range(d, hn::Max(y, hn::Set(d, -127.0f)));  // exponent field 0 gives 0
 }
 
-/// The same for any y: 2^127 far above.
+/// 2^y for any y; 0 below the range, 2^127 above.
 template <class D, class V = hn::Vec<D>>
 HWY_INLINE V exp2_clamped(D d, V y) {
   return exp2_nonpositive(d, hn::Min(y, hn::Set(d, 127.0f)));
@@ -52,8 +51,8 @@ HWY_INLINE V exp_nonpositive(D d, V x) {
   return exp2_nonpositive(d, hn::Mul(x, hn::Set(d, 1.44269504f)));
 }
 
-/// -log x of x in (0, 1], where `gap` is 1 - x with all its digits; relative error below 3e-7, 0 at gap 0. From
-/// x = 2^n m, m in [sqrt(1/2), sqrt 2): log m = 2 artanh s, s = (m - 1) / (m + 1), by its series up to s^9.
+/// -log x of x in (0, 1], where `gap` is 1 - x at full precision; relative error below 3e-7, 0 at gap 0. Uses
+/// x = 2^n m, m in [sqrt(1/2), sqrt 2), and the series of log m = 2 artanh s, s = (m - 1) / (m + 1), up to s^9.
 template <class D, class V = hn::Vec<D>>
 HWY_INLINE V minus_log(D d, V x, V gap) {
   const hn::RebindToSigned<D> di;
@@ -70,8 +69,8 @@ HWY_INLINE V minus_log(D d, V x, V gap) {
   return hn::NegMulSub(s, series, hn::Mul(exponent, hn::Set(d, 0.693147181f)));
 }
 
-/// Sine and cosine of x, |x| <= pi, absolute errors below 2e-7, the sine's relative to |x|. From half the angle, by the
-/// Taylor series whose next terms are (pi/2)^13 / 13! and (pi/2)^14 / 14!: sin x = 2 s c, cos x = 1 - 2 s^2.
+/// Sine and cosine of x, |x| <= pi, absolute errors below 2e-7, the sine's relative to |x|. Uses the half angle,
+/// sin x = 2 s c and cos x = 1 - 2 s^2, by Taylor series whose next terms are (pi/2)^13 / 13! and (pi/2)^14 / 14!.
 template <class D, class V = hn::Vec<D>>
 HWY_INLINE void sin_cos_within_pi(D d, V x, V& sine, V& cosine) {
   const V half = hn::Mul(hn::Set(d, 0.5f), x), q = hn::Mul(half, half), one = hn::Set(d, 1.0f);
@@ -93,12 +92,12 @@ HWY_INLINE void sin_cos_within_pi(D d, V x, V& sine, V& cosine) {
   cosine = hn::NegMulAdd(twice, s, one);
 }
 
-/// 1 / sqrt(x) of a positive normal number, relative error below 4e-7: the processor's estimate and Newton's steps.
+/// 1 / sqrt(x) of a positive normal number, relative error below 4e-7: the processor's estimate plus Newton steps.
 template <class D, class V = hn::Vec<D>>
 HWY_INLINE V reciprocal_sqrt(D d, V x) {
   const V half_x = hn::Mul(hn::Set(d, 0.5f), x), one_and_half = hn::Set(d, 1.5f);
   V y = hn::ApproximateReciprocalSqrt(x);
-  constexpr int kSteps = HWY_ARCH_X86 ? 1 : 3;  // the estimate has 11 bits or more there, as few as 5 elsewhere
+  constexpr int kSteps = HWY_ARCH_X86 ? 1 : 3;  // at least 11 bits on x86, as few as 5 elsewhere
   for (int i = 0; i < kSteps; ++i) y = hn::Mul(y, hn::NegMulAdd(hn::Mul(half_x, y), y, one_and_half));
   return y;
 }

@@ -6,7 +6,7 @@ namespace velour {
 
 namespace {
 
-/// Bits of the targets that our kernels were compiled for and that the processor has; a lower bit is a better target.
+/// Targets that the kernels are compiled for and the processor supports, as bits; a lower bit is a better target.
 int64_t available_targets() { return hwy::SupportedTargets() & HWY_TARGETS; }
 
 template <class F>

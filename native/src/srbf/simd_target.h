@@ -1,4 +1,4 @@
-// Which instruction set the library's SIMD kernels use.
+// Instruction set of the SIMD kernels.
 #pragma once
 
 #include <string>
@@ -6,12 +6,12 @@
 
 namespace velour {
 
-/// The instruction set in use now, e.g. "AVX2".
+/// The current instruction set, e.g. "AVX2".
 const char* simd_target();
-/// The choices that this processor and this build have, best first.
+/// Instruction sets that both this processor and this build support, best first.
 std::vector<std::string> simd_targets();
-/// Restricts dispatch to `name` ("auto" lifts it). Returns false, and changes nothing, when it is none of
-/// simd_targets(). Not while a job runs: a kernel called meanwhile may use either set.
+/// Restricts dispatch to `name` ("auto" lifts the restriction). Returns false, and changes nothing, if it is not one of
+/// simd_targets(). Do not call while a job runs: its kernels may then use either set.
 bool select_simd_target(const char* name);
 
 }  // namespace velour

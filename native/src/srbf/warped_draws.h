@@ -1,23 +1,23 @@
-// Draws from a warped mixture in flight: components chosen one by one, directions made together.
+// Batched sampling of a warped mixture: chooses components one by one, then computes the directions together.
 #pragma once
 
 #include "srbf/warped_mixture.h"
 
 namespace velour {
 
-/// What is left of the random numbers once the components are chosen, and what the chosen lobes are.
+/// Pending samples: the random numbers remapped by the choice of components, and parameters of the chosen lobes.
 struct alignas(64) WarpedDraws {
   static constexpr int kCapacity = DirectionBatch::kCapacity;
   float x[kCapacity], y[kCapacity], z[kCapacity];  // axis
   float bandwidth[kCapacity];                      // negative: the cosine about the axis
   float tail[kCapacity];
   float half[kCapacity], s_xx[kCapacity], s_xy[kCapacity], s_yy[kCapacity];
-  float u[kCapacity], rest[kCapacity];  // the zenith's number and 1 - u, both with all their digits
+  float u[kCapacity], rest[kCapacity];  // random number of the zenith and 1 - u, both precise
   float azimuth[kCapacity];             // in [0, 1)
   int count = 0;
 
-  /// A draw of `lobe`, or of the cosine where it is -1: that is a light direction about the normal, without stretch.
-  /// Without a branch: which one it is cannot be predicted.
+  /// Adds a sample of `lobe`, or of the cosine if it is -1, i.e. of a light direction about the normal without stretch.
+  /// Branchless, because the choice cannot be predicted.
   void push(const WarpedMixture& m, int lobe, float u_zenith, float rest_zenith, float u_azimuth) {
     const int j = lobe < 0 ? 0 : lobe;
     const auto is_lobe = static_cast<float>(lobe >= 0), is_cosine = 1 - is_lobe;

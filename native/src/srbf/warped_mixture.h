@@ -1,7 +1,7 @@
 // The lobes of a parametric model at one view: value and density of many directions, and samples.
 //
-// Each lobe has a parameterisation of its own (warped_lobe.h) and, where there is a density, a second Gaussian for it
-// in the same parameterisation.
+// Each lobe has its own parameterization (warped_lobe.h) and, if the mixture has a density, a second Gaussian for it in
+// the same parameterization.
 #pragma once
 
 #include <cstdint>
@@ -11,14 +11,14 @@
 
 namespace velour {
 
-/// Structure of arrays of `padded` elements; those past `count` hold lobes of value and density 0. Filled by whoever
-/// owns the lobes; scratch memory of a thread.
+/// Structure of arrays of `padded` elements; those past `count` hold lobes of value and density 0. Filled by the owner
+/// of the lobes; per-thread scratch memory.
 struct alignas(64) WarpedMixture {
   static constexpr int kCapacity = 32;
-  /// Lanes over lobes take 8 at once, or 16 where there are more.
+  /// SIMD loops over lobes take 8 at once, or 16 if there are more than 8.
   static constexpr int padded_of(int count) { return count <= 8 ? 8 : (count + 15) / 16 * 16; }
 
-  // The arrays come first: vectors are loaded from them.
+  // The arrays come first so that vector loads from them are aligned.
   // psi = normalize(S (wl + half wv)), S = [[s_xx, s_xy], [s_xy, s_yy]] (+) 1 of determinant 1; half is 0 or 1.
   float half[kCapacity];
   float s_xx[kCapacity], s_xy[kCapacity], s_yy[kCapacity];
@@ -28,47 +28,47 @@ struct alignas(64) WarpedMixture {
   float bandwidth[kCapacity];
   float r[kCapacity], g[kCapacity], b[kCapacity];
 
-  // The density over psi: sum of density exp(-draw_bandwidth |psi - (draw_x, draw_y, draw_z)|^2 / 2), where density is
+  // Density over psi: sum of density exp(-draw_bandwidth |psi - (draw_x, draw_y, draw_z)|^2 / 2), where density is
   // the probability of the lobe / the integral of its kernel.
   float draw_x[kCapacity], draw_y[kCapacity], draw_z[kCapacity];
   float draw_bandwidth[kCapacity];
-  float draw_tail[kCapacity];  // exp(-2 draw_bandwidth), the kernel against the centre
+  float draw_tail[kCapacity];  // exp(-2 draw_bandwidth), the kernel at the antipode
   float density[kCapacity];
-  /// Running sums of the probabilities: from kSums on those of the lobes, 1 but for rounding at the last and past it;
-  /// right before them that of the cosine about the normal, which comes first, and before it 0.
+  /// Running sums of the probabilities: 0, then the cosine about the normal at kSums - 1, then the lobes from kSums on;
+  /// 1, up to rounding, from the last lobe on.
   static constexpr int kSums = 16;
   float sums[kSums + kCapacity];
   float cosine() const { return sums[kSums - 1]; }
 
   int count, padded;
-  /// The lobes that have value or density at this view: loops over lobes leave the others out.
+  /// Lobes that have value or density at this view; loops over lobes skip the others.
   const uint8_t* listed;
   int listed_count;
-  /// The lobes' frame is the surface's, turned about the normal by an angle of this cosine and sine.
+  /// The frame of the lobes is that of the surface, rotated about the normal by an angle of this cosine and sine.
   float turn_cos, turn_sin;
   Vec3 wv;  // in the lobes' frame
 
-  void list_all();  // once count is set
+  void list_all();  // requires count
 };
 
 /// f[i]   = the value at wl_i, without cosine; 0 at and below the horizon.
-/// pdf[i] = density of sample_warped at wl_i, per solid angle. Over the sphere its integral is 1 less the share of
-///          draws that have no direction.
-/// Of up to 64 directions in the surface's frame, padded. Run-time dispatched SIMD: lanes hold lobes for one or two
-/// directions, else directions. Relative error of a kernel: 1e-6 plus 1e-6 times its exponent, for float parameters and
-/// directions; in half space the exponent's error grows by 1 / |wl + wv| of what the directions have.
+/// pdf[i] = density of sample_warped at wl_i, per solid angle. Its integral over the sphere is 1 minus the share of
+///          samples that have no direction.
+/// Takes up to 64 directions in the frame of the surface, padded. Run-time dispatched SIMD: lanes hold lobes for one or
+/// two directions, directions otherwise. Relative error of a kernel: 1e-6 plus 1e-6 times its exponent, for float
+/// parameters and directions; in half space the exponent also has the error of the directions times 1 / |wl + wv|.
 void eval_warped(const WarpedMixture& mixture, const DirectionBatch& wl, RgbBatch& f, ScalarBatch& pdf);
-/// The same of one direction.
+/// Evaluates one direction.
 void eval_warped(const WarpedMixture& mixture, const Vec3& wl, Rgb& f, float& pdf);
-/// The value alone, of mixtures without a density.
+/// Evaluates only the value, for mixtures without a density.
 void eval_warped(const WarpedMixture& mixture, const DirectionBatch& wl, RgbBatch& f);
 Rgb eval_warped(const WarpedMixture& mixture, const Vec3& wl);
 
-/// Draws a direction for each of up to 64 `u`: `u.x` picks lobe and zenith about its centre, `u.y` the azimuth. Half
-/// vectors that face away from the viewer have no light direction: the draw is then -z, which counts as a draw that
-/// brought nothing. The batch is not padded. Run-time dispatched SIMD.
+/// Samples a direction for each of up to 64 `u`: `u.x` selects the lobe and the zenith about its center, `u.y` the
+/// azimuth. Half vectors that face away from the viewer have no light direction: the sample is then -z, which counts as
+/// a sample of value 0. The batch is not padded. Run-time dispatched SIMD.
 void sample_warped(const WarpedMixture& mixture, std::span<const Vec2> u, DirectionBatch& wl);
-/// The same of one.
+/// Samples one direction.
 Vec3 sample_warped(const WarpedMixture& mixture, const Vec2& u);
 
 }  // namespace velour

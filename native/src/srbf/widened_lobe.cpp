@@ -6,13 +6,13 @@
 namespace velour {
 namespace {
 
-/// The root of a positive symmetric matrix of determinant 1.
+/// Square root of a positive symmetric matrix of determinant 1.
 Stretch root_of(const Stretch& square) {
   const double scale = 1 / std::sqrt(square.xx + square.yy + 2);
   return {scale * (square.xx + 1), scale * square.xy, scale * (square.yy + 1)};
 }
 
-/// The inverse of gaussian_one_minus_mean for any mean cosine: beyond kMinMeanBandwidth by the series l / 3 - l^3 / 45.
+/// Inverse of gaussian_one_minus_mean for any mean cosine; below kMinMeanBandwidth by the series l / 3 - l^3 / 45.
 double bandwidth_of_mean(double one_minus_mean) {
   const double mean = 1 - one_minus_mean;
   if (mean < kMinMeanBandwidth / 3) return 3 * mean * (1 + 0.6 * mean * mean);
@@ -40,7 +40,7 @@ double widened_bandwidth(Kernel kernel, double bandwidth, double by) {
 WarpedLobe widened(const WarpedLobe& lobe, double by) {
   const double before = 1 / lobe.bandwidth;
   const double added = std::max(1 / widened_bandwidth(Kernel::gaussian, lobe.bandwidth, by) - before, 0.0);
-  // Of the tangent plane: S^-2 over the bandwidth is the covariance, which grows.
+  // The covariance in the tangent plane, S^-2 / bandwidth, grows.
   const Stretch& s = lobe.stretch;
   const double xx = before * (s.yy * s.yy + s.xy * s.xy) + added, yy = before * (s.xx * s.xx + s.xy * s.xy) + added;
   const double xy = -before * s.xy * (s.xx + s.yy);

@@ -10,8 +10,8 @@
 namespace velour {
 namespace {
 
-constexpr float kRidge = 1e-6f;  // of bases whose rows are of length 1: blocks may overlap
-constexpr Index kSlices = 64;    // of a piece of work
+constexpr float kRidge = 1e-6f;  // added to a unit diagonal, because the bases of clusters may overlap
+constexpr Index kSlices = 64;    // per piece of work
 
 RowMatrix stacked(const std::vector<RowMatrix>& basis) {
   const Index rank = basis.at(0).rows();
@@ -24,7 +24,7 @@ RowMatrix as_matrix(const DenseTensor& tensor) {
   return Eigen::Map<const RowMatrix>(tensor.data.data(), tensor.extent[0], tensor.extent[1]);
 }
 
-/// Of one slice; adds to `kept`.
+/// Chooses the members of one slice, which keeps better previous ones if it `had` any; adds to `kept`.
 void choose(const ClusterProducts& products, Index slice, bool had, ClusteredTensor& tensor, KeptSquares& kept) {
   const std::span<uint32_t> member(tensor.member.data() + slice * tensor.members, static_cast<size_t>(tensor.members));
   auto row = tensor.coefficient.row(slice);

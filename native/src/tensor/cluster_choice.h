@@ -1,4 +1,4 @@
-// Which clusters a slice is made of.
+// Choice of the clusters that represent a slice.
 #pragma once
 
 #include <span>
@@ -7,7 +7,7 @@
 
 namespace velour {
 
-/// Slices and bases as far as choices need them: products alone, so no slice is touched again. Immutable.
+/// Inner products of slices and bases; choices need nothing else, so slices are read only once. Immutable.
 class ClusterProducts {
  public:
   /// `slices`: [slice][entry]; every basis [rank][entry] with orthonormal rows.
@@ -18,13 +18,13 @@ class ClusterProducts {
   Index clusters() const { return products_.cols() / rank_; }
   Index slices() const { return projection_.rows(); }
 
-  /// How much of the square of a slice a cluster keeps: |a|^2 less this is the error.
+  /// Squared norm that a cluster keeps of a slice a: |a|^2 minus this is the squared error.
   double kept(Index slice, Index cluster) const;
-  /// Least squares of a slice by some clusters together: their coefficients, one cluster after the other, and what they
-  /// keep of its square.
+  /// Least-squares fit of a slice by several clusters: sets their coefficients, cluster by cluster, and returns the
+  /// squared norm that they keep.
   double solve(Index slice, std::span<const uint32_t> clusters, Eigen::Ref<Eigen::RowVectorXf> coefficient) const;
-  /// Adds the cluster that explains most of what `clusters` with `coefficient` leave ([TGS06] block orthogonal matching
-  /// pursuit), keeping the order.
+  /// Adds the cluster that explains most of the residual of `clusters` with `coefficient` (block orthogonal matching
+  /// pursuit [TGS06]), in ascending order.
   void extend(Index slice, std::vector<uint32_t>& clusters, const Eigen::RowVectorXf& coefficient) const;
 
  private:
@@ -33,14 +33,14 @@ class ClusterProducts {
   RowMatrix products_;    // [cluster, rank][cluster, rank]
 };
 
-/// Of the squares of all slices, what their members keep of them.
+/// Squared norm that members keep, summed over all slices.
 struct KeptSquares {
-  double before;  // with the members that they had; 0 where they had none
+  double before;  // with the previous members; 0 if there were none
   double after;
 };
 
-/// Chooses members and coefficients of every slice anew: greedily, or those that `tensor` has where they are better, so
-/// the error never rises. The same for any number of threads.
+/// Chooses members and coefficients of every slice greedily, but keeps the members of `tensor` where they are better,
+/// so the error never rises. The result does not depend on the number of threads.
 KeptSquares choose_members(const ClusterProducts& products, ClusteredTensor& tensor, const TensorOptions& options,
                            const Progress& progress);
 

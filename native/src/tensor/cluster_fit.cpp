@@ -17,7 +17,7 @@ namespace {
 
 [[noreturn]] void wrong(const std::string& what) { throw Error(Status::invalid_argument, what); }
 
-/// A new cluster's first slices: so many would be its share.
+/// Number of slices that a restarted cluster begins with: half the average.
 Index fair_share(Index slices, Index clusters) { return std::max<Index>(1, slices / (2 * clusters)); }
 
 class ClusterSolver {
@@ -55,7 +55,7 @@ class ClusterSolver {
     }
   }
 
-  /// With one more member a slice than before; `error` after every step.
+  /// Fits with one more member per slice than before; appends the squared error after every step to `error`.
   void alternate(Index members, std::vector<double>& error) {
     tensor_.members = members;
     tensor_.coefficient.resize(0, 0);
@@ -89,7 +89,7 @@ class ClusterSolver {
                           progress_);
   }
 
-  /// None before the first choice.
+  /// Empty before the first choice.
   std::span<uint32_t> members_of(Index slice) {
     if (tensor_.member.empty()) return {};
     const auto members = static_cast<size_t>(tensor_.members);
@@ -138,7 +138,7 @@ class ClusterSolver {
     return all;
   }
 
-  /// `rests`: what its slices leave to it.
+  /// `rests`: residuals of its slices without it.
   void fit_cluster(uint32_t c, const DenseTensor& rests) {
     TensorCluster& cluster = tensor_.cluster[c];
     std::vector<Index> extent = tensor_.extent, ranks;
@@ -150,14 +150,14 @@ class ClusterSolver {
       tucker = truncated_hosvd(data, ranks, options_.tensor, progress_);
     } else {
       tucker.factor = cluster.factor;
-      // The sweep begins with this one: its number of columns is all that counts.
+      // The sweep computes this factor first, so only its number of columns matters.
       tucker.factor.insert(tucker.factor.begin(), RowMatrix::Zero(ranks[0], ranks[0]));
       hooi_sweep(data, tucker, options_.tensor, progress_);
     }
     const Index others = static_cast<Index>(tucker.core.data.size()) / ranks[0];
     const RowMatrix core = Eigen::Map<const RowMatrix>(tucker.core.data.data(), ranks[0], others);
     cluster.factor.assign(tucker.factor.begin() + 1, tucker.factor.end());
-    cluster.core = RowMatrix::Zero(options_.ranks[0], others);  // rows that few slices cannot fill stay 0
+    cluster.core = RowMatrix::Zero(options_.ranks[0], others);  // rows beyond the number of slices stay 0
     cluster.core.topRows(ranks[0]) = orthonormal(core.transpose()).transpose();
     basis_[c] = cluster.basis(options_.tensor, progress_);
   }
@@ -167,7 +167,7 @@ class ClusterSolver {
   const Progress& progress_;
   ClusteredTensor tensor_;
   std::vector<RowMatrix> basis_;
-  std::vector<double> square_;  // of each slice
+  std::vector<double> square_;  // squared norm of each slice
 };
 
 void check(const TensorView& slices, const ClusterOptions& options) {

@@ -8,11 +8,11 @@
 namespace velour {
 namespace {
 
-constexpr Index kRestColumns = 1024;  // of a piece of work
+constexpr Index kRestColumns = 1024;  // per piece of work
 
-/// The slices that have a cluster.
+/// The slices that have a given cluster as a member.
 struct Group {
-  std::vector<Index> place;  // in the result
+  std::vector<Index> place;  // rows in the result
   RowMatrix coefficient;     // [place][rank]
 };
 
@@ -39,7 +39,7 @@ std::vector<Group> grouped(const ClusteredTensor& tensor, std::span<const Index>
   return groups;
 }
 
-/// From columns [begin, begin + count) of the rests.
+/// Subtracts the part of one cluster from columns [begin, begin + count) of the residuals.
 void subtract(const Group& group, const RowMatrix& basis, Index begin, Index count, RowMatrix& product,
               DenseTensor& rests) {
   const auto rows = static_cast<Index>(group.place.size());

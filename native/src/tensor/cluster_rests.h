@@ -1,4 +1,4 @@
-// What clusters leave of slices.
+// Residuals of clustered slices.
 #pragma once
 
 #include <span>
@@ -7,9 +7,9 @@
 
 namespace velour {
 
-/// [slice of `which`][entry]: slices less what their clusters make of them, but for the cluster `but`, which may be one
-/// that is not there. `slices`: row-major; `basis`: of each cluster. Before members were chosen they are left whole.
-/// The same bits for any number of threads.
+/// Residuals [slice of `which`][entry]: slices minus the parts of all their clusters except `but`; an index past the
+/// last cluster excludes none. `slices`: row-major; `basis`: one per cluster. Slices without members stay unchanged.
+/// Bit-identical for any number of threads.
 DenseTensor cluster_rests(const TensorView& slices, const ClusteredTensor& tensor, const std::vector<RowMatrix>& basis,
                           std::span<const Index> which, uint32_t but, const TensorOptions& options,
                           const Progress& progress);

@@ -11,7 +11,7 @@ namespace {
 
 constexpr int kSteps = 20;
 
-/// Each centre drawn by the squared distance to those before it.
+/// Samples each center in proportion to the squared distance to the nearest previous one.
 RowMatrix seeds(const RowMatrix& points, Index count, uint64_t seed) {
   RowMatrix center(count, points.cols());
   std::vector<double> distance(static_cast<size_t>(points.rows()), std::numeric_limits<double>::infinity());

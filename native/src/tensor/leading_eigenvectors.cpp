@@ -11,10 +11,10 @@ namespace velour {
 namespace {
 
 constexpr Index kBlockOversampling = 8;
-constexpr Index kLeastSide = 160;   // of a matrix that is worth it
-constexpr Index kLeastBlocks = 6;   // of which a space may consist before a decomposition would be cheaper
-constexpr double kResidual = 1e-7;  // of the largest eigenvalue
-constexpr Index kRows = 128;        // of a piece of work
+constexpr Index kLeastSide = 160;   // smallest matrix for which a Krylov space pays off
+constexpr Index kLeastBlocks = 6;   // that must fit in the space; with fewer a decomposition is cheaper
+constexpr double kResidual = 1e-7;  // relative to the largest eigenvalue
+constexpr Index kRows = 128;        // per piece of work
 
 Eigen::MatrixXd decomposed(const Eigen::MatrixXd& products, Index rank) {
   return eigenpairs(products).vector.leftCols(rank);
@@ -29,7 +29,7 @@ Eigen::MatrixXd random_block(Index rows, Index columns, uint64_t seed) {
   return block;
 }
 
-/// Spanned by a random block and its products with the matrix, block by block.
+/// Krylov space of a random block and its repeated products with the matrix; grows block by block.
 class KrylovSpace {
  public:
   KrylovSpace(const Eigen::MatrixXd& products, Index block, Index most, const TensorOptions& options,
@@ -50,14 +50,14 @@ class KrylovSpace {
         });
     next_ = image_.middleCols(size_, block);
     size_ += block;
-    // Once is not enough where little of the image lies beyond the space.
+    // Orthogonalizing once is not enough where little of the image lies outside the space.
     for (int twice = 0; twice < 2; ++twice) {
       const auto before = basis_.leftCols(size_);
       next_ = orthonormal_doubles(next_ - before * (before.transpose() * next_).eval());
     }
   }
 
-  /// The vectors of the space that are nearest to eigenvectors; none while they are too far.
+  /// Ritz vectors, the best approximations of the leading eigenvectors in the space; none if residuals are too large.
   std::optional<Eigen::MatrixXd> leading(Index rank) const {
     const auto basis = basis_.leftCols(size_), image = image_.leftCols(size_);
     const Eigenpairs pairs = eigenpairs(basis.transpose() * image);

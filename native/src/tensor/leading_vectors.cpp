@@ -10,11 +10,11 @@
 namespace velour {
 namespace {
 
-constexpr Index kSide = 1024;  // of a matrix of products that is decomposed
+constexpr Index kSide = 1024;  // largest Gram matrix to decompose
 constexpr Index kSketchOversampling = 10;
 constexpr int kPowers = 3;
 
-/// The unfolding as a tensor of two modes: where it lies, or else in `storage`.
+/// The unfolding as a tensor of two modes: in place if its strides allow it, otherwise copied to `storage`.
 TensorView unfolded(const TensorView& view, size_t mode, DenseTensor& storage) {
   const Unfolding unfolding(view, mode);
   if (unfolding.blocks() == 1) {
@@ -28,7 +28,7 @@ TensorView unfolded(const TensorView& view, size_t mode, DenseTensor& storage) {
   return {storage.data.data(), {unfolding.rows(), view.size() / unfolding.rows()}};
 }
 
-/// From `basis`, which spans them: orthonormal columns.
+/// Leading vectors within the span of the orthonormal columns of `basis`.
 RowMatrix leading_within(const TensorView& view, size_t mode, const RowMatrix& basis, Index rank,
                          const TensorOptions& options, const Progress& progress) {
   const DenseTensor response = mode_product(view, mode, basis.transpose(), options.threads, progress);
@@ -37,7 +37,7 @@ RowMatrix leading_within(const TensorView& view, size_t mode, const RowMatrix& b
              .cast<float>();
 }
 
-/// By the products of columns with one another.
+/// Leading vectors from the Gram matrix of the columns.
 RowMatrix leading_by_columns(const TensorView& view, size_t mode, Index rank, const TensorOptions& options,
                              const Progress& progress) {
   DenseTensor storage{{}};
@@ -47,7 +47,7 @@ RowMatrix leading_by_columns(const TensorView& view, size_t mode, Index rank, co
                                                std::min(rank, matrix.extent(1)), options, progress)
                               .cast<float>();
   const DenseTensor left = mode_product(matrix, 1, right.transpose(), options.threads, progress);
-  RowMatrix all = RowMatrix::Zero(rows, rank);  // beyond the columns any direction does
+  RowMatrix all = RowMatrix::Zero(rows, rank);  // any direction serves beyond the number of columns
   all.leftCols(right.cols()) = Eigen::Map<const RowMatrix>(left.data.data(), rows, right.cols());
   return orthonormal(all);
 }
@@ -61,7 +61,7 @@ RowMatrix random_range(const TensorView& view, size_t mode, Index columns, int p
   RowMatrix random(columns, a.extent(1));
   for (Index c = 0; c < random.cols(); ++c) {
     RandomStream numbers(options.seed, static_cast<uint64_t>(c), mode);
-    // Sums of three uniform numbers are close enough to normal ones.
+    // The sum of three uniform numbers is close enough to a normal distribution.
     for (Index r = 0; r < columns; ++r) {
       const float u = numbers.next(), v = numbers.next();
       random(r, c) = u + v + numbers.next() - 1.5f;

@@ -1,5 +1,5 @@
-// Blocks that fit the caches, tiles that fit the registers [GG08]. Highway compiles this file once for each
-// instruction set.
+// Matrix products in blocks that fit the caches and tiles that fit the registers [GG08]. Highway compiles this file
+// once per instruction set.
 #include "tensor/matrix_product.h"
 
 #include <algorithm>
@@ -19,11 +19,11 @@ namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 using Lanes = hn::CappedTag<float, 16>;
 
-constexpr Index kTileRows = 6;           // of two vectors each: with their factors they fill 16 registers
-constexpr Index kDepth = 256;            // factors of an entry that are packed together
-constexpr Index kRows = 16 * kTileRows;  // of the left matrix that are packed together, for the second cache
+constexpr Index kTileRows = 6;           // of two vectors each; with the factors they fill 16 registers
+constexpr Index kDepth = 256;            // factors per entry that are packed together
+constexpr Index kRows = 16 * kTileRows;  // of the left matrix that are packed together, for the L2 cache
 
-/// `width` numbers, kTileRows or whole vectors of them; a call of memmove would cost more than the copy.
+/// Copies `width` numbers: kTileRows or a multiple of the vector size. A call of memmove would cost more than the copy.
 HWY_INLINE void copy_few(const float* from, Index width, float* to) {
   const Lanes d;
   const auto lanes = static_cast<Index>(hn::Lanes(d));
@@ -34,7 +34,8 @@ HWY_INLINE void copy_few(const float* from, Index width, float* to) {
   }
 }
 
-/// Panels of `width` rows each, factor by factor; zeros beyond the last row. Columns are rows of the transpose.
+/// Packs panels of `width` rows each, column by column, with zeros beyond the last row. Pass the transpose to pack
+/// panels of columns.
 void pack(const StridedMatrix<const float>& m, Index width, std::vector<float>& to) {
   const Index panels = (m.rows + width - 1) / width;
   to.resize(static_cast<size_t>(panels * width * m.columns));
@@ -53,7 +54,7 @@ void pack(const StridedMatrix<const float>& m, Index width, std::vector<float>& 
   }
 }
 
-/// [kTileRows][two vectors]: the product of two panels.
+/// Computes the product of two panels: [kTileRows][two vectors].
 template <class D>
 HWY_INLINE void multiply_tile(D d, const float* rows, const float* columns, Index depth, float* tile) {
   const size_t lanes = hn::Lanes(d);
@@ -85,7 +86,7 @@ HWY_INLINE void multiply_tile(D d, const float* rows, const float* columns, Inde
   keep(5, f0, f1);
 }
 
-/// A tile to where it belongs; `adds`: to what is there.
+/// Writes a tile to the product; `adds`: adds to the values there.
 HWY_INLINE void put_tile(const float* tile, Index width, bool adds, const StridedMatrix<float>& to) {
   const Lanes d;
   const auto lanes = static_cast<Index>(hn::Lanes(d));
@@ -103,7 +104,7 @@ HWY_INLINE void put_tile(const float* tile, Index width, bool adds, const Stride
   }
 }
 
-/// `lower`: only tiles that reach the diagonal, or lie below it.
+/// `lower`: computes only tiles on or below the diagonal.
 void multiply_simd(const StridedMatrix<const float>& a, const StridedMatrix<const float>& b,
                    const StridedMatrix<float>& product, bool lower) {
   static thread_local std::vector<float> packed_rows, packed_columns;

@@ -1,4 +1,4 @@
-// Products of matrices of floats, by the widest instructions that the processor has.
+// Products of float matrices, with the widest instructions of the processor.
 #pragma once
 
 #include <Eigen/Core>
@@ -7,7 +7,7 @@ namespace velour {
 
 using Index = Eigen::Index;
 
-/// Somewhere in memory, with any strides; owns nothing.
+/// Non-owning view of a matrix with any strides.
 template <class T>
 struct StridedMatrix {
   T* data;
@@ -18,7 +18,7 @@ struct StridedMatrix {
 void multiply(const StridedMatrix<const float>& a, const StridedMatrix<const float>& b,
               const StridedMatrix<float>& product);
 
-/// `product` = a times its transpose: what lies on and below the diagonal; above it anything.
+/// `product` = a a^T, on and below the diagonal; entries above it are unspecified.
 void multiply_by_itself(const StridedMatrix<const float>& a, const StridedMatrix<float>& product);
 
 }  // namespace velour

@@ -8,13 +8,14 @@
 namespace velour {
 namespace {
 
-// Of a piece of work: fixed, so that sums do not depend on threads. A sum of products is written for each piece.
+// Columns per piece of work. Fixed, so that sums do not depend on the number of threads. Pieces of summed products are
+// longer because each adds a whole matrix to the sum.
 constexpr Index kProductColumns = 256, kSummedColumns = 1024;
-constexpr size_t kBlocks = 64;          // small blocks of a piece
-constexpr size_t kSums = 32;            // partial sums, at most: fixed as well
-constexpr size_t kSumBytes = 64 << 20;  // of all of them, about
+constexpr size_t kBlocks = 64;          // small blocks per piece
+constexpr size_t kSums = 32;            // maximum number of partial sums; also fixed
+constexpr size_t kSumBytes = 64 << 20;  // approximate size of all partial sums
 
-/// The columns of an unfolding in pieces.
+/// Splits the columns of an unfolding into pieces of work.
 class Pieces {
  public:
   Pieces(const Unfolding& u, Index together)
@@ -25,7 +26,7 @@ class Pieces {
         together_(parts_ == 1 ? kBlocks : 1) {}
   size_t count() const { return (blocks_ * parts_ + together_ - 1) / together_; }
 
-  /// use(block, first column, columns).
+  /// Calls use(block, first column, number of columns).
   template <class Use>
   void visit(size_t piece, const Use& use) const {
     const size_t end = std::min(blocks_ * parts_, (piece + 1) * together_);
@@ -41,7 +42,7 @@ class Pieces {
   size_t parts_, together_;
 };
 
-/// On and below the diagonal.
+/// Adds entries on and below the diagonal only.
 void add_products(const StridedMatrix<const float>& columns, RowMatrix& product, Eigen::MatrixXd& sum) {
   multiply_by_itself(columns, {product.data(), product.rows(), product.cols(), product.cols(), 1});
   sum.triangularView<Eigen::Lower>() += product.cast<double>();

@@ -6,13 +6,13 @@
 
 namespace velour {
 
-/// view x_mode matrix: every column of the mode's unfolding times `matrix`, whose columns are the mode's indices.
-/// Row-major. The same bits for any number of threads.
+/// view x_mode matrix: multiplies every column of the mode's unfolding by `matrix`, which has a column per index of the
+/// mode. The result is row-major and bit-identical for any number of threads.
 DenseTensor mode_product(const TensorView& view, size_t mode, const RowMatrix& matrix, int threads,
                          const Progress& progress);
 
-/// The unfolding times its transpose, in double: products of any two slices of the mode. The same bits for any number
-/// of threads.
+/// The unfolding times its transpose, in double: inner products of all pairs of slices of the mode. Bit-identical for
+/// any number of threads.
 Eigen::MatrixXd slice_products(const TensorView& view, size_t mode, int threads, const Progress& progress);
 
 }  // namespace velour

@@ -1,4 +1,4 @@
-// Matrices as tensors and images hold them.
+// Row-major matrices, the layout of tensors and images.
 #pragma once
 
 #include <Eigen/Core>

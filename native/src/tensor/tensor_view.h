@@ -1,4 +1,4 @@
-// Dense tensors: views of memory, and tensors that own theirs.
+// Dense tensors: non-owning views and owning tensors.
 #pragma once
 
 #include <utility>
@@ -10,10 +10,10 @@ namespace velour {
 
 using Index = Eigen::Index;
 
-/// Entries somewhere in memory, mode by mode; owns nothing.
+/// Non-owning view of a tensor with any strides.
 class TensorView {
  public:
-  /// Row-major: entries of the last mode lie side by side.
+  /// Row-major: entries of the last mode are contiguous.
   TensorView(const float* data, std::vector<Index> extents);
   /// `strides` in entries.
   TensorView(const float* data, std::vector<Index> extents, std::vector<Index> strides);
@@ -35,7 +35,7 @@ class TensorView {
   std::vector<Index> extent_, stride_;
 };
 
-/// Row-major.
+/// Row-major tensor that owns its entries.
 struct DenseTensor {
   explicit DenseTensor(std::vector<Index> extents);
 
@@ -46,7 +46,7 @@ struct DenseTensor {
   std::vector<float> data;
 };
 
-/// The same entries, row-major.
+/// Copies the entries to a row-major tensor.
 DenseTensor copied(const TensorView& view);
 
 }  // namespace velour

@@ -8,7 +8,7 @@
 namespace velour {
 namespace {
 
-/// Modes, those first that shrink most.
+/// Modes in the order in which they shrink, most first.
 std::vector<size_t> by_shrinking(const std::vector<Index>& extents, const std::vector<Index>& ranks) {
   std::vector<size_t> order(extents.size());
   std::iota(order.begin(), order.end(), size_t{0});
@@ -55,7 +55,7 @@ void hooi_sweep(const TensorView& view, Tucker& tucker, const TensorOptions& opt
   };
   tucker.core = improve(projected(view, factor, 0, options, progress), 0);
   if (view.order() == 1) return;
-  // All others look at the tensor through the first mode's new factor.
+  // All other modes use the tensor projected on the new factor of the first.
   const DenseTensor seen = mode_product(view, 0, factor[0].transpose(), options.threads, progress);
   for (size_t mode = 1; mode < view.order(); ++mode) {
     std::vector<RowMatrix> others = factor;

@@ -5,7 +5,7 @@
 namespace velour {
 namespace {
 
-constexpr Index kEnoughColumns = 16;  // enough
+constexpr Index kEnoughColumns = 16;  // enough to fill the registers
 
 }  // namespace
 
@@ -19,7 +19,7 @@ Unfolding::Unfolding(const TensorView& view, size_t mode) {
       group_.emplace_back(k, k);
     }
   }
-  // Few columns would leave registers empty, far ones cache lines.
+  // Too few columns would leave registers empty; a large stride would waste cache lines.
   const auto rank = [&](const Group& group) {
     Index extent = 1;
     for (size_t k = group.first; k <= group.second; ++k) extent *= view.extent(k);

@@ -1,4 +1,4 @@
-// Tensors as matrices.
+// Unfoldings of tensors into matrices.
 #pragma once
 
 #include "tensor/matrix_product.h"
@@ -7,21 +7,21 @@
 namespace velour {
 
 /// The mode-n unfolding, the matrix whose rows are the indices of a mode and whose columns are all others, as blocks of
-/// columns that stay where they are: neighbouring modes that lie evenly in memory are one, of those the one of the
-/// smallest stride that has enough indices makes the columns of a block, and there is a block for every index of the
-/// rest.
+/// columns that stay in place. Adjacent modes that are contiguous in memory are merged. The merged mode with the
+/// smallest stride among those with enough indices forms the columns of a block; there is one block for every index of
+/// the others.
 class Unfolding {
  public:
   Unfolding(const TensorView& view, size_t mode);
-  /// `like`: one of the same extents but for `mode`, whose blocks hold the same columns; `view` is row-major.
+  /// Uses blocks of the same columns as `like`, which has the same extents except for `mode`. `view` is row-major.
   Unfolding(const TensorView& view, size_t mode, const Unfolding& like);
 
   size_t blocks() const { return first_.size(); }
   Index rows() const { return rows_; }
-  Index columns() const { return columns_; }  // of a block
+  Index columns() const { return columns_; }  // per block
   Index row_stride() const { return row_stride_; }
   Index column_stride() const { return column_stride_; }
-  /// `count` columns of a block from column `begin` on; `data`: of the view.
+  /// Columns [begin, begin + count) of a block; `data`: the data of the view.
   template <class T>
   StridedMatrix<T> part(T* data, size_t block, Index begin, Index count) const {
     return {data + first_[block] + begin * column_stride_, rows_, count, row_stride_, column_stride_};
@@ -31,7 +31,7 @@ class Unfolding {
   using Group = std::pair<size_t, size_t>;  // modes first ... last
   void lay_out(const TensorView& view, size_t mode);
 
-  std::vector<Group> group_;  // of all modes but this one
+  std::vector<Group> group_;  // all modes except this one
   size_t column_group_ = 0;
   Index rows_, columns_ = 1, row_stride_, column_stride_ = 1;
   std::vector<Index> first_;

@@ -19,7 +19,8 @@ Ring ring_at(const TileShape& shape, int column, int row) {
 
 TileParts make_chainmail(const TileShape& shape) {
   const double wire = 0.5 * shape.thickness * shape.pitch();
-  // Quads of the wire's surface are about square: the way round the ring is that much longer.
+  // Makes the quads of the wire's surface about square: the ring is longer than the wire's circumference by this
+  // factor.
   const int cells_along = static_cast<int>(std::ceil(shape.resolution * kRingRadius / shape.thickness));
   const MeshBuilder::Grid grid{.cells_u = cells_along,
                                .cells_v = shape.resolution,

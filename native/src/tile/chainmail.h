@@ -1,24 +1,24 @@
-// Rings of wire, each through four others.
+// Chain mail: rings of wire, each linked with four others.
 #pragma once
 
 #include "tile/tile.h"
 
 namespace velour {
 
-/// Rows of rings along x. All rings of a row lean the same way about y, those of the next row the other way, shifted by
-/// half a pitch; each ring passes through its two neighbours in the row before and its two in the row after.
+/// Rows of rings run along x. All rings of a row lean the same way about y, those of the next row the other way and
+/// shifted by half a pitch; each ring links with two neighbors in the previous row and two in the next.
 ///
-/// A ring's radius (to the middle of the wire) is 0.8 pitches and rows are a pitch apart: of all lattices of this kind
-/// about the one whose circles stay farthest from each other, for the lean below.
+/// A ring's radius (to the middle of the wire) is 0.8 pitches and rows are one pitch apart. For the lean below, this
+/// roughly maximizes the distance between the circles among lattices of this kind.
 inline constexpr double kRingRadius = 0.8;  // pitches
 inline constexpr double kRingLean = 0.6;    // radians between a ring's axis and +z
-/// The circles' least distance is 0.3987 pitches; a thicker wire would meet itself.
+/// The minimum distance between circles is 0.3987 pitches; thicker wires would intersect.
 inline constexpr double kThickestWire = 0.39;  // diameter, pitches
 
-/// Circles of `count` x `count` rings; thickness is the diameter of the wire.
+/// `count` x `count` circular rings; thickness is the diameter of the wire.
 TileParts make_chainmail(const TileShape& shape);
 
-/// The middle line of a ring: center + radius (cos t side + sin t along), around axis.
+/// Center line of a ring: center + radius (cos t side + sin t along), around axis.
 struct Ring {
   Vec3d center, side, along, axis;
   double radius;

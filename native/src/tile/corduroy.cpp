@@ -8,15 +8,15 @@
 namespace velour {
 namespace {
 
-constexpr int kTuftsAcross = 4;  // a pitch
-constexpr int kTuftsAlong = 6;   // a pitch
+constexpr int kTuftsAcross = 4;  // per pitch
+constexpr int kTuftsAlong = 6;   // per pitch
 
-/// Across one wale, `t` in [0, 1): x in [0, 1) from the left edge of the rib to the left edge of the next, and the
-/// height in heights of a rib. The last step of the grid crosses the groove.
+/// Profile across one wale at `t` in [0, 1): x in [0, 1) from the left edge of the rib to that of the next, and height
+/// in rib heights. The last step of the grid crosses the groove.
 glm::dvec2 wale(double t, double groove_step, double gap) {
   const double angle = kPiD * t / (1 - groove_step);
   const double half_width = 0.5 * (1 - gap);
-  const double across = std::cos(std::min(angle, kPiD));  // close lines where the rib is steep
+  const double across = std::cos(std::min(angle, kPiD));  // dense lines where the rib is steep
   return {half_width * (1 - across), 1 - across * across};
 }
 

@@ -11,10 +11,10 @@ namespace velour {
 namespace {
 
 constexpr uint64_t kStoneStream = 0x7374;
-/// Share of the bed's volume that balls take when they are dropped as here.
+/// Share of the bed's volume filled by balls dropped as in pack_balls().
 constexpr double kPackedShare = 0.5;
 
-/// What remains of a unit ball when flat faces are cut from it, with rounded edges.
+/// A unit ball with flat faces cut off and rounded edges.
 class Stone {
  public:
   Stone(const TileShape& shape, size_t number) : irregularity_(shape.irregularity) {
@@ -27,9 +27,9 @@ class Stone {
     }
   }
 
-  /// Distance of the surface from the middle, at most 1.
+  /// Distance of the surface from the center along `direction`, at most 1.
   double radius(const Vec3d& direction) const {
-    // The least of the distances to the ball and to all faces, as a p-norm of their reciprocals: edges come out round.
+    // Smooth minimum of the distances to the ball and all faces: a p-norm of their reciprocals, which rounds the edges.
     double sum = 1;
     for (const Face& face : faces_) {
       const double reciprocal = glm::dot(face.normal, direction) / face.distance;
@@ -51,7 +51,7 @@ class Stone {
 constexpr uint32_t kFloorSlot = 0, kStoneSlots = 3;
 
 TileMaterial mineral(const char* name, float grey, float warmth) {
-  // Nothing but diffuse: dry stone.
+  // Dry stone is purely diffuse.
   return {name, {.base_color = {grey + warmth, grey, grey - warmth}, .roughness = 1, .specular = 0}};
 }
 

@@ -1,4 +1,4 @@
-// Pebbles.
+// Gravel: a bed of pebbles.
 #pragma once
 
 #include "tile/packing.h"
@@ -6,8 +6,8 @@
 
 namespace velour {
 
-/// Balls (irregularity 0) or stones cut from them, on the floor z = 0, which lets no light through. Thickness is the
-/// depth of the bed in pitches, about.
+/// Balls (irregularity 0) or stones cut from them, on the opaque floor z = 0. Thickness is the approximate depth of the
+/// bed in pitches.
 TileParts make_gravel(const TileShape& shape);
 
 /// The balls that the stones are cut from.

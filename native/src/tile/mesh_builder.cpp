@@ -5,7 +5,7 @@
 namespace velour {
 namespace {
 
-/// Lines of points that `cells` cells need.
+/// Number of lines of points for `cells` cells.
 int lines(int cells, const GridEnd& end) { return end.joined ? cells : cells + 1; }
 
 Vec3d unit_direction(double longitude, double colatitude) {
@@ -35,7 +35,7 @@ void MeshBuilder::add_grid(const Grid& grid, const Surface& surface) {
   const int lines_v = lines(grid.cells_v, grid.end_v);
   for (int i = 0; i < lines(grid.cells_u, grid.end_u); ++i) {
     for (int j = 0; j < lines_v; ++j) {
-      // The last line repeats the first one's very numbers, so that copies of the tile meet without a crack.
+      // The last line reuses the coordinates of the first, so that copies of the tile meet without cracks.
       const int i0 = i % grid.cells_u, j0 = j % grid.cells_v;
       Vec3d position = surface(i0 / double(grid.cells_u), j0 / double(grid.cells_v));
       if (i0 != i) position += grid.end_u.step;

@@ -1,4 +1,4 @@
-// Puts a tile's mesh together from curved surfaces.
+// Builds a tile's mesh from curved surfaces.
 #pragma once
 
 #include <functional>
@@ -7,10 +7,10 @@
 
 namespace velour {
 
-/// How a grid of points goes on beyond its last line.
+/// How a grid of points continues beyond its last line.
 struct GridEnd {
   bool joined = false;  // the line after the last is the first
-  Vec3d step{0.0};      // otherwise: the last line is the first one moved by a period
+  Vec3d step{0.0};      // otherwise: the last line is the first one shifted by a period
 
   static GridEnd join() { return {.joined = true}; }
   static GridEnd repeat(const Vec3d& step) { return {.step = step}; }
@@ -18,7 +18,7 @@ struct GridEnd {
 
 class MeshBuilder {
  public:
-  /// A point for u, v in [0, 1); d/du x d/dv points outwards.
+  /// Point for u, v in [0, 1); d/du x d/dv points outward.
   using Surface = std::function<Vec3d(double u, double v)>;
   struct Grid {
     int cells_u, cells_v;
@@ -27,13 +27,13 @@ class MeshBuilder {
   };
   void add_grid(const Grid& grid, const Surface& surface);
 
-  /// A point in a direction from the middle, for a closed surface that each ray from the middle meets once.
+  /// Point in a direction from the center, for a closed surface that each ray from the center meets once.
   using Globe = std::function<Vec3d(const Vec3d& direction)>;
-  /// `around` meridians (even), half as many steps from pole to pole; slot `slot`.
+  /// `around`: number of meridians (even); half as many steps from pole to pole.
   void add_globe(int around, uint32_t slot, const Globe& globe);
 
-  /// The mesh, with normals that are the means of the triangles around, weighted by their angles as in Blender, across
-  /// borders of the period too.
+  /// Returns the mesh. Its normals are means over the surrounding triangles weighted by angle, as in Blender, also
+  /// across borders of the period.
   TileMesh finish();
 
  private:
@@ -43,7 +43,7 @@ class MeshBuilder {
   void add_pole(int around, uint32_t pole, uint32_t ring, bool north, uint32_t slot);
 
   TileMesh mesh_;
-  std::vector<uint32_t> original_;  // the vertex that a vertex repeats, or itself
+  std::vector<uint32_t> original_;  // the vertex that each vertex duplicates, or itself
 };
 
 }  // namespace velour

@@ -12,7 +12,7 @@ namespace {
 constexpr uint64_t kStream = 0x6261;
 constexpr int kPlacesTried = 400;
 
-/// Height at which a ball that falls straight down stops.
+/// Height of the center at which a ball falling straight down comes to rest.
 double resting_height(const std::vector<Ball>& balls, const Ball& falling, double period) {
   double height = falling.radius;
   for (const Ball& other : balls) {

@@ -1,4 +1,4 @@
-// Balls that lie on each other, in a box without sides.
+// Packing of balls in a box that is periodic in x and y.
 #pragma once
 
 #include <cstdint>
@@ -17,15 +17,15 @@ struct PackingOptions {
   double period = 1;  // along x and y; at least four times the largest radius
   double largest_radius = 0.1;
   double smallest_radius = 0.05;
-  double volume = 0.1;  // balls are dropped until theirs reaches this
+  double volume = 0.1;  // balls are dropped until their total volume reaches this
   uint64_t seed = 0;
 };
 
-/// Balls dropped one by one, each at that of a few hundred random places where it comes to rest lowest; the floor is
-/// z = 0. No two meet, whatever copies of the period they belong to. Centres lie in [0, period).
+/// Balls dropped one by one, each at the one of a few hundred random positions where it comes to rest lowest; the floor
+/// is z = 0. No two intersect, periodic copies included. Centers lie in [0, period).
 std::vector<Ball> pack_balls(const PackingOptions& options);
 
-/// From a to b by the shortest way, across the border where that is shorter.
+/// Shortest vector from a to b, across the border if that is shorter.
 Vec3d periodic_difference(const Vec3d& a, const Vec3d& b, double period);
 
 }  // namespace velour

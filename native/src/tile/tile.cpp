@@ -14,7 +14,7 @@
 namespace velour {
 namespace {
 
-/// Bounds the triangles: a chain mail, the finest kind, then has eight million.
+/// Bounds the number of triangles: eight million for chain mail, the finest kind.
 constexpr int kMaxPointsAcross = 1024;
 constexpr int kLeastResolution = 6;
 constexpr double kLeastSize = 1e-6, kLargestSize = 1e3;

@@ -41,7 +41,7 @@ class Yarns {
 
  private:
   Vec3d point(int yarn, double u, double v) const {
-    const double angle = 2 * kPiD * (along_x_ ? -v : v);  // outwards is outwards for both
+    const double angle = 2 * kPiD * (along_x_ ? -v : v);  // orients both sets outward
     const double width = thickness_share(yarn, u);
     const double along = u * shape_.size;
     const double across = (yarn + 0.5) * shape_.pitch() + half_width_ * width * std::cos(angle);
@@ -49,7 +49,7 @@ class Yarns {
     return along_x_ ? Vec3d(along, across, z) : Vec3d(across, along, z);
   }
 
-  /// Thick and thin places: at most 1, so that yarns stay inside of what keeps them apart.
+  /// Thickness relative to the ideal shape, at most 1, so that yarns stay within the bounds that keep them apart.
   double thickness_share(int yarn, double u) const {
     const uint64_t stream = 2 * static_cast<uint64_t>(yarn) + (along_x_ ? 1 : 0);
     return 1 - shape_.irregularity * PeriodicNoise{shape_.seed, stream, {shape_.count, 1}}({u, 0});
@@ -71,7 +71,7 @@ class Yarns {
   Pattern pattern_;
   bool along_x_;
   double half_width_, half_height_;
-  double rise_;  // of a yarn's middle at a crossing
+  double rise_;  // height of a yarn's center at a crossing
 };
 
 TileParts make_cloth(const TileShape& shape, Pattern pattern, std::vector<TileMaterial> materials) {

@@ -1,4 +1,4 @@
-// What is solid in the shell over a surface.
+// VOTF volume: which points of the shell over a surface are solid.
 #pragma once
 
 #include <cstdint>
@@ -6,20 +6,20 @@
 
 namespace velour {
 
-/// Signed distances to the surface of one tile's structure, periodic in x and y, on points of a grid; positive outside.
-/// Lengths are widths of the tile, so a tile's x runs over [0, 1) and its y over [0, aspect). Heights are over the
+/// Signed distances to the surface of a tile's structure at the points of a grid, periodic in x and y; positive
+/// outside. Lengths are in tile widths: a tile's x runs over [0, 1) and its y over [0, aspect). Heights are above the
 /// surface that carries the shell.
 ///
-/// It stands for the view-dependent occlusion V(t, wv) of every texel t and view wv: whether the line through t along
-/// wv is blocked, between the views of a measurement and on curved surfaces as well (shell_trace.h).
+/// Represents the view-dependent occlusion V(t, wv) of every texel t and view wv, i.e. whether the line through t along
+/// wv is blocked, also between the measured views and on curved surfaces (shell_trace.h).
 struct OcclusionVolume {
-  uint32_t width = 0, height = 0, depth = 0;  // points along x and y, in the middles of cells, and along z
+  uint32_t width = 0, height = 0, depth = 0;  // grid points; x and y at the centers of cells
   float aspect = 1;
-  float bottom = 0, top = 0;      // heights of the first and of the last points of z
-  float reference = 0;            // height of the plane that a BTF of the tile has its texels on
-  float reach = 0;                // the longest distance that is told apart
-  bool closed = false;            // no vertical line comes through
-  float tile_width = 0;           // metres; 0: not known
+  float bottom = 0, top = 0;      // heights of the first and the last grid points along z
+  float reference = 0;            // height of the plane of the texels of a BTF of the tile
+  float reach = 0;                // distances are clamped to it
+  bool closed = false;            // no vertical line passes through
+  float tile_width = 0;           // meters; 0: unknown
   std::vector<uint8_t> distance;  // [z][y][x]: 1 stands for -reach, 255 for reach, 128 for 0
 
   uint64_t parameter_bytes() const { return distance.size(); }
@@ -31,13 +31,14 @@ struct OcclusionVolume {
   static constexpr int kZero = 128, kUnits = 127;
 };
 
-/// The volume against rays that meet the geometry itself, over views uniform by solid angle up to 75 degrees.
+/// Error of the volume against rays traced through the geometry itself, over views uniform in solid angle up to 75
+/// degrees.
 struct OcclusionErrors {
-  double coverage = 0;  // mean V of the views
-  double wrong = 0;     // share of texel centres and views whose visibility the volume gets wrong
+  double coverage = 0;  // mean V over the views
+  double wrong = 0;     // share of (texel center, view) pairs with wrong visibility
 };
 
-/// The byte of a distance, as a share of the reach.
+/// Byte that encodes a distance, given as a share of the reach.
 uint8_t distance_byte(float share);
 
 }  // namespace velour

@@ -29,7 +29,7 @@ ShellDepth deepest_simd(const ShellTable& t, const ShellWay& way, float from, fl
   const float stride = std::max(t.pitch / way.speed, far / kMostDepthLooks);
   const V top = hn::Set(d, t.top), offset = hn::Set(d, way.offset), first = hn::Iota(d, 0);
   ShellDepth deepest{-std::numeric_limits<float>::infinity(), from};
-  // Counted, so that a way on which the stride vanishes ends as well.
+  // An integer counter, so that the loop also ends where the stride vanishes.
   for (int look = 0; look <= kMostDepthLooks && deepest.depth < most; look += static_cast<int>(hn::Lanes(d))) {
     const float gone = stride * static_cast<float>(look);
     if (!(gone <= far)) break;

@@ -1,4 +1,4 @@
-// How deep within a structure rays come.
+// Depth of rays within a structure.
 #pragma once
 
 #include "votf/shell_trace.h"
@@ -6,20 +6,20 @@
 namespace velour {
 
 struct ShellDepth {
-  float depth;  // widths; negative: how far outside
-  float s;      // metres behind the crossing
+  float depth;  // tile widths; negative: distance outside
+  float s;      // meters past the crossing
 };
 
-/// The deepest place of a way from `from`, metres behind the crossing, to its end: of places a pitch apart, or of
-/// kMostDepthLooks. Once they are deeper than `most`, what lies further on is left out.
+/// Deepest point of a way between `from`, meters past the crossing, and its end, sampled a pitch apart or at
+/// kMostDepthLooks points, whichever is coarser. Stops once the depth reaches `most`.
 ShellDepth deepest_behind(const ShellField& field, const ShellWay& way, float from, float most);
 
 inline constexpr int kMostDepthLooks = 256;
 
-/// To an outline of the structure along a ray, seen from the place where the ray meets it.
+/// Silhouette of the structure beside a ray, relative to the point where the ray hits the structure.
 struct ShellOutline {
-  float depth;   // how deep within the structure the ray comes behind that place, widths; `most`, or deeper, if so
-  Vec3 outside;  // tile, unit: towards the nearest outside, across the ray; zero where there is none
+  float depth;   // maximum depth within the structure past that point, tile widths; not below `most`: no silhouette
+  Vec3 outside;  // tile, unit: toward the nearest outside, perpendicular to the ray; zero if there is none
 };
 ShellOutline outline_beside(const ShellField& field, const ShellWay& way, float s, float most);
 

@@ -1,4 +1,4 @@
-// Distances in a shell, ready to be looked up.
+// Look-up of distances in a shell.
 #pragma once
 
 #include <memory>
@@ -9,15 +9,15 @@
 
 namespace velour {
 
-/// What a look-up needs of a volume, for kernels.
+/// The data of a volume that the look-up kernels need.
 struct ShellTable {
-  const uint8_t* column;          // [y][x][z], one more of each side, repeated; readable for 4 bytes from each point
+  const uint8_t* column;          // [y][x][z], y and x one longer (periodic); readable for 4 bytes from each point
   uint32_t width, height, depth;  // points
-  uint32_t row;                   // points from one y to the next
-  float bottom, top, pitch;       // widths
-  float per_step;                 // points of z a width
-  float per_aspect;               // periods along y a width
-  float unit;                     // widths a unit of the bytes
+  uint32_t row;                   // points between consecutive y
+  float bottom, top, pitch;       // tile widths
+  float per_step;                 // points along z per tile width
+  float per_aspect;               // periods along y per tile width
+  float unit;                     // tile widths per unit of the bytes
 };
 
 /// Immutable, thread-safe.
@@ -27,14 +27,14 @@ class ShellField {
 
   const OcclusionVolume& volume() const { return *volume_; }
   const ShellTable& table() const { return table_; }
-  /// Signed distance at `q`, trilinear, widths of the tile; x and y repeat, z is held within the volume.
+  /// Signed distance at `q` in tile widths, trilinear; x and y repeat, z is clamped to the volume.
   float distance(const Vec3& q) const;
-  /// Its gradient: the outward normal near the surface, not normalised.
+  /// Gradient of the distance: the outward normal near the surface, not normalized.
   Vec3 gradient(const Vec3& q) const;
 
  private:
   std::shared_ptr<const OcclusionVolume> volume_;
-  std::vector<uint8_t> column_;  // what a look-up needs of a column lies side by side
+  std::vector<uint8_t> column_;  // the points of a column, along z, are contiguous
   ShellTable table_;
 };
 

@@ -19,11 +19,11 @@ namespace HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
-using Few = hn::CappedTag<float, 4>;  // gathers of more lanes than there are rays cost for nothing
+using Few = hn::CappedTag<float, 4>;  // for few rays, where gathers in unused lanes are wasted
 using Many = hn::CappedTag<float, 16>;
 constexpr size_t kLongest = 16;
 
-/// Rays side by side that are on their way.
+/// Active rays, as a structure of arrays.
 struct Marches {
   enum Field : size_t {
     kX,
@@ -84,9 +84,9 @@ HWY_INLINE RayLanes<D> rays_of(D d, const Marches& m, size_t at) {
           of(Marches::kCosine), of(Marches::kCurvature), of(Marches::kScale),  of(Marches::kHeight)};
 }
 
-constexpr int kLooks = 4;  // of all rays before those that have ended make room
+constexpr int kLooks = 4;  // look-ups of all rays between compactions
 
-/// Writes what has become of the rays of a vector that have ended.
+/// Writes the hits of those rays of a vector that have ended.
 template <class D>
 HWY_INLINE void report(D d, const ShellTable& t, const RayLanes<D>& rays, const March<D>& m, hn::Mask<D> ended,
                        const uint32_t* number, ShellHit* hits) {
@@ -106,7 +106,8 @@ HWY_INLINE void report(D d, const ShellTable& t, const RayLanes<D>& rays, const 
   }
 }
 
-/// As many looks for the vector of rays at `at`, of `count`. Those that have not ended go to `left` and on; how many.
+/// Advances the vector of rays at `at`, of `count` in all, by kLooks look-ups. Moves unfinished rays to `left` and
+/// returns their number.
 template <class D>
 HWY_INLINE size_t march_some(D d, const ShellTable& t, Marches& all, size_t at, size_t count, size_t left, bool last,
                              ShellHit* hits) {
@@ -125,7 +126,7 @@ HWY_INLINE size_t march_some(D d, const ShellTable& t, Marches& all, size_t at, 
     place.z = hn::Add(place.z, top);
     m.look(d, t, hn::Sub(distance_at(d, t, place), offset));
   }
-  if (last) {  // what they have glided along for so long, they have met
+  if (last) {  // a ray that glides along a surface for so long has hit it
     m.met = hn::Or(m.met, m.active);
     m.active = hn::MaskFromVec(hn::Zero(d));
   }
@@ -146,7 +147,7 @@ template <class D>
 HWY_INLINE void march_ways(D d, const ShellTable& t, const ShellWay* ways, size_t count, ShellHit* hits) {
   Marches all;
   for (size_t i = 0; i < count; ++i) all.take(i, ways[i], i);
-  // What fills the last vector.
+  // Pads the last vector.
   for (size_t i = count; i % hn::Lanes(d) != 0; ++i) all.take(i, ways[0], 0);
   for (int looks = 0; count > 0; looks += kLooks) {
     const bool last = looks + kLooks >= kMostShellLooks;

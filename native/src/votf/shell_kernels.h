@@ -1,4 +1,4 @@
-// Look-ups and rays in a shell, many side by side.
+// Vectorized look-ups and ray marching in a shell.
 #pragma once
 
 #include <span>
@@ -10,11 +10,11 @@ namespace velour {
 /// ShellField::distance at each of `places`.
 void shell_distances(const ShellTable& table, std::span<const Vec3> places, float* distance);
 
-/// trace_shells() for at most kWaysTogether of them.
+/// trace_shells() for at most kWaysTogether ways.
 inline constexpr size_t kWaysTogether = 256;
 void march_shells(const ShellTable& table, std::span<const ShellWay> ways, ShellHit* hits);
 
-/// ShellRay::at.
+/// Implementation of ShellRay::at.
 Vec3 place_on_ray(const ShellRay& ray, float s);
 
 }  // namespace velour

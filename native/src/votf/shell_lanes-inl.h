@@ -1,5 +1,5 @@
-// Distances in a shell and places on its rays, side by side. Included once for each instruction set, by sources that
-// Highway compiles so.
+// Vectorized distance look-ups in a shell and points on its rays. Included once for each instruction set, by sources
+// that Highway compiles for several.
 #if defined(VELOUR_VOTF_SHELL_LANES_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef VELOUR_VOTF_SHELL_LANES_INL_H_
 #undef VELOUR_VOTF_SHELL_LANES_INL_H_
@@ -23,12 +23,12 @@ struct PlaceLanes {
   hn::Vec<D> x, y, z;
 };
 
-/// The point before `periods`, of `points` in the middles of as many cells of a period, and how far beyond it. Any
-/// number gives a point there is.
+/// Index of the grid point before position `periods`, for `points` points at the cell centers of a period; `part`
+/// receives the fraction beyond it. Any input gives a valid index.
 template <class D, class V = hn::Vec<D>>
 HWY_INLINE hn::Vec<hn::RebindToSigned<D>> periodic_cell(D d, V periods, uint32_t points, V& part) {
   const hn::RebindToSigned<D> di;
-  // Beyond, a float has no room for a fraction.
+  // Floats of this size and above have no fraction.
   const V fraction =
       hn::IfThenElseZero(hn::Lt(hn::Abs(periods), hn::Set(d, 0x1p23f)), hn::Sub(periods, hn::Floor(periods)));
   const V at = hn::MulAdd(fraction, hn::Set(d, static_cast<float>(points)), hn::Set(d, -0.5f)), before = hn::Floor(at);
@@ -37,7 +37,7 @@ HWY_INLINE hn::Vec<hn::RebindToSigned<D>> periodic_cell(D d, V periods, uint32_t
   return hn::Min(hn::IfThenElse(hn::Lt(cell, hn::Zero(di)), last, cell), last);
 }
 
-/// Trilinear, widths.
+/// Trilinear distance, in tile widths.
 template <class D, class V = hn::Vec<D>>
 HWY_INLINE V distance_at(D d, const ShellTable& t, const PlaceLanes<D>& q) {
   const hn::RebindToSigned<D> di;
@@ -51,7 +51,7 @@ HWY_INLINE V distance_at(D d, const ShellTable& t, const PlaceLanes<D>& q) {
   const V z_part = hn::Sub(z, hn::ConvertTo(d, iz));
   const auto at = hn::Add(hn::Add(hn::Mul(y, hn::Set(di, row)), hn::Mul(x, hn::Set(di, depth))), iz);
   const auto byte = hn::Set(di, 0xff);
-  // Two points that follow each other along z, in one of four columns.
+  // Interpolates two consecutive points along z, in one of four columns.
   const auto along_z = [&](int32_t column) HWY_ATTR {
     const auto word = hn::GatherOffset(di, reinterpret_cast<const int32_t*>(t.column + column), at);
     const V low = hn::ConvertTo(d, hn::And(word, byte)),
@@ -69,7 +69,7 @@ struct RayLanes {
   hn::Vec<D> x, y, along_x, along_y, sine, cosine, curvature, scale, height;
 };
 
-/// One ray in all lanes.
+/// Broadcasts one ray to all lanes.
 template <class D>
 HWY_INLINE RayLanes<D> ray_in_all(D d, const ShellRay& ray, float sine) {
   const auto all = [&](float x) HWY_ATTR { return hn::Set(d, x); };
@@ -77,8 +77,8 @@ HWY_INLINE RayLanes<D> ray_in_all(D d, const ShellRay& ray, float sine) {
           all(ray.cosine),  all(ray.curvature), all(ray.scale),   all(ray.height)};
 }
 
-/// The angle of the right triangle with these legs, neither negative nor both 0, over `far`, which lies opposite;
-/// within 5e-6 of itself, by the polynomial of least such error.
+/// atan2(far, near) / far, for arguments that are not negative and not both 0. Relative error below 5e-6, by the
+/// minimax polynomial.
 template <class D, class V = hn::Vec<D>>
 HWY_INLINE V angle_over_far(D d, V far, V near) {
   const auto steep = hn::Gt(far, near);
@@ -93,7 +93,7 @@ HWY_INLINE V angle_over_far(D d, V far, V near) {
   return hn::Div(hn::IfThenElse(steep, rest, over_tangent), longer);
 }
 
-/// From the top.
+/// Points `s` meters past the crossing, with z relative to the top.
 template <class D, class V = hn::Vec<D>>
 HWY_INLINE PlaceLanes<D> place_on(D d, const RayLanes<D>& ray, V s) {
   const V one = hn::Set(d, 1.0f), a = hn::Mul(s, ray.sine), down = hn::Mul(s, ray.cosine);
@@ -101,8 +101,8 @@ HWY_INLINE PlaceLanes<D> place_on(D d, const RayLanes<D>& ray, V s) {
     return {hn::MulAdd(ray.along_x, a, ray.x), hn::MulAdd(ray.along_y, a, ray.y),
             hn::NegMulAdd(ray.scale, down, ray.height)};
   }
-  // In radii of the surface at the crossing: `bent` across and `b` up from the centre. A ray that passes beside the
-  // centre further than 84 degrees on is held there.
+  // In units of the radius of the surface at the crossing: `bent` across and `b` up from the center. A ray that passes
+  // beside the center is clamped at 84 degrees.
   const V bent = hn::Mul(ray.curvature, a), far = hn::Abs(bent);
   const V b = hn::Max(hn::NegMulAdd(ray.curvature, down, one), hn::Mul(hn::Set(d, 0.1f), far));
   const V fall = hn::Mul(s, hn::Sub(hn::Mul(ray.curvature, s), hn::Add(ray.cosine, ray.cosine)));

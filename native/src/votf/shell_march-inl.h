@@ -1,4 +1,4 @@
-// Sphere tracing of rays side by side. Included once for each instruction set, by sources that Highway compiles so.
+// Vectorized sphere tracing. Included once for each instruction set, by sources that Highway compiles for several.
 #if defined(VELOUR_VOTF_SHELL_MARCH_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef VELOUR_VOTF_SHELL_MARCH_INL_H_
 #undef VELOUR_VOTF_SHELL_MARCH_INL_H_
@@ -16,16 +16,16 @@ namespace HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
-/// What rays carry from look to look.
+/// State of the rays between look-ups.
 template <class D>
 struct March {
   using V = hn::Vec<D>;
   using Lanes = hn::Mask<D>;
-  V way, per_speed, end, own;       // way: 1 onwards, -1 back; metres a width
-  V begin, s, free, step, skipped;  // the last look was `step` before, in widths, and `free` of any surface
+  V way, per_speed, end, own;       // way: 1 forward, -1 backward; per_speed: meters per tile width, signed by way
+  V begin, s, free, step, skipped;  // the last look-up was `step` widths before, with `free` widths to any surface
   Lanes active, met;
 
-  /// Goes on from a place `distance` from the structure.
+  /// Advances the rays from points at `distance` from the structure.
   HWY_INLINE void look(D d, const ShellTable& t, V distance) {
     const V least = hn::Set(d, kLeastShellStep * t.pitch);
     Lanes within = hn::And(active, hn::Le(distance, hn::Set(d, kWithinShell * t.pitch)));
@@ -37,7 +37,7 @@ struct March {
   }
 
  private:
-  /// Which rays stay where they are still in the structure that they start on.
+  /// Moves rays out of the structure that they start on. Returns those that were still inside it.
   HWY_INLINE Lanes leave_own(D d, Lanes within, Lanes on_own, V distance, V least) {
     const Lanes stays = hn::And(within, on_own), out = hn::AndNot(within, on_own);
     begin = hn::IfThenElse(out, s, begin);
@@ -49,7 +49,7 @@ struct March {
     return stays;
   }
 
-  /// Between the two looks, where the distance falls to nothing.
+  /// Puts the hit where the distance, interpolated between the two look-ups, is zero.
   HWY_INLINE void meet(D d, Lanes meets, V distance) {
     const V part = hn::Min(hn::Set(d, 1.0f), hn::Div(distance, hn::Sub(distance, free)));
     const V at = hn::NegMulAdd(hn::Mul(per_speed, step), part, s);
@@ -60,14 +60,14 @@ struct March {
 
   HWY_INLINE void go_on(D d, Lanes goes, V distance, V least) {
     const V zero = hn::Zero(d);
-    // Between the two looks there may be something: back to what is free for certain.
+    // There may be a surface between the two look-ups: back to the end of the known free space.
     const Lanes doubts = hn::And(goes, hn::Lt(hn::Add(free, distance), step)), trusts = hn::AndNot(doubts, goes);
     const V back = hn::NegMulAdd(per_speed, hn::Sub(step, free), s);
     V next_step = hn::Mul(hn::Set(d, kShellStride), hn::Max(distance, least));
     V next = hn::MulAdd(per_speed, next_step, s);
     const Lanes ends = hn::And(trusts, hn::Ge(hn::Mul(hn::Sub(next, end), way), zero));
     if (!hn::AllFalse(d, ends)) {
-      // The last look is at the end, unless all before it is free for certain.
+      // The last look-up is at the end, unless the way to it is known to be free.
       const V certain = hn::MulAdd(per_speed, hn::Max(distance, least), s);
       active = hn::AndNot(hn::And(ends, hn::Ge(hn::Mul(hn::Sub(certain, end), way), zero)), active);
       next_step = hn::IfThenElse(ends, hn::Div(hn::Sub(end, s), per_speed), next_step);

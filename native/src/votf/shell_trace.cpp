@@ -10,16 +10,16 @@
 namespace velour {
 namespace {
 
-constexpr float kOwnDepth = 2;  // pitches: how deep within the structure a ray may seem to start that starts on it
+constexpr float kOwnDepth = 2;  // pitches: maximum depth at which a ray that starts on the structure may seem to start
 
 float squared(float x) { return x * x; }
 
-/// Widths that a ray within the shell covers a metre, at most.
+/// Upper bound on the tile widths that a ray within the shell covers per meter.
 float fastest(const ShellRay& ray, float sine, const OcclusionVolume& volume) {
   const float across = glm::length(ray.along) * sine;
-  // A hollow's rays steepen, and so do those of a bulge on their way up.
+  // Rays steepen within concave shells, and within convex ones on their way up.
   const float down = ray.scale * (ray.curvature < 0 || ray.height < 0 ? 1.0f : ray.cosine);
-  // Towards the centre of the curvature the same way covers more of the surface; not beyond a third of the radius.
+  // Toward the center of curvature the same length covers more of the surface. Bounded at a third of the radius.
   const float below = volume.top - volume.bottom + ray.height;
   const float radius = 1 - std::max(ray.curvature * below, ray.curvature * ray.height) / ray.scale;
   return std::sqrt(squared(across / squared(std::max(radius, 1.0f / 3))) + squared(down));
@@ -41,7 +41,7 @@ ShellSpan span_of(const ShellRay& ray, const OcclusionVolume& volume) {
 }
 
 ShellSpan span_from_side(const ShellRay& ray, const OcclusionVolume& volume, bool onwards) {
-  // As above, of s^2 curvature - 2 s cosine = rise (2 + curvature rise) the first positive one.
+  // First positive root, as above, of s^2 curvature - 2 s cosine = rise (2 + curvature rise).
   const float down = onwards ? ray.cosine : -ray.cosine, infinite = std::numeric_limits<float>::infinity();
   const auto first = [&](float rise) {
     const float towards = rise < 0 ? down : -down, bends = rise < 0 ? -ray.curvature : ray.curvature;

@@ -1,4 +1,4 @@
-// Which texels of a tile a view finds covered.
+// Texels of a tile that are occluded in a view.
 #pragma once
 
 #include <vector>
@@ -10,10 +10,10 @@ namespace velour {
 /// Texels over one period of a tile, [row][column]; row 0 is at y = 0.
 struct TileTexels {
   uint32_t width, height;
-  float aspect;  // of the tile
+  float aspect;  // height / width of the tile
 
   size_t size() const { return size_t{width} * height; }
-  /// Widths of the tile.
+  /// Center of a texel, in tile widths.
   Vec2 centre(uint32_t x, uint32_t y) const {
     return {(static_cast<float>(x) + 0.5f) / static_cast<float>(width),
             (static_cast<float>(y) + 0.5f) / static_cast<float>(height) * aspect};
@@ -23,10 +23,10 @@ struct TileTexels {
   }
 };
 
-/// View `i` of those that a volume is checked under: uniform by solid angle up to 75 degrees.
+/// View `i` for validating a volume: uniform in solid angle up to 75 degrees.
 Vec3 check_view(uint64_t seed, uint32_t i);
 
-/// V of the texels' centres under a view: 1 where the line through the centre along `wv` meets the structure.
+/// V at the texel centers for a view: 1 where the line through the center along `wv` meets the structure.
 std::vector<uint8_t> visibility_mask(const ShellField& field, const TileTexels& texels, const Vec3& wv);
 
 }  // namespace velour

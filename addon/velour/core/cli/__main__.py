@@ -4,5 +4,5 @@ try:
     from .main import main
 
     sys.exit(main())
-except KeyboardInterrupt:  # before main() could take care of it
+except KeyboardInterrupt:  # before main() could handle it
     sys.exit(130)

@@ -1,7 +1,7 @@
-"""How a verb ends."""
+"""Exit statuses of verbs."""
 
 DONE, FAILED, UNFINISHED, INTERRUPTED = 0, 1, 3, 130
 
 
 class UnfinishedError(Exception):
-    """One sentence: how far the render came, and where that lies."""
+    """The message says how far the render got, and where its samples are."""

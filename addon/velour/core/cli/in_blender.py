@@ -1,4 +1,4 @@
-"""The command line inside Blender: a command of 4.2 and newer, and a script for any.
+"""The command line inside Blender: as a command (4.2 and newer) or as a script (any version).
 
 blender --command velour VERB ...
 blender -b --python-exit-code 1 -P .../velour/core/cli/in_blender.py -- VERB ...
@@ -13,7 +13,7 @@ from pathlib import Path
 
 
 def main(arguments: list[str]) -> int:
-    """As main.main(). Blender keeps Ctrl-C from Python and waits for the end; here it cancels."""
+    """Like main.main(), but Ctrl-C cancels: Blender hides it from Python and waits for the end."""
     from .main import main as run
 
     signal.signal(signal.SIGINT, signal.default_int_handler)
@@ -21,7 +21,7 @@ def main(arguments: list[str]) -> int:
 
 
 def _run_as_script() -> int:
-    """Of the package that this file lies in; `__name__` does not tell, as no package was imported."""
+    """Finds the package by the path of this file, as `__name__` of a script does not tell it."""
     package = Path(__file__).resolve().parents[2]
     sys.path.insert(0, str(package.parent))
     own = importlib.import_module(f"{package.name}.core.cli.in_blender")

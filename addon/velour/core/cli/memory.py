@@ -1,4 +1,4 @@
-"""States what a render will take before it begins, and refuses one that would take more than there is."""
+"""States the estimated memory of a render before it begins, and refuses a render above the limit."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from . import output, render_part, unfinished
 
 
 def check(args: argparse.Namespace) -> Estimate:
-    """Before anything is read."""
+    """Call before anything is read. Raises VelourError if the render would exceed the limit."""
     estimate = memory_estimate.estimate(
         args.mesh, args.material, args.proposal, args.world, render_part.size(args),
         unfinished.side_file(args.output).exists(), args.threads or machine.threads(),

@@ -1,4 +1,4 @@
-"""Lines that tell how far a job is."""
+"""Progress of a job as text."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ _LINE_SECONDS = 10.0
 
 
 class ProgressLines:
-    """Called with the states of a job; a line of a log each ten seconds."""
+    """Called with the states of a job; logs a line every ten seconds."""
 
     def __init__(self, log: logging.Logger):
         self._log = log
@@ -25,7 +25,7 @@ class ProgressLines:
 
 
 class ProgressBar:
-    """Called with the states of a job; redraws its line and wipes it at the end."""
+    """Called with the states of a job; redraws its line and erases it at the end."""
 
     def __init__(self, stream: TextIO):
         self._stream = stream

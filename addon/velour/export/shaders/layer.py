@@ -1,18 +1,18 @@
-"""What a surface is the sum of."""
+"""Layers, whose sum is the shader of a surface."""
 
 from typing import NamedTuple
 
 import bpy
 
 BLACK = {"base_color": (0.0, 0.0, 0.0), "metallic": 0.0, "roughness": 1.0, "specular": 0.0}
-# What has no material is diffuse in Cycles before 5.0, and a Principled BSDF since; no property tells.
+# Without a material, Cycles shows diffuse before 5.0, and Principled since; no property reveals it.
 _USUAL = {} if bpy.app.version >= (5, 0) else {**BLACK, "base_color": (0.8, 0.8, 0.8)}
 
 
 class Factor(NamedTuple):
-    kind: str  # share of a mix, its rest, or a gain
+    kind: str  # "share" of a mix, its "rest", or a "gain"
     value: float = 1.0
-    picture: object = None  # image_nodes.Picture or corner_colors.CornerColors in its place
+    picture: object = None  # image_nodes.Picture or corner_colors.CornerColors that replaces it
 
 
 class Relief(NamedTuple):
@@ -20,28 +20,28 @@ class Relief(NamedTuple):
 
     picture: object
     strength: float
-    uv_map: str = ""  # of its tangents, by name; empty: the one that renders
+    uv_map: str = ""  # name of the UV map of its tangents; empty: the active render map
 
 
 class Layer(NamedTuple):
-    """Keywords of Shader.add_layer, pictures or CornerColors in the place of some, the factors of its weight.
+    """Keywords of Shader.add_layer, pictures or CornerColors that replace some, and factors of its weight.
 
-    kind: as Shader.add_layer's. A principled one may hold alpha and what glows until split() takes them out.
+    kind: as in Shader.add_layer. A principled layer may hold alpha and emission until split() separates them.
     """
 
     kind: str
     values: dict
     pictures: dict
     factors: tuple = ()
-    relief: object = None  # Relief of what reflects
-    glow: object = None  # an emission Layer that alpha holds of, too
+    relief: object = None  # Relief of the reflecting part
+    glow: object = None  # emission Layer, to which alpha also applies
 
     def weighed(self, factor):
         return self._replace(factors=(*self.factors, factor))
 
 
 def grey():
-    """The layer of a surface that has no material, or an unknown one."""
+    """The layer of a surface without a material, or with an unsupported one."""
     return Layer("principled", dict(_USUAL), {})
 
 
@@ -54,7 +54,7 @@ def black():
 
 
 def as_principled(layers):
-    """The Layer of a material that is one Principled node, or as good as one; None: it is mixed."""
+    """The Layer of a material that is equivalent to one Principled node; None if it is mixed."""
     if len(layers) != 1 or layers[0].factors or layers[0].relief:
         return None
     layer = layers[0]
@@ -69,14 +69,14 @@ def as_principled(layers):
 
 
 def shines(layer):
-    """Whether it sends light of its own."""
+    """Whether the layer emits light."""
     if layer.kind != "emission":
         return layer.glow is not None and shines(layer.glow)
     return "base_color" in layer.pictures or max(layer.values["base_color"]) > 0.0
 
 
 def sources_of(layers):
-    """Pictures and CornerColors in the place of their numbers, and the Reliefs."""
+    """The Pictures and CornerColors of the layers, and their Reliefs."""
     parts = [*layers, *(layer.glow for layer in layers if layer.glow)]
     sources = [source for part in parts for source in part.pictures.values()]
     sources += [factor.picture for part in parts for factor in part.factors if factor.picture]
@@ -84,7 +84,7 @@ def sources_of(layers):
 
 
 def unlike_reflection(layers):
-    """What of the layers no reflectance can hold, in words."""
+    """Names of the parts of the layers that a reflectance cannot represent."""
     kinds = []
     if any(layer.kind == "emission" or layer.glow for layer in layers):
         kinds.append("what glows")
@@ -95,7 +95,7 @@ def unlike_reflection(layers):
 
 
 def split(layer):
-    """The same as layers of which none has alpha, or glows and reflects."""
+    """Splits a layer into layers without alpha that either emit or reflect."""
     values, pictures = dict(layer.values), dict(layer.pictures)
     there = Factor("share", values.pop("alpha", 1.0), pictures.pop("alpha", None))
     layers = [layer._replace(values=values, pictures=pictures, glow=None)]
@@ -108,7 +108,7 @@ def split(layer):
 
 
 def simplified(layers):
-    """Without factors of 1 and layers of weight 0."""
+    """Removes factors of 1 and layers of weight 0."""
     found = []
     for layer in layers:
         numbers = [_constant(factor) for factor in layer.factors]
@@ -120,7 +120,7 @@ def simplified(layers):
 
 
 def _constant(factor):
-    """The number of a factor, None of one that a picture gives."""
+    """The constant value of a factor; None if a picture provides it."""
     if factor.picture is not None:
         return None
     share = min(max(factor.value, 0.0), 1.0)

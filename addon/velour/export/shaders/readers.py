@@ -1,4 +1,4 @@
-"""Nodes of shaders as Layers."""
+"""Reads shader nodes as Layers."""
 
 import bpy
 
@@ -6,16 +6,16 @@ from ..plugs import fed_by
 from .layer import Factor, Layer, diffuse
 from .relief import read_relief
 
-# Our parameter: Blender's input, which a picture may give.
+# Velour's parameter: Blender's input, which may be textured.
 _PRINCIPLED = {
     "base_color": "Base Color",
     "metallic": "Metallic",
     "roughness": "Roughness",
     "alpha": "Alpha",
 }
-_USUAL_F0 = 0.04  # of an index of 1.5
-_GRAY = (0.3, 0.6, 0.1)  # as those Blenders have it
-# Inputs that Velour does not render; 0 makes no difference.
+_USUAL_F0 = 0.04  # reflectance at IOR 1.5
+_GRAY = (0.3, 0.6, 0.1)  # luminance weights of Blender before 4.0
+# Inputs that Velour does not support; at 0 they have no effect.
 _IGNORED = (
     "Subsurface",
     "Subsurface Weight",
@@ -28,13 +28,13 @@ _IGNORED = (
     "Diffuse Roughness",
     "Thin Film Thickness",
 )
-# No property tells how facets shadow each other.
+# No property reveals the masking-shadowing function.
 _SEPARABLE_SHADOWS = bpy.app.version < (3, 5)
-# No property tells: coats keep their energy, and dim what is below accordingly.
+# No property reveals it: since 4.5, coats conserve energy and attenuate the base accordingly.
 _COAT_LOBE = "whole" if bpy.app.version >= (4, 5) else "single"
-# No property tells: rough diffuse surfaces keep their energy since Principled has a roughness of its base.
+# No property reveals it: rough diffuse conserves energy since Principled has a diffuse roughness.
 _INTERREFLECTION = bpy.app.version >= (4, 3)
-# No property tells what it is: a random walk between facets before, a factor of one bounce since.
+# No property reveals it: a random walk between facets before 4.0, a factor on single scattering since.
 _RANDOM_WALK = "its distribution 'Multiscatter GGX' is shown as Blender 4's; it differs by a few per cent."
 _LINK_ONLY = ("Clearcoat Normal", "Tangent")
 
@@ -60,8 +60,8 @@ def _is_layered(plug):
 
 
 def _disney(plug, reader, values, pictures):
-    """What is peculiar to Principled before 4.0: its tint is the share of the base colour's hue in what
-    dielectrics reflect [Bur12]."""
+    """Parameters specific to Principled before 4.0, whose tint is the share of the base color's hue in the
+    dielectric reflection [Bur12]."""
     share = min(max(reader.value(plug.input("Specular Tint")), 0.0), 1.0)
     gray = sum(w * c for w, c in zip(_GRAY, values["base_color"], strict=True))
     if share == 0.0 or gray <= 0.0:
@@ -76,7 +76,7 @@ def _disney(plug, reader, values, pictures):
 
 
 def _layered(plug, reader):
-    """What is peculiar to the Principled BSDF of 4.0 and newer, where it makes a difference."""
+    """Parameters specific to the Principled BSDF of 4.0 and newer, if they have an effect."""
     values = {"formula": "layered"}
     tint = reader.value(plug.input("Specular Tint"))
     if min(tint) != 1.0 or max(tint) != 1.0:
@@ -93,7 +93,7 @@ def _layered(plug, reader):
 
 
 def _lobe(plug, reader):
-    """How GGX's facets shadow each other, of a Principled or Glossy BSDF; says so of other distributions."""
+    """GGX masking and multiple scattering of a Principled or Glossy BSDF; notes other distributions."""
     distribution = plug.node.distribution
     if distribution == "MULTI_GGX":
         if bpy.app.version < (4, 0):
@@ -105,8 +105,8 @@ def _lobe(plug, reader):
 
 
 def _specular(plug, reader):
-    """0.5 is an index of 1.5, as in Blender: the level scales the reflectance that the index has at normal
-    incidence. Before 4.0 that is 4 %, and IOR is of transmission alone."""
+    """Specular level, where 0.5 means IOR 1.5, as in Blender: it scales the IOR's reflectance at normal
+    incidence. Before 4.0 that reflectance is fixed at 4%, and IOR applies to transmission only."""
     level = reader.value(plug.input("Specular IOR Level", "Specular"))
     if not plug.input("Specular IOR Level"):
         return level
@@ -142,12 +142,12 @@ def _read_glossy(plug, reader):
 
 
 def _label(node, name):
-    """The name that Blender shows of a choice."""
+    """Name of an enum property's value in Blender's UI."""
     return node.bl_rna.properties[name].enum_items[getattr(node, name)].name
 
 
 def _note_anisotropy(plug, reader):
-    amount = plug.input("Anisotropy")  # 4.0 and newer: of a node of its own before
+    amount = plug.input("Anisotropy")  # 4.0 and newer; a separate node before
     if amount and (fed_by(amount) or abs(amount.socket.default_value) > 1e-6):
         reader.note(plug, "'Anisotropy' is not supported; ignored.")
 
@@ -158,7 +158,7 @@ def _read_emission(plug, reader):
 
 
 def _glow(color, strength, reader):
-    """An emission Layer; None where nothing glows."""
+    """An emission Layer; None if it emits nothing."""
     color, picture = reader.number(color)
     strength, gain = reader.number(strength)
     if picture is None and gain is None:
@@ -177,14 +177,14 @@ READERS = {
     "ShaderNodeBsdfPrincipled": _read_principled,
     "ShaderNodeBsdfDiffuse": _read_diffuse,
     "ShaderNodeBsdfGlossy": _read_glossy,
-    "ShaderNodeBsdfAnisotropic": _read_glossy,  # from 4.0 on what Add calls Glossy BSDF
+    "ShaderNodeBsdfAnisotropic": _read_glossy,  # from 4.0 on, Glossy BSDF in the Add menu
     "ShaderNodeEmission": _read_emission,
     "ShaderNodeBsdfTransparent": _read_transparent,
 }
 
 
 def note_linked(plug, reader, name):
-    """Says so of an input whose links are not rendered."""
+    """Notes an unsupported link to an input."""
     if fed_by(plug.input(name)):
         reader.note(plug, f"'{name}' is not supported; ignored.")
 

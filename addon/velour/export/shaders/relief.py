@@ -6,19 +6,19 @@ from ..corner_colors import CornerColors
 from ..plugs import fed_by
 from .layer import Relief
 
-# What Cycles does to steep normals changed with these versions; no property tells.
+# Cycles' correction of steep normals changed in these versions; no property reveals it.
 _CORRECTION = "turned" if bpy.app.version < (4, 0) else "faded" if bpy.app.version < (4, 5) else "shadowed"
 
 
 def correction(material):
-    """What becomes of steep normals, as Shader.add_layer has it."""
-    # A choice since 4.2, of Cycles' own; this is its default.
+    """Correction of steep normals, named as in Shader.add_layer."""
+    # A Cycles setting since 4.2, on by default.
     corrects = getattr(getattr(material, "cycles", None), "use_bump_map_correction", True)
     return _CORRECTION if corrects else "as-it-is"
 
 
 def read_relief(plug, reader):
-    """The Relief of a shader node, None of one without; what is linked to its normal besides is noted."""
+    """The Relief of a shader node, or None; notes unsupported links to its normal."""
     fed = fed_by(plug.input("Normal"))
     if fed is None:
         return None

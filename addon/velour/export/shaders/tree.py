@@ -1,4 +1,4 @@
-"""From the active output of a material to the layers of its surface."""
+"""Reads the layers of a material's surface from its active output."""
 
 from ..newer import has_nodes
 from ..nodes import active_output
@@ -7,15 +7,15 @@ from .layer import Factor, black, diffuse, grey, simplified, split
 from .readers import READERS
 from .values import Reader
 
-_MOST_LAYERS = 64  # of nested mixes that share their shaders
+_MOST_LAYERS = 64  # nested mixes with shared shaders can have far more
 
 
 def surface_layers(material, notes):
-    """The Layers of a material that is not measured; what is left out of it is said in `notes`."""
+    """The Layers of a material that is not measured; notes what is left out."""
     if material is None:
         return [grey()]
     if not has_nodes(material):
-        return [diffuse(tuple(material.diffuse_color[:3]))]  # the viewport's colour, as Cycles does
+        return [diffuse(tuple(material.diffuse_color[:3]))]  # the viewport color, as in Cycles
     owner = f"Material '{material.name}'"
     output = active_output(material.node_tree, "ShaderNodeOutputMaterial")
     plug = fed_by(Plug(output.inputs["Surface"])) if output else None
@@ -38,7 +38,7 @@ def surface_layers(material, notes):
 
 
 def _shadows_are_clear(material):
-    """Kept with Cycles before Blender 4.2."""
+    """Whether transparent surfaces cast transparent shadows; a Cycles setting before Blender 4.2."""
     of_cycles = getattr(getattr(material, "cycles", None), "use_transparent_shadow", True)
     return getattr(material, "use_transparent_shadow", of_cycles)
 
@@ -63,7 +63,7 @@ def _read(plug, reader):
 
 
 def _shaders(plug, reader):
-    """Layers of each shader that is mixed or added; nothing linked: none."""
+    """Layers of each shader that is mixed or added; empty if nothing is linked."""
     fed = [fed_by(shader) for shader in plug.inputs("NodeSocketShader")]
     return [_read(shader, reader) if shader else [] for shader in fed]
 

@@ -1,4 +1,4 @@
-"""Numbers, colours and pictures of a node's inputs."""
+"""Values, colors and pictures of a node's inputs."""
 
 from ..corner_colors import corner_colors_of
 from ..image_nodes import UnsupportedError, picture_of
@@ -8,15 +8,15 @@ _MOST_STEPS = 256
 
 
 class Reader:
-    """Reads inputs of the nodes of one material, and says in `notes` what it leaves out."""
+    """Reads inputs of one material's nodes; notes what it leaves out."""
 
     def __init__(self, owner, notes):
         self.owner = owner
         self.notes = notes
-        self.steps_left = _MOST_STEPS  # shaders that may be read
+        self.steps_left = _MOST_STEPS  # shaders that may still be read
 
     def number(self, plug):
-        """Of an input that may be a picture: its number or colour, and its Picture, CornerColors or None."""
+        """Value or color of an input that may be textured, and its Picture, CornerColors or None."""
         fed = followed(plug) if plug else None
         if fed is None or not fed.socket.is_output:
             return own_value((fed or plug).socket, plug.socket) if plug else 0.0, None
@@ -29,7 +29,7 @@ class Reader:
             return own_value(plug.socket), None
 
     def value(self, plug):
-        """The same of an input whose picture would not be rendered."""
+        """Value or color of an input that cannot be textured; notes a link."""
         value, picture = self.number(plug)
         if picture is not None:
             self.note_link(plug)
@@ -49,7 +49,7 @@ class Reader:
 
 
 def own_value(socket, asked=None):
-    """A number, or three of a colour; of the kind that the socket `asked` has. None, and shaders: 0."""
+    """Float, or color triple, in the kind of the socket `asked`; 0 for None and shader sockets."""
     value = getattr(socket, "default_value", 0.0)
     value = float(value) if isinstance(value, (int, float)) else tuple(value[:3])
     if asked is None or isinstance(asked.default_value, (int, float)) == isinstance(value, float):
