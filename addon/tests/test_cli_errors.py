@@ -217,7 +217,7 @@ def _interrupted(arguments, stage: str) -> int:
         process.send_signal(signal.SIGINT)
         start = time.monotonic()
         said = _until(reader)
-        status = process.wait(timeout=30)
+        status = process.wait(timeout=120)
         assert time.monotonic() - start < 3
         assert said.split("\r\x1b[K")[-1] == "velour: Interrupted.\r\n"  # in place of the bar
         return status

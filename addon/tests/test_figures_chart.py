@@ -78,7 +78,7 @@ def test_a_run_that_is_stopped_leaves_whole_files_and_goes_on(data_folder, tmp_p
         if "32 spp" in line:
             break
     os.killpg(process.pid, signal.SIGINT)
-    process.communicate(timeout=60)
+    process.communicate(timeout=300)
     assert process.returncode == 130
     done = {path.stem for path in (tmp_path / "kept").glob("render-*.json")}
     assert done

@@ -89,6 +89,6 @@ def test_it_ends_when_it_is_cancelled(wires, steps):
     job.start().cancel()
     with pytest.raises(VelourError, match="cancelled"):
         job.wait()
-    job._thread.join(timeout=5)
+    job._thread.join(timeout=60)
     assert not job._thread.is_alive()
     assert job._done < job._all

@@ -47,14 +47,14 @@ def test_readings_begin_once_it_is_open():
         job.start()
         time.sleep(0.05)
         assert job.poll().running
-    assert job.wait(timeout=10)
+    assert job.wait(timeout=60)
     assert job.result() == "read"
 
 
 def test_who_waits_for_a_reading_lets_it_go_on(counted):
     job = ReadJob(lambda: [check() for _ in range(10)] and "read")
     with reading_gate.closed():
-        assert job.start().wait(timeout=10)
+        assert job.start().wait(timeout=60)
         assert not _moves(counted)
     assert job.result() == "read"
 
@@ -66,7 +66,7 @@ def test_one_that_never_pauses_is_waited_for_a_second():
     with reading_gate.closed():
         assert 0.9 < time.monotonic() - begun < 5
     go_on.set()
-    assert job.wait(timeout=10)
+    assert job.wait(timeout=60)
 
 
 def test_cancelled_readings_end(counted):

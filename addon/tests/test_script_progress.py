@@ -41,7 +41,7 @@ def _start(script: str, cwd) -> subprocess.Popen:
 
 def _run(script: str, cwd) -> tuple[int, str, str]:
     process = _start(script, cwd)
-    return *reversed(process.communicate(timeout=60)), process.returncode
+    return *reversed(process.communicate(timeout=300)), process.returncode
 
 
 def test_tells_stage_done_total_and_seconds_left(tmp_path):
@@ -80,7 +80,7 @@ def test_a_signal_ends_the_program_first(tmp_path, number, status, send):
     process = _start(f'quietly log building bash -c "{program}"', tmp_path)
     _wait_for(tmp_path / "started")
     send(process.pid, number)
-    _out, err = process.communicate(timeout=30)
+    _out, err = process.communicate(timeout=120)
     assert (process.returncode, err) == (status, "name: stopped while building\n")
     assert (tmp_path / "ended").is_file()
     with pytest.raises(ProcessLookupError):

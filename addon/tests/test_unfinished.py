@@ -118,7 +118,7 @@ def _terminated(arguments) -> tuple[int, str]:
             time.sleep(0.01)
         process.send_signal(signal.SIGTERM)
         start = time.monotonic()
-        _, err = process.communicate(timeout=60)
+        _, err = process.communicate(timeout=300)
         assert time.monotonic() - start < 20
         return process.returncode, err.strip().splitlines()[-1]
     finally:

@@ -16,7 +16,7 @@ from . import process
 
 ADDON = "velour"
 _folder = Path("/nowhere")
-_CHILD_SECONDS = 60
+_CHILD_SECONDS = 300  # only ends processes that hang, on however busy a machine
 
 
 def set_folder(folder):
