@@ -100,7 +100,7 @@ class CaptureBtf(BlenderTest):
             folder = self.folder / f"tile.{number:03}.btf"
             self.assertEqual(obj.velour.directory, str(folder))
             self.assertEqual(self._files(json.loads((folder / "btf.json").read_text())), self._files(first))
-        with self.assertRaisesRegex(RuntimeError, "resume it, or give another folder"):
+        with self.assertRaisesRegex(RuntimeError, "resume the capture, or choose another folder"):
             bpy.ops.velour.capture_btf()
         panel = importlib.import_module(f"{inputs.ADDON}.ui.tile_panel").VELOUR_OBJECT_PT_tile
         layout = Layout(panel)

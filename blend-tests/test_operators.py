@@ -168,7 +168,7 @@ class Operators(BlenderTest):
 
         with (
             mock.patch.object(Btf, "load", noted),
-            self.assertRaisesRegex(RuntimeError, "cloth.btf: is no BTF"),
+            self.assertRaisesRegex(RuntimeError, "cloth.btf: is not a BTF"),
         ):
             bpy.ops.velour.compress_btf(filepath=str(path))
         self.assertEqual(len(threads), 1)

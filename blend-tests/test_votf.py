@@ -138,7 +138,7 @@ class Outline(BlenderTest):
         self.assertIn(f"({points} points)", said)
 
     def test_its_curve_is_what_it_covers_from_above(self):
-        with self.assertRaisesRegex(RuntimeError, "no outline"):
+        with self.assertRaisesRegex(RuntimeError, "no silhouette"):
             bpy.ops.velour.save_plot(
                 material=self.material.name, kind="OUTLINE", filepath=str(self.folder / "no.csv")
             )

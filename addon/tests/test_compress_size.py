@@ -225,7 +225,7 @@ def test_what_is_left_of_another_fit_is_ignored(folder, btf):
     checkpoint = killed(btf, path, "--bytes", BYTES)
     report = velour("compress", btf, "-o", path, "--bytes", BYTES // 4, "--resume", "--json").json
     (sentence,) = report["warnings"]
-    assert "nothing was resumed" in sentence
+    assert "the fit was not resumed" in sentence
     assert str(checkpoint) in sentence
     assert not checkpoint.exists()
     checkpoint.write_bytes(b"v/1\x01" + os.urandom(500))

@@ -170,6 +170,6 @@ def test_the_fit_of_the_full_model_is_not_all_of_the_progress(folder):
         job.start()
         while not job.wait(timeout=0.001):
             shown.append(job.poll())
-    fits = [state for state in shown if state.running and state.stage != "scene"]
+    fits = [state for state in shown if state.running and state.stage != "reducing to the scene"]
     assert fits
     assert max(state.fraction for state in fits) < 0.99

@@ -15,7 +15,8 @@
 namespace velour {
 namespace {
 
-/// Fine enough that the table adds less than the interpolation's own error; docs/reference/measurement_formats.md has the numbers.
+/// Fine enough that the table adds less than the interpolation's own error; docs/reference/measurement_formats.md has
+/// the numbers.
 constexpr BrdfTableLayout kCornellLayout{.theta_h = 90, .phi_h = 1, .theta_d = 60, .phi_d = 60};
 constexpr double kMaxWavelengths = 10000;
 constexpr std::string_view kUtf8Mark = "\xef\xbb\xbf";
@@ -97,7 +98,7 @@ CornellText split(std::span<const double> numbers, const std::string& path) {
   if (text.rows.size() % text.row_size != 0)
     fail(path, "sample " + std::to_string(text.rows.size() / text.row_size + 1) + " has " +
                    std::to_string(text.rows.size() % text.row_size) + " of " + std::to_string(text.row_size) +
-                   " numbers" + "; the file is truncated or damaged.");
+                   " numbers; the file is truncated or damaged.");
   return text;
 }
 

@@ -89,8 +89,9 @@ class HeaderCheck {
       const auto size = number<uint32_t>(at);
       if (!name || !type || !size) return kEnd;
       at += sizeof *size;
-      if (*size > file_bytes_ - at) fail("its header is damaged.");
-      if (*size > head_.size() - at) fail("its header has more than a megabyte, which Velour does not read.");
+      if (*size > file_bytes_ - at) fail("its header is damaged. Save the image again.");
+      if (*size > head_.size() - at)
+        fail("its header is larger than 1 MB, which is not supported. Remove metadata from the file.");
       check_value(*name, *type, *size, at);
       take_claim(*name, *type, *size, at, claims);
       at += *size;
@@ -109,7 +110,7 @@ class HeaderCheck {
                                                    : true;
     if (!is_whole) {
       fail("its header is damaged: attribute " + name + " of type " + type + " has a size of " + std::to_string(size) +
-           " bytes, which is not that of its content.");
+           " bytes, which does not match its content. Save the image again.");
     }
   }
 
@@ -147,7 +148,8 @@ class HeaderCheck {
       claims.height = value(12) - value(4) + 1;
     } else if (name == "chunkCount" && size == 4) {
       if (value(0) < 0 || static_cast<uint64_t>(value(0)) > file_bytes_ / sizeof(uint64_t))
-        fail("the header says " + std::to_string(value(0)) + " chunks, more than the file can hold.");
+        fail("the header claims " + std::to_string(value(0)) +
+             " chunks, more than the file can contain; the file is damaged.");
     } else if (name == "compression" && size == 1) {
       claims.compression = head_[at];
     } else if (name == "tiles" && size == 9) {
@@ -181,15 +183,15 @@ class HeaderCheck {
     const double row = static_cast<double>(claims.width) * claims.pixel_bytes;
     const double decoded = row * static_cast<double>(claims.height);
     const std::string said =
-        "the header says " + std::to_string(claims.width) + " x " + std::to_string(claims.height) + " pixels";
+        "the header claims " + std::to_string(claims.width) + " x " + std::to_string(claims.height) + " pixels";
     const double most_rows = static_cast<double>(kMaxValuesPerByte) * static_cast<double>(file_bytes_);
     if ((!claims.is_deep && decoded > packing.most_ratio * static_cast<double>(file_bytes_)) ||
         static_cast<double>(claims.height) > most_rows) {
-      fail(said + ", more than the file can hold.");
+      fail(said + ", more than the file can contain; the file is damaged.");
     }
     const double tile = static_cast<double>(claims.tile_width) * claims.tile_height * claims.pixel_bytes;
     if (std::max(tile, packing.rows * row) > kAlwaysAllowed + kTimesDecoded * decoded)
-      fail(said + " in blocks that are many times as large; save it without compression.");
+      fail(said + " in compression blocks that are many times as large. Save the image without compression.");
   }
 
   std::string path_;

@@ -1,4 +1,4 @@
-"""The numbers of a chapter, written where its page has markers for them."""
+"""Writes the numbers of a chapter between the markers of its page."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ def write(chapter: str, facts: dict) -> None:
 
 
 def link(picture: Path) -> None:
-    """Where pages show it: it may be of another kind than before."""
+    """Updates the links to a picture in all pages: its file type may have changed."""
     for page in GUIDE.glob("*.md"):
         text = page.read_text(encoding="utf-8")
         linked = re.sub(rf"\(images/{picture.stem}\.\w+\)", f"(images/{picture.name})", text)
@@ -79,7 +79,7 @@ def _tile(facts: dict) -> str:
     )
 
 
-_PAGES = {"tile": "cloth"}  # of a chapter that has none of its own
+_PAGES = {"tile": "cloth"}  # page of a chapter that has none of its own
 _PARTS = {
     "first_material": {"fit": _first_material},
     "tolerance": {"tolerances": _tolerances},

@@ -1,4 +1,4 @@
-"""A table top in car paint, seen from a few angles under a soft sky: a model for that scene."""
+"""The chapter scene_model: a table top in car paint, seen from few angles under a soft environment."""
 
 import bpy
 from support import scenes

@@ -1,4 +1,4 @@
-"""A weave: modelled, captured, and made a material with an outline."""
+"""The chapter tile: a weave, modeled, captured, and made into a material with a silhouette (VOTF)."""
 
 import bpy
 from support import scenes

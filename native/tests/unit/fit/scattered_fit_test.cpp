@@ -182,7 +182,7 @@ TEST(ScatteredFitRules, ViewsThatMissTheToleranceAreNamed) {
   const Model model = fit_scattered(AnalyticMeasurement(test::ggx(0.3f, 0.3f)), options, progress);
   ASSERT_FALSE(model.fit.warnings.empty());
   EXPECT_EQ(model.fit.warnings[0].find("view 5 degrees: relative L2 "), 0u);
-  EXPECT_NE(model.fit.warnings[4].find("exceeds 0.002"), std::string::npos);
+  EXPECT_NE(model.fit.warnings[4].find("exceeds the tolerance 0.002"), std::string::npos);
 }
 
 TEST(ScatteredFitRules, OfManyViewsThatMissTheToleranceTwelveAreNamed) {
