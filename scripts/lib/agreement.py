@@ -1,4 +1,4 @@
-"""Do two estimates of the same picture agree within their error bars?"""
+"""Tests whether two estimates of the same picture agree within their error bars."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ class Agreement:
     tests: int  # number of tests: the pixels that vary, and the mean
     largest_z: float
     sidak_z: float  # bound on the largest |z| of that many tests, with probability 1 - LEVEL
-    p_value: float  # of the largest |z| among that many tests (Sidak)
+    p_value: float  # probability of the largest |z| among that many tests (Sidak)
     ratio: float  # mean of a over mean of b
 
     @property

@@ -22,7 +22,7 @@ from velour_cli import ROOT
 PAGE = ROOT / "docs/blender_support.md"
 ROWS = ROOT / "build/blend-tests/parity"
 HEADER = ["feature", "verdict", "largest block difference, %", "in standard errors"]
-SEED = 0  # of the first of each engine's four pictures
+SEED = 0  # seed of the first of each engine's four pictures
 
 
 def main() -> int:

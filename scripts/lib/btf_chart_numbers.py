@@ -29,9 +29,9 @@ class Entry:
     tile: str
     method: str
     ratio: int
-    bytes: int  # of the model's file
-    seconds: float  # of the fit
-    processor_seconds: float  # of the whole call, all threads
+    bytes: int  # size of the model's file
+    seconds: float  # duration of the fit
+    processor_seconds: float  # whole call, all threads
     psnr: float
     ser: float
     evaluations: float  # per second and thread

@@ -9,7 +9,7 @@ from collections.abc import Callable
 import bpy
 from blender_picture import measured_node
 
-NAME = "tile"  # of the material; the BTF lies in NAME.btf
+NAME = "tile"  # name of the material; its BTF is in NAME.btf
 
 
 def capture_and_compress(

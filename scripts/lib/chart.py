@@ -38,7 +38,7 @@ class Extent:
     spp: tuple[int, ...] = (16, 64, 256, 1024)
     level_spp: int = 800  # the default strategy's error here is the level of the equal-error table
     equal_spp: int = 256  # one of `spp`, at which targets compare equal samples
-    seeds: int = 3  # of compared curves; others have one
+    seeds: int = 3  # compared curves; others have one seed
     reference_spp: int = 2048  # per batch
     reference_batches: int = 4
     bound_hits: int = 200

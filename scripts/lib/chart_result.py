@@ -29,8 +29,8 @@ class Point:
     spp: int
     seed: int
     seconds: float
-    mse: float  # of linear RGB, with the reference's noise subtracted
-    relmse: float  # with the reference's noise subtracted
+    mse: float  # linear RGB, with the reference's noise subtracted
+    relmse: float  # the reference's noise is subtracted
 
 
 def point_of(

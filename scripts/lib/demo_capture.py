@@ -19,7 +19,7 @@ _STEP = "capturing the default measurement"
 
 class Capture(NamedTuple):
     path: Path
-    seconds: float | None = None  # that the capture took when it was made; None: the user's own file
+    seconds: float | None = None  # duration of the original capture; None: the user's own file
     cached: bool = False
 
 

@@ -35,7 +35,7 @@ SCENES = (
     "signs",
     "copper",
     "clamped copper",
-)  # of equal_noise_scenes.py
+)  # names in equal_noise_scenes.py
 THREADS = 2
 _CELL = 2.2  # width of a picture in inches
 DENOISED_TO = 0.01  # relmse
@@ -59,8 +59,8 @@ QUICK = Effort((96, 54), 2, 16, 64)
 class Side:
     seconds: float  # processor time of one render
     noise: float  # relmse of one render, from the spread of the seeds
-    mean: np.ndarray  # of all seeds
-    fireflies: float  # of one render
+    mean: np.ndarray  # mean picture of all seeds
+    fireflies: float  # mean number per render
     denoised: float | None = None  # seconds to a denoised picture of DENOISED_TO; None: no denoiser
 
     @property

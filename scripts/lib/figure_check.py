@@ -26,7 +26,7 @@ class Check:
     subject: Subject
     uniform: UniformAgreement
     control: UniformAgreement  # uniform, with `product` too bright
-    by_spread: Agreement  # of uniform, with error bars from the spread of its renders
+    by_spread: Agreement  # uniform, with error bars from the spread of its renders
     mis: Agreement
     moment_error: float  # median over the pixels of the relative standard error of the second moment
     worst_moment_error: float

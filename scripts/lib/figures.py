@@ -1,4 +1,4 @@
-"""The dissertation's figures 7.11 to 7.13: its strategy at its numbers of samples, against references."""
+"""The dissertation's figures 7.11 to 7.13: its strategy and numbers of samples, compared with references."""
 
 from __future__ import annotations
 
@@ -39,12 +39,12 @@ class Extent:
     spp: tuple[int, ...] = (200, 400, 600, 800, 1000)
     batch_spp: int = 2048
     batches: tuple[int, int] = (4, 24)  # initial and maximum number
-    floor_renders: int = 4  # of the model and of the measurement each, for the fit's error
+    floor_renders: int = 4  # renders each of model and measurement, for the fit's error
     floor_spp: int = 128
     check_size: tuple[int, int] = (80, 60)
     check_batches: int = 16
     uniform_spp: int = 400_000  # in all batches together
-    check_spp: int = 2048  # of the other strategies, in each batch
+    check_spp: int = 2048  # the other strategies, in each batch
     moment_rays: int = 8192
     moment_runs: int = 4
 

@@ -13,7 +13,7 @@ from velour_cli import ROOT
 # Where scripts/setup --metrics installs FLIP. Last on the path, so that numpy remains the system's.
 _PACKAGES = ROOT / "build/tools/lib/python{}.{}/site-packages".format(*sys.version_info[:2])
 GREY = 0.18  # the object's mean luminance after exposure: the photographer's gray card
-_SIDE, _GREY_LIGHTNESS = 64, 50.0  # of the uniform patches: pixels, L*
+_SIDE, _GREY_LIGHTNESS = 64, 50.0  # uniform patches: pixels, L*
 
 
 class NoFlipError(RuntimeError):

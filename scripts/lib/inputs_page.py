@@ -1,4 +1,4 @@
-"""Writes docs/inputs.md: how Velour handles files of other programs, as recorded by the tests of the readers."""
+"""Writes docs/inputs.md: how Velour handles files of other programs, as recorded by the reader tests."""
 
 from __future__ import annotations
 

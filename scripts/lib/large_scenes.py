@@ -1,4 +1,4 @@
-"""Runs inside Blender: builds a large scene, of which both engines render few pixels, several times in turn."""
+"""Runs inside Blender: builds a large scene and renders few pixels of it, with both engines in turn."""
 
 import json
 import sys

@@ -29,7 +29,7 @@ class Wish(NamedTuple):
 
 class Mitsuba:
     def __init__(self, renders: Renders, size: tuple[int, int], directions: int):
-        """`directions`: light directions per camera ray, half from the material, half from the environment."""
+        """`directions`: light directions per camera ray, half each from the material and the environment."""
         self._renders, self._size, self._directions = renders, size, directions
         self.variant: str | None = None
 

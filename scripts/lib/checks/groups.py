@@ -25,7 +25,7 @@ class Run:
     """Options that all groups share."""
 
     preset: str = "release"
-    long: bool = False  # also the tests that only scripts/test --all runs
+    long: bool = False  # run the tests that only scripts/test --all runs
     scenes: Sequence[str] = ()
     update: bool = False
 

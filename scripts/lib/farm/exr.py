@@ -22,7 +22,7 @@ _MOST_LINES = 1 << 20
 # Scanlines per chunk, by compression number: none, RLE, ZIPS, ZIP, PIZ, PXR24, B44, B44A, DWAA, DWAB.
 _LINES = (1, 1, 1, 16, 32, 16, 32, 32, 32, 256)
 _ZLIB = (2, 3)
-_PIXEL_BYTES = (4, 2, 4)  # of a channel: uint, half, float
+_PIXEL_BYTES = (4, 2, 4)  # bytes per channel: uint, half, float
 
 
 class ExrError(ValueError):

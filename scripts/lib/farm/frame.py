@@ -111,7 +111,7 @@ def _attempt(task: job.Job, unit: job.Unit, render: Callable[[job.Job, job.Unit,
         return DONE
     print(f"farm: {unit}: {left or sentence}", file=sys.stderr, flush=True)
     if left:
-        task.failure(unit).unlink(missing_ok=True)  # of an earlier attempt
+        task.failure(unit).unlink(missing_ok=True)  # failure of an earlier attempt
         return UNFINISHED
     _note(task.failure(unit), sentence)
     return FAILED

@@ -46,11 +46,11 @@ class Job:
     parts: int = 1  # number of parts that share the samples of a frame
     blender: str = "blender"  # on the nodes
     addon: str = "velour"  # module name; bl_ext.user_default.velour for an extension
-    threads: int = 0  # of Blender; 0: all threads of the node
-    memory_mib: int = 0  # to request; 0: the render manager's default
+    threads: int = 0  # for Blender; 0: all threads of the node
+    memory_mib: int = 0  # requested memory; 0: the render manager's default
     preferences: bool = False  # use the node's user preferences instead of factory settings
     scripts: bool = False  # scripts inside the .blend may run
-    folder: Path = field(default=Path(), compare=False)  # of job.json
+    folder: Path = field(default=Path(), compare=False)  # folder of job.json
 
     @property
     def output(self) -> Path:

@@ -12,7 +12,7 @@ from support import framebuffer, inputs, scenes, window
 from . import headers, panels
 
 PROPERTIES_WIDTH = 440
-WINDOW_HEIGHT = 660  # of pictures of the whole window, including its top bar
+WINDOW_HEIGHT = 660  # pictures of the whole window, including its top bar
 _HEADER = 13  # half the height of a panel's header
 _MARGIN = 6  # around panels in pictures
 _PATIENCE = 1200  # maximum seconds of a job
@@ -40,7 +40,7 @@ class Desk:
         self.folder = folder
 
     def arrange(self):
-        """Closes the Outliner, widens the Properties, and makes the viewport as high as pictures of the window."""
+        """Closes the Outliner, widens the Properties, and makes the viewport as high as window pictures."""
         with inside("OUTLINER"):
             bpy.ops.screen.area_close()
         yield 0.3
@@ -58,7 +58,7 @@ class Desk:
         yield from self._read()
 
     def fold(self, tab: str, label: str, is_open: bool):
-        """Opens or closes a panel by clicking its header, repeatedly: it may move while its editor is drawn."""
+        """Opens or closes a panel by clicking its header, repeatedly, since it may move during a redraw."""
         for _ in range(_CLICKS):
             header = next(place.header for place in self._places(tab, self._screen()) if place.label == label)
             if header.is_open == is_open:
@@ -129,7 +129,7 @@ class Desk:
         raise TimeoutError(f"{state.subject}: {state.stage} takes too long")
 
     def picture_of_panels(self, name: str, tab: str, first: str | None, last: str | None = None):
-        """A picture from the header of `first` (None: the top of the tab) to the end of `last` (None: `first`)."""
+        """From the header of panel `first` (None: top of the tab) to the end of `last` (None: `first`)."""
         pixels = self._screen()
         found = self._places(tab, pixels)
         labels = [place.label for place in found]

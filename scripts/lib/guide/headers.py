@@ -26,7 +26,7 @@ STRIP = 44  # width in pixels, from the editor's left edge, that holds the arrow
 
 
 class Header(NamedTuple):
-    row: int  # of the arrow's center, from the top
+    row: int  # the arrow's center, from the top
     x: int
     is_open: bool
 

@@ -1,4 +1,4 @@
-"""Runs a chapter inside Blender's window: `--python inside.py -- FOLDER`; FOLDER/task.json names the chapter."""
+"""Runs a chapter inside Blender's window: `--python inside.py -- FOLDER`; FOLDER/task.json names it."""
 
 import importlib
 import json

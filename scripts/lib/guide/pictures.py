@@ -7,7 +7,7 @@ from pathlib import Path
 from PIL import Image
 
 MOST_BYTES = 150_000
-_OF_PANELS = 2000  # maximum number of colors of panels; a picture with more shows a render, which a palette bands
+_OF_PANELS = 2000  # maximum number of colors of panels; more are a render, which a palette would degrade
 _PALETTES = (256, 128, 64)  # numbers of colors, the best first
 _QUALITIES = (94, 90, 86, 80)
 
