@@ -51,10 +51,12 @@ class HeaderCheck {
   void run() {
     const auto version = number<uint32_t>(4);
     if (!version) return;
+    const bool has_parts = (*version & kSeveralParts) != 0;
     size_t at = 8;
     do {
       at = check_part(at);
-    } while (at != kEnd && (*version & kSeveralParts) != 0 && at < head_.size() && head_[at] != 0);
+    } while (has_parts && at < head_.size() && head_[at] != 0);
+    if (has_parts && at == head_.size()) require_end();
   }
 
  private:
@@ -63,6 +65,11 @@ class HeaderCheck {
   static constexpr uint32_t kSeveralParts = 0x1000;  // multi-part bit of the version field
 
   [[noreturn]] void fail(const std::string& what) const { throw Error(Status::bad_data, path_ + ": " + what); }
+
+  /// Throws if the file goes on after what was read: no header that is not checked may reach OpenEXR.
+  void require_end() const {
+    if (head_.size() < file_bytes_) fail("its header has more than a megabyte, which Velour does not read.");
+  }
 
   template <typename T>
   std::optional<T> number(size_t at) const {
@@ -81,21 +88,24 @@ class HeaderCheck {
   }
 
   /// Checks the attributes (name, type, size, value) of the part whose header begins at `at`. Returns where the next
-  /// header begins, or kEnd if the header ends early or is longer than head_, which is left to OpenEXR.
+  /// header begins, or kEnd if the file ends before, which OpenEXR reports.
   size_t check_part(size_t at) const {
     Claims claims;
     while (at < head_.size() && head_[at] != 0) {
       const auto name = text(at), type = text(at);
       const auto size = number<uint32_t>(at);
-      if (!name || !type || !size) return kEnd;
+      if (!name || !type || !size) {
+        require_end();
+        return kEnd;
+      }
       at += sizeof *size;
       if (*size > file_bytes_ - at) fail("its header is damaged. Save the image again.");
-      if (*size > head_.size() - at)
-        fail("its header is larger than 1 MB, which is not supported. Remove metadata from the file.");
+      if (*size > head_.size() - at) require_end();
       check_value(*name, *type, *size, at);
       take_claim(*name, *type, *size, at, claims);
       at += *size;
     }
+    if (at >= head_.size()) require_end();
     check_claims(claims);
     return at < head_.size() ? at + 1 : kEnd;
   }
