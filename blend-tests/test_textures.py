@@ -190,11 +190,11 @@ class Textures(BlenderTest):
     def test_other_nodes_are_named(self):
         self._plane(_image("named", _colours()))
         self.texture.projection = "BOX"
-        self.assertIn("is not projected flat", "".join(self._notes()))
+        self.assertIn("is not projected with Flat", "".join(self._notes()))
         self.texture.projection = "FLAT"
         generated = self.tree.nodes.new("ShaderNodeTexCoord")
         self.tree.links.new(generated.outputs["Generated"], self.texture.inputs["Vector"])
-        self.assertIn("are not texture coordinates", "".join(self._notes()))
+        self.assertIn("are not UV coordinates", "".join(self._notes()))
         self.tree.links.clear()
         self.assertNotIn("coordinates", "".join(self._notes()))
 

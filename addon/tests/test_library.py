@@ -48,7 +48,7 @@ def test_loading_twice_gives_the_same_library():
 
 
 def test_absent(monkeypatch, tmp_path):
-    assert "is not there" in _refusal(monkeypatch, tmp_path / "libvelour.so")
+    assert "does not exist" in _refusal(monkeypatch, tmp_path / "libvelour.so")
 
 
 def test_not_a_library(monkeypatch, tmp_path):

@@ -76,7 +76,7 @@ def test_corners_that_are_not_there_are_refused():
             scene.add_mesh(**{**mesh, "triangles": triangles + np.uint32(1)})
         with pytest.raises(VelourError, match="names vertex 8 of a mesh with 8 vertices"):
             scene.add_mesh(**{**mesh, "corner_vertices": vertices + np.uint32(1)})
-        with pytest.raises(VelourError, match="smooth holds 6 numbers; 12 are needed"):
+        with pytest.raises(VelourError, match="smooth has 6 numbers; 12 are needed"):
             scene.add_mesh(**mesh, smooth=np.ones(6, np.uint8))
         with pytest.raises(VelourError, match=r"corner_uvs has shape \(12, 3, 2\)"):
             scene.add_mesh(**mesh, corner_uvs=np.zeros((12, 3, 2), np.float32))
@@ -142,8 +142,8 @@ def test_of_many_meshes_all_or_none_are_added():
         with pytest.raises(VelourError, match="names vertex 8 of a mesh with 8 vertices"):
             scene.add_meshes(_in_turn([flat, wrong]))
         short = {**flat, "smooth": flat["smooth"][:-1]}
-        with pytest.raises(VelourError, match="smooth holds 11 numbers; 12 are needed"):
+        with pytest.raises(VelourError, match="smooth has 11 numbers; 12 are needed"):
             scene.add_meshes(_in_turn([flat, short]))
-        with pytest.raises(VelourError, match="a mesh has no positions"):
+        with pytest.raises(VelourError, match="The mesh has no positions"):
             scene.add_meshes({"triangles": _in_turn([flat])["triangles"]})
         assert scene.add_mesh(**flat) == (0, 0)

@@ -29,7 +29,7 @@ SAMPLES = (
     ),
     (
         "the measurement's own noise exceeds the tolerance at 2 of the reported views; at 85 degrees",
-        "Tolerance",
+        "Max Error",
     ),
     (
         "views 75, 85 degrees: the highlight, or a lobe of the model, is narrower than the spacing",
@@ -89,7 +89,7 @@ SAMPLES = (
     ),
     (
         "the scene needs all of the full model: nothing smaller makes pictures as good",
-        "whole model",
+        "full model",
     ),
     (
         "of clustered tensors the finest levels were left out, and no more: they are not fitted anew",
@@ -117,7 +117,7 @@ SAMPLES = (
     ),
     (
         "the tolerance of 0.1 is not met: the error is 0.2 with 9 bytes; a tolerance of 0.21 would do",
-        "Ask for 0.21",
+        "Max Error to 0.21",
     ),
     (
         "7 of 4096 vertical lines meet a sheet that has no inside; it becomes about a texel thick.",

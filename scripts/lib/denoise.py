@@ -25,7 +25,7 @@ _CELL = 2.3  # inches a picture, at 100 dots an inch
 
 def main() -> int:
     parser = argparse.ArgumentParser(prog="denoise")
-    parser.add_argument("--output", type=Path, metavar="FILE", default=ROOT / "docs/images/denoise.png")
+    parser.add_argument("--output", type=Path, metavar="FILE", default=ROOT / "docs/guide/images/denoise.png")
     output, work = parser.parse_args().output, ROOT / "out/denoise"
     work.mkdir(parents=True, exist_ok=True)
     try:

@@ -9,7 +9,7 @@ from support import inputs, window
 from . import scene
 from .desk import inside
 
-_PANEL = "Library of Measurements"
+_PANEL = "Measurement Library"
 _FOLDER = "measurements"
 
 

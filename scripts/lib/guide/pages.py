@@ -61,7 +61,7 @@ def _tolerances(facts: dict) -> str:
         ]
         for row in facts["fits"]
     ]
-    return table(["Tolerance", "Max Lobes", "Lobes", "Size", "Relative error"], rows)
+    return table(["Max Error", "Max Lobes", "Lobes", "Size", "Relative error"], rows)
 
 
 def _scene(facts: dict) -> str:
@@ -75,7 +75,7 @@ def _tile(facts: dict) -> str:
         f"The weave of the pictures: the capture has {_mb(facts['capture_bytes'])}, the material"
         f" {_mb(facts['model_bytes'])},\n{facts['capture_bytes'] / facts['model_bytes']:.0f} times less."
         f" **Size** tells 1:{facts['ratio']:.0f}: that is beside the captured values alone, as half floats.\n"
-        f"With its outline the material has {_mb(facts['outlined_bytes'])}.\n"
+        f"With its silhouette the material has {_mb(facts['outlined_bytes'])}.\n"
     )
 
 
