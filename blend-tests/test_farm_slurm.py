@@ -117,7 +117,9 @@ class StillOnSlurm(SlurmTest):
 
     def setUp(self):
         super().setUp()
-        (script,) = (t for _, t in guide.snippets(ROOT / "docs/reference/farm.md") if t.startswith("#!/bin/bash"))
+        (script,) = (
+            t for _, t in guide.snippets(ROOT / "docs/reference/farm.md") if t.startswith("#!/bin/bash")
+        )
         for large, small in (("3840x2160", "160x90"), ("--spp 4096", "--spp 1024")):
             self.assertIn(large, script)
             script = script.replace(large, small)

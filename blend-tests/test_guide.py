@@ -67,7 +67,18 @@ class Snippets(SnippetTest):
         self._run_page("cloth.md")
         self.assertGreater((self.folder / "weave.velour").stat().st_size, 10_000)
 
+    def test_batch(self):
+        self._save_shot()
+        self.assertEqual(len(self._run_page("batch.md")), 3)
+        self.assertTrue((self.folder / "out_0001.exr").is_file())
+        self.assertEqual(len(list(self.folder.glob("shot_*.png"))), 2)
+
     def test_farm(self):
+        self._save_shot()
+        self.assertEqual(len(self._run_page("farm.md")), 4)
+        self.assertEqual(len(list((self.folder / "frames").glob("shot_*.exr"))), 2)
+
+    def _save_shot(self):
         model = inputs.model_bytes(inputs.glossy_measurement())
         (self.folder / "paint.velour").write_bytes(model)
         bpy.ops.mesh.primitive_uv_sphere_add()
@@ -77,12 +88,12 @@ class Snippets(SnippetTest):
         scene = bpy.context.scene
         scene.camera = bpy.context.object
         scene.render.engine, scene.velour.samples, scene.render.resolution_percentage = "VELOUR", 4, 3
+        scene.render.filepath = "//shot_####"
         bpy.ops.wm.save_as_mainfile(filepath=str(self.folder / "shot.blend"))
-        self.assertEqual(len(self._run_page("farm.md")), 4)
-        self.assertEqual(len(list((self.folder / "frames").glob("shot_*.exr"))), 2)
 
     def test_no_page_is_left_out(self):
         run = {"first_material.md", "library.md", "tolerance.md", "scene_model.md", "cloth.md", "farm.md"}
+        run |= {"batch.md"}
         self.assertEqual({page.name for page in guide.PAGES if guide.snippets(page)}, run)
 
     def test_a_wrong_snippet_is_seen(self):

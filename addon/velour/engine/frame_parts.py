@@ -1,4 +1,4 @@
-"""Frames shared by several runs or machines, and the samples left by a run that was ended: docs/reference/farm.md."""
+"""Frames shared by several runs, and the remaining samples of a stopped run (docs/reference/farm.md)."""
 
 import contextlib
 from pathlib import Path

@@ -17,9 +17,7 @@ constexpr char kVersion[] = "1";
 
 const std::string& attribute(const TensorFile& file, const std::string& key, const std::string& path) {
   const auto found = file.attributes.find(key);
-  if (found == file.attributes.end())
-    throw Error(Status::bad_data,
-                path + ": attribute " + key + " is missing; this is not a complete BRDF table. Write it again.");
+  if (found == file.attributes.end()) throw Error(Status::bad_data, path + ": attribute " + key + " is missing.");
   return found->second;
 }
 
@@ -43,25 +41,23 @@ double number_attribute(const TensorFile& file, const std::string& key, double l
 void check_kind(const TensorFile& file, const std::string& path) {
   if (attribute(file, "velour.kind", path) != kKind)
     throw Error(Status::bad_data,
-                path + ": velour.kind is '" + file.attributes.at("velour.kind") + "'; a BRDF table has 'brdf_table'.");
+                path + ": velour.kind is '" + file.attributes.at("velour.kind") + "', not a BRDF table.");
   const std::string version = attribute(file, "velour.format_version", path);
   if (version != kVersion)
-    throw Error(Status::unsupported, path + ": velour.format_version is '" + version +
-                                         "'; this Velour reads version 1. Use a newer Velour.");
+    throw Error(Status::unsupported,
+                path + ": velour.format_version is '" + version + "'; this Velour reads version 1, use a newer one.");
 }
 
 const Tensor& table_tensor(const TensorFile& file, const std::string& path) {
   const auto found = file.tensors.find("f");
-  if (found == file.tensors.end())
-    throw Error(Status::bad_data, path + ": tensor f is missing; this is not a complete BRDF table. Write it again.");
+  if (found == file.tensors.end()) throw Error(Status::bad_data, path + ": tensor f is missing.");
   const Tensor& tensor = found->second;
   if (tensor.shape.size() != 5 || tensor.shape[4] != 3)
     throw Error(Status::bad_data, path + ": tensor f has " + std::to_string(tensor.shape.size()) +
                                       " dimensions; it must be theta_h x phi_h x theta_d x phi_d x 3.");
   for (const uint64_t extent : tensor.shape)
     if (extent > 100000)
-      throw Error(Status::bad_data,
-                  path + ": tensor f has an extent of " + std::to_string(extent) + "; at most 100000 is allowed.");
+      throw Error(Status::bad_data, path + ": tensor f has an extent of " + std::to_string(extent) + ".");
   return tensor;
 }
 
@@ -96,7 +92,7 @@ TableMeasurement::Details describe(const BrdfTableLayout& layout) {
                         " phi_diff, 3 channels of float32"},
           {"holds", "f without cosine, 1/sr, linear Rec. 709"},
           {"folds", std::to_string(layout.folds)},
-          {"invalid", "nodes that are not finite or have negative luminance"},
+          {"invalid", "a node that is not finite or of negative luminance"},
           {"interpolation",
            "multilinear over valid nodes, theta_half warped by power " + number_text(layout.theta_h_power)}};
 }
@@ -107,8 +103,8 @@ void write_brdf_table(const std::string& path, const BrdfTable& table) {
   const BrdfTableLayout& layout = table.layout;
   if (layout.theta_h < 1 || layout.phi_h < 1 || layout.theta_d < 1 || layout.phi_d < 1 || layout.folds < 1 ||
       table.f.size() != layout.size())
-    throw Error(Status::invalid_argument, path + ": the BRDF table has " + std::to_string(table.f.size()) +
-                                              " numbers, which does not match its layout.");
+    throw Error(Status::invalid_argument,
+                path + ": a BRDF table of " + std::to_string(table.f.size()) + " nodes does not fit its layout.");
   Tensor tensor;
   for (const int extent : {layout.theta_h, layout.phi_h, layout.theta_d, layout.phi_d, 3})
     tensor.shape.push_back(static_cast<uint64_t>(extent));

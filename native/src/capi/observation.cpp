@@ -113,8 +113,7 @@ vlr_status vlr_job_result_observation(const vlr_job* job, vlr_observation** out)
     require(out, "out");
     job->job.rethrow();
     const std::lock_guard lock(job->output->mutex);
-    if (!job->output->observation)
-      throw Error(Status::invalid_state, "This job does not produce a scene usage (observation).");
+    if (!job->output->observation) throw Error(Status::invalid_state, "This job makes no observation.");
     *out = new_handle(job->output->observation);
   });
 }

@@ -68,7 +68,8 @@ class HeaderCheck {
 
   /// Throws if the file goes on after what was read: no header that is not checked may reach OpenEXR.
   void require_end() const {
-    if (head_.size() < file_bytes_) fail("its header has more than a megabyte, which Velour does not read.");
+    if (head_.size() < file_bytes_)
+      fail("its header is larger than 1 MB, which is not supported. Remove metadata from the file.");
   }
 
   template <typename T>
