@@ -113,11 +113,13 @@ class FarmSlurm(SlurmTest, FarmTest):
 
 @unittest.skipIf(slurm.why_not(), slurm.why_not())
 class StillOnSlurm(SlurmTest):
-    """The script of docs/farm.md, of two elements, of one processor each, and a small picture."""
+    """The script of docs/reference/farm.md, of two elements, of one processor each, and a small picture."""
 
     def setUp(self):
         super().setUp()
-        (script,) = (t for _, t in guide.snippets(ROOT / "docs/farm.md") if t.startswith("#!/bin/bash"))
+        (script,) = (
+            t for _, t in guide.snippets(ROOT / "docs/reference/farm.md") if t.startswith("#!/bin/bash")
+        )
         for large, small in (("3840x2160", "160x90"), ("--spp 4096", "--spp 1024")):
             self.assertIn(large, script)
             script = script.replace(large, small)
@@ -138,7 +140,7 @@ class StillOnSlurm(SlurmTest):
 
     def _begun(self, element):
         log = self.folder / f"{element}.txt"
-        return log.is_file() and "Rendering the samples" in log.read_text()
+        return log.is_file() and "Rendering samples" in log.read_text()
 
     def _velour(self, *arguments):
         done = process.run(["env", "-C", self.folder, "scripts/velour", *arguments, "--quiet"])
@@ -150,7 +152,7 @@ class StillOnSlurm(SlurmTest):
         self.slurm.run("scancel", "--signal=TERM", f"{number}_1")
         self.slurm.wait_until_empty()
         said = (self.folder / "1.txt").read_text()
-        self.assertRegex(said, r"1\.unfinished\.exr has the samples 512:\d+, and the same command goes on")
+        self.assertRegex(said, r"1\.unfinished\.exr has samples 512:\d+\. Run the same command again")
         self.assertEqual(self.job(f"{number}_1")["ExitCode"], "3:0")
         self.assertEqual(
             sorted(path.name for path in self.folder.glob("parts/*")), ["0.exr", "1.unfinished.exr"]

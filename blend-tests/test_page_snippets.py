@@ -20,15 +20,15 @@ NOT_RUN = {
     ("README.md", "BLENDER_USER_SCRIPTS="): "opens a window that waits for a user",
     ("blender.md", "BLENDER_USER_SCRIPTS="): "opens a window that waits for a user",
     ("chart.md", "scripts/figures"): "takes hours, and Mitsuba",
-    ("farm.md", "scripts/farm shot.blend"): "needs Slurm; test_farm_slurm has one of its own",
+    ("reference/farm.md", "scripts/farm shot.blend"): "needs Slurm; test_farm_slurm has one of its own",
     (
-        "farm.md",
+        "reference/farm.md",
         "BLENDER_USER_SCRIPTS=",
     ): "needs Slurm and a site's folder; test_farm_nodes has such a folder",
-    ("farm.md", "curl"): "needs a Flamenco manager; addon/tests/test_farm_jobs.py runs its script",
-    ("farm.md", "#!/bin/bash"): "needs Slurm; test_farm_slurm submits it",
-    ("regression.md", "scripts/parity"): "test_parity_page runs it",
-    ("packaging.md", "scripts/package"): "builds; scripts/test and addon/tests/test_package.py run it",
+    ("reference/farm.md", "curl"): "needs a Flamenco manager; addon/tests/test_farm_jobs.py runs its script",
+    ("reference/farm.md", "#!/bin/bash"): "needs Slurm; test_farm_slurm submits it",
+    ("engine/regression.md", "scripts/parity"): "test_parity_page runs it",
+    ("engine/packaging.md", "scripts/package"): "builds; scripts/test and addon/tests/test_package.py run it",
 }
 SMALL = """#!/bin/sh
 case $1 in
@@ -39,6 +39,11 @@ case $1 in
 esac
 exec %s "$@" --quiet
 """
+
+
+def _name(page):
+    """The path of a page below docs; two folders have a farm.md."""
+    return str(page.relative_to(ROOT / "docs")) if (ROOT / "docs") in page.parents else page.name
 
 
 def _blocks(page):
@@ -62,7 +67,7 @@ class PageSnippets(SnippetTest):
         small.chmod(0o755)
 
     def _runnable(self, name):
-        page = next(page for page in PAGES if page.name == name)
+        page = next(page for page in PAGES if _name(page) == name)
         return [text for _language, text in _blocks(page) if not _reason(name, text)]
 
     def _inputs(self, *meshes):
@@ -96,7 +101,7 @@ class PageSnippets(SnippetTest):
     def test_for_scene(self):
         self._inputs("table.obj", "far.obj")
         self.run_shell("scripts/velour capture weave --sides one -o weave")
-        brdf, btf = self._runnable("for_scene.md")
+        brdf, btf = self._runnable("engine/scene_usage.md")
         for text, model in ((brdf, "paint.hall.velour"), (btf, "weave.far.velour")):
             self.run_shell(text)
             self._has(model, "frame.exr")
@@ -105,7 +110,7 @@ class PageSnippets(SnippetTest):
     @unittest.skipUnless(level.LONG, level.REASON)
     def test_votf(self):
         self._inputs("sphere.obj")
-        of_geometry, of_data = self._runnable("votf.md")
+        of_geometry, of_data = self._runnable("engine/votf.md")
         self.run_shell(of_geometry)
         self._has("sphere.exr")
         (self.folder / "net.btf").rename(self.folder / "net.capture")
@@ -116,7 +121,7 @@ class PageSnippets(SnippetTest):
     def test_regression(self):
         (self.folder / "shots").mkdir()
         self._shot(self.folder / "shots/paint.blend")
-        (text,) = self._runnable("regression.md")
+        (text,) = self._runnable("engine/regression.md")
         self.run_shell(text)
         self._has(
             "shots/paint_0001.exr" if (self.folder / "shots/paint_0001.exr").exists() else "shots/paint.exr"
@@ -124,7 +129,7 @@ class PageSnippets(SnippetTest):
 
     def test_farm(self):
         self._shot(self.folder / "shot.blend", frames=(12, 12))
-        part, frame = self._runnable("farm.md")
+        part, frame = self._runnable("reference/farm.md")
         self.run_shell(part)
         self.assertTrue(list((self.folder / "films").rglob("*.exr")))
         self.run_shell("scripts/farm shot.blend --no-submit")
@@ -151,15 +156,22 @@ class PageSnippets(SnippetTest):
 
     def test_no_block_is_left_out(self):
         """Each has a language, and runs in a test of its page or has a reason; no reason is left over."""
-        run = {"README.md", "for_scene.md", "votf.md", "regression.md", "farm.md", "blender.md"}
+        run = {
+            "README.md",
+            "engine/scene_usage.md",
+            "engine/votf.md",
+            "engine/regression.md",
+            "reference/farm.md",
+            "blender.md",
+        }
         found, reasons = set(), set()
         for page in set(PAGES) - set(guide.PAGES):
             for language, text in guide.snippets(page):
                 self.assertIn(language, {"sh", "python", "text"}, f"{page}: {text}")
             for _language, text in _blocks(page):
-                why = _reason(page.name, text)
+                why = _reason(_name(page), text)
                 reasons.add(why)
                 if not why:
-                    found.add(page.name)
+                    found.add(_name(page))
         self.assertEqual(found, run)
         self.assertEqual(reasons - {""}, set(NOT_RUN.values()))

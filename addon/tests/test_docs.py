@@ -96,19 +96,19 @@ def test_every_operator_is_documented():
 
 
 def test_every_strategy_is_in_the_glossary():
-    text = (ROOT / "docs/glossary.md").read_text(encoding="utf-8")
+    text = (ROOT / "docs/reference/glossary.md").read_text(encoding="utf-8")
     assert f"directions of light are drawn: {', '.join(STRATEGIES)} |" in text
 
 
 def test_places_that_the_next_engineer_is_sent_to_exist():
-    text = (ROOT / "docs/next_engineer.md").read_text(encoding="utf-8")
+    text = (ROOT / "docs/engine/adding.md").read_text(encoding="utf-8")
     places = re.findall(r"`((?:native|addon|scripts|blend-tests)/[\w./-]+)`", text)
     assert len(places) > 40
     assert [place for place in places if not (ROOT / place).exists()] == []
 
 
 def test_code_names_of_the_equations_exist(code):
-    text = (ROOT / "docs/equations.md").read_text(encoding="utf-8")
+    text = (ROOT / "docs/engine/equations.md").read_text(encoding="utf-8")
     names = {name.split("::")[-1] for name in re.findall(r"`([A-Za-z_:]+)`", text)}
     assert names
     assert sorted(name for name in names if not re.search(rf"\b{name}\b", code)) == []

@@ -103,7 +103,7 @@ def test_runs_on_what_the_documentation_names(package):
     glibc, runtime = re.search(
         r"needs glibc ([\d.]+) and libstdc\+\+ with GLIBCXX_([\d.]+)", package[1]
     ).groups()
-    page = (ROOT / "docs/packaging.md").read_text()
+    page = (ROOT / "docs/engine/packaging.md").read_text()
     assert f"glibc {glibc}" in page
     assert f"GLIBCXX_{runtime}" in page
 

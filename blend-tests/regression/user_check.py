@@ -1,4 +1,4 @@
-"""velour-check: a user's .blend files beside their references. See docs/regression.md."""
+"""velour-check: a user's .blend files beside their references. See docs/engine/regression.md."""
 
 from __future__ import annotations
 

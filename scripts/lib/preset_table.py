@@ -1,9 +1,9 @@
 """The materials of the preset library: what surfaces they are, in numbers that a laboratory would measure.
 
-Each is built by the virtual goniometer (docs/microsurface.md, docs/mesostructures.md) and a fit; nothing here
-is a parameter of a model. Colours are albedos, linear Rec. 709. Refractive indices: acrylic and alkyd binders
-1.49 to 1.52, polypropylene 1.49, ABS 1.54, cellulose 1.47, cotton 1.53 to 1.56, silk 1.54 to 1.59, wool 1.55,
-polyamide 1.53.
+Each is built by the virtual goniometer (docs/engine/capture.md) or from a tile
+(docs/engine/mesostructures.md), and a fit; nothing here is a parameter of a model. Colors are albedos,
+linear Rec. 709. Refractive indices: acrylic and alkyd binders 1.49 to 1.52, polypropylene 1.49, ABS 1.54,
+cellulose 1.47, cotton 1.53 to 1.56, silk 1.54 to 1.59, wool 1.55, polyamide 1.53.
 """
 
 from __future__ import annotations

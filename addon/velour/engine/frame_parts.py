@@ -1,4 +1,4 @@
-"""Frames that several runs or machines share, and what a run that was ended leaves: docs/farm.md."""
+"""Frames shared by several runs, and the remaining samples of a stopped run (docs/reference/farm.md)."""
 
 import contextlib
 from pathlib import Path

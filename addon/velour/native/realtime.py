@@ -1,4 +1,4 @@
-"""Tables for shaders: the light of a scene's world, BRDFs as rows of lobes (docs/realtime.md).
+"""Tables for shaders: the light of a scene's world, BRDFs as rows of lobes (docs/engine/realtime.md).
 
 `threads`: 0: all; jobs without it use one.
 """

@@ -103,8 +103,8 @@ VLR_API vlr_status vlr_model_save(const vlr_model* model, const char* path);
 VLR_API vlr_status vlr_model_bytes(vlr_model* model, const void** bytes, uint64_t* size);
 /* Makes the model of a surface that is rougher by `roughness`, 0 to 1: a mirror gets about the highlight of a GGX or
  * Beckmann surface of alpha = roughness^2, and other highlights are widened by as much. Albedos are kept
- * (docs/parametric.md). The result has its own samples and densities; 0 gives the same model. VLR_INVALID_ARGUMENT for
- * models of BTFs. */
+ * (docs/engine/parametric_model.md). The result has its own samples and densities; 0 gives the same model.
+ * VLR_INVALID_ARGUMENT for models of BTFs. */
 VLR_API vlr_status vlr_model_roughened(const vlr_model* model, float roughness, vlr_model** out);
 /* JSON: kind "model", model "scattered" (per-view) or "parametric", kernel, isotropic, lobes, bytes, parameter_bytes,
  * relative_l2, by_view_angle, albedo_by_view_angle, albedo_max, reciprocity, measured_reciprocity, tolerance, seconds,
@@ -133,7 +133,7 @@ VLR_API vlr_status vlr_file_info_json(const char* path, const char** json);
 
 /* ---- bidirectional texture functions ------------------------------------------------------------------------- */
 
-/* Meaning of the values in images and .btf files (docs/btf.md). */
+/* Meaning of the values in images and .btf files (docs/engine/btf_models.md). */
 enum {
   VLR_BTF_AUTOMATIC = 0,   /* as the file says; otherwise radiance for images, BRDF for .btf files */
   VLR_BTF_BRDF = 1,        /* apparent BRDF, 1/sr */
@@ -311,8 +311,8 @@ typedef struct vlr_compress_options {
    * NULL: a model for any scene. */
   const vlr_observation* for_scene;
   const vlr_model* full_model; /* with for_scene: the BTF's full model; NULL: fit it first */
-  /* Maximum relative L2 error of companded values (docs/conventions.md); the smallest model within it is chosen. 0:
-   * none. */
+  /* Maximum relative L2 error of companded values (docs/engine/conventions.md); the smallest model within it is chosen.
+   * 0: none. */
   double tolerance;
   uint64_t memory; /* maximum bytes that the fit holds at once, beyond those of the process before; 0: no limit */
   /* Finished stages are stored in this file while the fit runs, atomically; it is deleted after success. NULL: none.
@@ -432,7 +432,7 @@ VLR_API vlr_status vlr_scene_add_measurement_material(vlr_scene* scene, const vl
 VLR_API vlr_status vlr_scene_add_btf_material(vlr_scene* scene, const vlr_btf* btf, uint64_t most_bytes,
                                               uint32_t* material);
 /* Version of the Principled BSDF: that of Blender 4.0 and newer, whose layers pass on what they do not reflect; or
- * Disney's, of Blender before 4.0. The equations are in docs/equations.md. */
+ * Disney's, of Blender before 4.0. The equations are in docs/engine/equations.md. */
 enum { VLR_PRINCIPLED_LAYERED = 0, VLR_PRINCIPLED_DISNEY = 1 };
 /* Shadowing and masking of GGX facets. */
 enum {
@@ -902,8 +902,8 @@ VLR_API vlr_status vlr_job_add_sums(vlr_job* job, const float* sums, uint64_t co
 /* Denoises the image of a render whose options set `denoise` and which is not running: vlr_job_read_pass of that render
  * then has "Denoised" 4 (RGBA, premultiplied; the alpha of "Combined"), until it gets more samples. `threads` 0: all.
  * JSON: relmse, relmse_bound (estimated error of the denoised image, and a bound that holds for 95 of 100 images; null
- * if a pixel has fewer than two camera rays: docs/rendering.md), noisy_share (0..1, share of the noisy image in it),
- * path of Open Image Denoise. VLR_UNSUPPORTED if that is missing. */
+ * if a pixel has fewer than two camera rays: docs/engine/strategies.md), noisy_share (0..1, share of the noisy image in
+ * it), path of Open Image Denoise. VLR_UNSUPPORTED if that is missing. */
 VLR_API vlr_status vlr_denoise_create_job(vlr_job* render, uint32_t threads, vlr_job** out);
 /* Opens Open Image Denoise. JSON: version, path. VLR_UNSUPPORTED, with what was tried, if it is missing. */
 VLR_API vlr_status vlr_denoiser_json(const char** json);
@@ -937,7 +937,8 @@ VLR_API vlr_status vlr_progressive_read(const vlr_job* job, float* pixels, uint6
 /* ---- observations -------------------------------------------------------------------------------------------- */
 
 /* Scene usage of a material: the views and lights under which frames show it, with weights, and 1024 of its hits with
- * their light. Files are JSON (docs/formats.md). An observation may be changed (merge) by one thread at a time. */
+ * their light. Files are JSON (docs/reference/measurement_formats.md). An observation may be changed (merge) by one
+ * thread at a time. */
 
 /* Creates an observation of no frame, to merge into. */
 VLR_API vlr_status vlr_observation_create(vlr_observation** out);
@@ -978,10 +979,10 @@ VLR_API vlr_status vlr_job_result_observation(const vlr_job* job, vlr_observatio
 
 /* ---- tables for shaders --------------------------------------------------------------------------------------- */
 
-/* The light of a scene's world for look-ups in a shader (docs/realtime.md): averaged by the clipped cosine and by
- * Gaussian lobes, one level each, and the world itself. Takes the world as it is when the job is created. cache_folder:
- * as in vlr_render_options. threads, here and below: 0: all. JSON: lobes, relative_l2, seconds and cached of the fit of
- * the world's mixture; mixture: x, y, z, bandwidth, r, g, b of each lobe. */
+/* The light of a scene's world for look-ups in a shader (docs/engine/realtime.md): averaged by the clipped cosine and
+ * by Gaussian lobes, one level each, and the world itself. Takes the world as it is when the job is created.
+ * cache_folder: as in vlr_render_options. threads, here and below: 0: all. JSON: lobes, relative_l2, seconds and cached
+ * of the fit of the world's mixture; mixture: x, y, z, bandwidth, r, g, b of each lobe. */
 VLR_API vlr_status vlr_light_map_create_job(const vlr_scene* scene, const char* cache_folder, uint32_t threads,
                                             vlr_job** out);
 /* The lobes of a BRDF model at many views, which a shader sums up. JSON: isotropic, side, blends, lobes.

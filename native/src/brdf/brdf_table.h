@@ -1,5 +1,5 @@
 // Velour's own table of an anisotropic BRDF ("velour-table"), written by a virtual goniometer where MERL's layout would
-// lose the azimuth. An OpenEXR file of named tensors; docs/formats.md.
+// lose the azimuth. An OpenEXR file of named tensors; docs/reference/measurement_formats.md.
 #pragma once
 
 #include <cmath>

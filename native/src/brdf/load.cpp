@@ -84,7 +84,7 @@ constexpr OtherFormat kOtherFormats[] = {
      "Principled BSDF."},
     {"", "ASTM",
      "looks like an ASTM E1392 file, which Velour does not read; convert it to a list of directions and values "
-     "(Cornell's format, docs/formats.md)."},
+     "(Cornell's format, docs/reference/measurement_formats.md)."},
 };
 
 [[noreturn]] void refuse_file(const std::string& path) {

@@ -41,9 +41,9 @@ struct ScatteredSample {
 
 /// A BRDF measurement. Immutable after loading; every call is thread-safe.
 ///
-/// `eval` is the measurement's own documented interpolation (docs/formats.md). A direction pair with no valid entry in
-/// reach is not covered: its `valid` is 0 and its f is 0. Nothing is extrapolated. f is in 1/sr, linear Rec. 709,
-/// without cosine; a channel may be negative (a color outside Rec. 709).
+/// `eval` is the measurement's own documented interpolation (docs/reference/measurement_formats.md). A direction pair
+/// with no valid entry in reach is not covered: its `valid` is 0 and its f is 0. Nothing is extrapolated. f is in 1/sr,
+/// linear Rec. 709, without cosine; a channel may be negative (a color outside Rec. 709).
 class Measurement {
  public:
   virtual ~Measurement() = default;

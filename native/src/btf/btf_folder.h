@@ -1,4 +1,5 @@
-// Velour's own BTF format: a folder with an index, btf.json, and one image file per view (docs/formats.md).
+// Velour's own BTF format: a folder with an index, btf.json, and one image file per view
+// (docs/reference/btf_formats.md).
 #pragma once
 
 #include <memory>

@@ -43,7 +43,7 @@ inline constexpr size_t kMaxDirections = 4096;
 
 /// Values are the apparent BRDF of each texel: the radiance leaving its footprint towards wv, divided by the irradiance
 /// of the reference plane, E cos(theta_l). In 1/sr, linear Rec. 709, without the cosine, premultiplied: rays that hit
-/// nothing count as 0 (docs/conventions.md). Immutable; calls are thread-safe.
+/// nothing count as 0 (docs/engine/conventions.md). Immutable; calls are thread-safe.
 class BtfMeasurement {
  public:
   virtual ~BtfMeasurement() = default;

@@ -1,4 +1,5 @@
-// Header and structure of Bonn's .btf files (UBO2014), as in public readers (docs/btf.md). Internal to btf/.
+// Header and structure of Bonn's .btf files (UBO2014), as in public readers (docs/engine/btf_models.md). Internal to
+// btf/.
 #pragma once
 
 #include <array>

@@ -1,4 +1,4 @@
-// Errors of a fitted BTF against a measurement (design of the metrics: docs/conventions.md).
+// Errors of a fitted BTF against a measurement (design of the metrics: docs/engine/conventions.md).
 #pragma once
 
 #include <functional>

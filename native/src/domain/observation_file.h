@@ -1,4 +1,5 @@
-// Observation files: JSON with readable numbers; hits and their terms are base64 (docs/formats.md).
+// Observation files: JSON with readable numbers; hits and their terms are base64
+// (docs/reference/measurement_formats.md).
 #pragma once
 
 #include <span>

@@ -1,4 +1,4 @@
-// Error of a model against a measurement, as docs/conventions.md defines it.
+// Error of a model against a measurement, as docs/engine/conventions.md defines it.
 #pragma once
 
 #include "brdf/measurement.h"

@@ -51,7 +51,7 @@ void warn_of_azimuth(std::span<const ScatteredSample> samples, std::vector<std::
                      three_digits(std::exp(spread->turned)) + " (median), those of one azimuth by " +
                      three_digits(std::exp(spread->alike)) +
                      "; scattered samples are fitted as isotropic, so the model is a mean over azimuths. A table with "
-                     "azimuths (docs/formats.md, velour-table) keeps them");
+                     "azimuths (docs/reference/measurement_formats.md, velour-table) keeps them");
 }
 
 /// Names the view whose noise exceeds its tolerance by the largest factor.

@@ -21,7 +21,7 @@ PeerParameters fit_peer(const Measurement& measurement, Peer peer, int threads, 
 
 std::shared_ptr<const Material> make_peer_material(const PeerParameters& parameters);
 
-/// A fitted peer, and its error as docs/conventions.md defines it for any model.
+/// A fitted peer, and its error as docs/engine/conventions.md defines it for any model.
 struct PeerFit {
   PeerParameters parameters;
   double seconds = 0;  // of the fit

@@ -65,7 +65,8 @@ std::array<float, kLobes> masses(const BtfLook& look, float half_bandwidth) {
   const float cosine = glm::dot(look.wv, look.normal);
   if (half_bandwidth > 0 && cosine > kMinReliefCosine) {
     const float beyond = std::max(look.mirror - broad, 0.0f);
-    mass[kHalf] = beyond * 4 * cosine * (2 * kPi / half_bandwidth);  // Jacobian of half-vector lobes: docs/equations.md
+    mass[kHalf] =
+        beyond * 4 * cosine * (2 * kPi / half_bandwidth);  // Jacobian of half-vector lobes: docs/engine/equations.md
   }
   return mass;
 }

@@ -25,8 +25,8 @@ struct TableRows {
 /// Evaluated lobe parameters (no logarithms, no angles) as quadratic splines of the view over about 320 intervals,
 /// whose ends include the model's own knots: 165 KB for up to 16 lobes, 83 KB for up to 8. f is that of
 /// ParametricValues without the lobes that are negligible at the view (idle_lobes.h), to within 1e-3 of itself plus
-/// 1e-6 of its peak on the test models (at worst 1.4e-3 on measured materials: docs/parametric.md), once differentiable
-/// in the view and never negative. Immutable; thread-safe; no allocation.
+/// 1e-6 of its peak on the test models (at worst 1.4e-3 on measured materials: docs/engine/parametric_model.md), once
+/// differentiable in the view and never negative. Immutable; thread-safe; no allocation.
 class ParametricTable {
  public:
   /// Empty for anisotropic models: tables over the disk of views would be too large for the cache.

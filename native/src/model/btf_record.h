@@ -34,7 +34,7 @@ struct ShapeTrial {
 
 struct BtfRecord {
   std::string method;                                  // "svd", "srbf", "tucker", "cta", "kcta"
-  double psnr = 0;                                     // dB, over all fitted pairs (docs/conventions.md)
+  double psnr = 0;                                     // dB, over all fitted pairs (docs/engine/conventions.md)
   std::optional<double> psnr_held_out = std::nullopt;  // dB, over held-out pairs
   double ser = 0;                                      // squared error of f cos(theta_l) over its sum of squares
   double p99 = 0;                     // 99th percentile of the measurement's f, 1/sr: the white of `psnr`

@@ -1,4 +1,4 @@
-// A factored BTF's parts and attributes in the model file (docs/formats.md, "Model file").
+// A factored BTF's parts and attributes in the model file (docs/reference/model_file.md, "Model file").
 #pragma once
 
 #include "btf/factored_btf.h"

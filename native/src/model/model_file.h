@@ -1,4 +1,4 @@
-// The model file: named tensors in an OpenEXR file, docs/formats.md.
+// The model file: named tensors in an OpenEXR file, docs/reference/model_file.md.
 #pragma once
 
 #include <cstdint>

@@ -1,4 +1,4 @@
-// The parametric model's parts and attributes in the model file (docs/formats.md, "Model file").
+// The parametric model's parts and attributes in the model file (docs/reference/model_file.md, "Model file").
 #pragma once
 
 #include "brdf/parametric_brdf.h"

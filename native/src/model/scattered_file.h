@@ -1,4 +1,4 @@
-// The per-view model's parts and attributes in the model file (docs/formats.md, "Model file").
+// The per-view model's parts and attributes in the model file (docs/reference/model_file.md, "Model file").
 #pragma once
 
 #include "brdf/scattered_brdf.h"

@@ -1,4 +1,4 @@
-// A BTF of multivariate SRBFs as parts and attributes of the model file (docs/formats.md, "Model file").
+// A BTF of multivariate SRBFs as parts and attributes of the model file (docs/reference/model_file.md, "Model file").
 #pragma once
 
 #include "btf/srbf_btf.h"

@@ -1,4 +1,4 @@
-// Clustered tensors of BTFs as named parts of model files: docs/formats.md.
+// Clustered tensors of BTFs as named parts of model files: docs/reference/model_file.md.
 #pragma once
 
 #include "btf/tensor_btf.h"

@@ -25,7 +25,8 @@ inline float effective_density(Heuristic heuristic, const float (&q)[3], Drawer 
 
 /// Heuristic for lights and emissive meshes, whatever is chosen for the environment. Directions sampled toward an
 /// unoccluded light have hardly any noise of their own; under the balance heuristic most of the noise came from the few
-/// surface-sampled directions that hit it, up to 12 times the variance of the power heuristic (docs/rendering.md).
+/// surface-sampled directions that hit it, up to 12 times the variance of the power heuristic
+/// (docs/engine/strategies.md).
 inline constexpr Heuristic kLampHeuristic = Heuristic::power;
 
 /// Share of the products in the directions of `product` where the environment gives all light; other lights reduce it.

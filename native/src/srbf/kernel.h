@@ -1,4 +1,5 @@
-// The two kernels of spherical radial basis functions, in numerically stable forms (method: [T06]; docs/equations.md).
+// The two kernels of spherical radial basis functions, in numerically stable forms (method: [T06];
+// docs/engine/equations.md).
 //
 // A kernel depends only on d = 1 - eta . xi, 0 <= d <= 2. `d` must come from |eta - xi|^2 / 2, never from a
 // subtraction of two numbers near one. Everything here is double; the float SIMD forms live in eval_mixture.cpp and are

@@ -3,8 +3,8 @@
 // [T09 ch. 4] fits the variable transformation of an SRBF, as a parametric model, together with the SRBF. Ours is
 //   psi = normalize(S y),  y = wl (light space) or wl + wv (half space),  S = [[s_xx, s_xy], [s_xy, s_yy]] (+) 1,
 // with det S = 1: S stretches the tangent plane, so that one lobe can represent an elongated highlight. The
-// transformation, its inverse and Jacobian, the density and the samples have closed forms (docs/equations.md). Scalar
-// reference in double; eval_warped.cpp and sample_warped.cpp are tested against it.
+// transformation, its inverse and Jacobian, the density and the samples have closed forms (docs/engine/equations.md).
+// Scalar reference in double; eval_warped.cpp and sample_warped.cpp are tested against it.
 #pragma once
 
 #include <optional>

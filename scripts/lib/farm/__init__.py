@@ -1,1 +1,1 @@
-"""Batch rendering of a .blend on engines that exist: docs/farm.md."""
+"""Batch rendering of a .blend on engines that exist: docs/reference/farm.md."""

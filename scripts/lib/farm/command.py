@@ -1,4 +1,4 @@
-"""scripts/farm: makes a job of a .blend, submits what is left to Slurm, says how it stands: docs/farm.md."""
+"""scripts/farm: makes jobs, submits them to Slurm, reports their state (docs/reference/farm.md)."""
 
 from __future__ import annotations
 
