@@ -16,7 +16,7 @@ from velour.native import library as native
 ROOT = Path(__file__).resolve().parents[2]
 BUILT = ROOT / "build/release"
 STAGED = ROOT / "build/package/blender/addons/velour"  # as BLENDER_USER_SCRIPTS, too
-# Of the system that runs Blender, in whatever version from these on (docs/engine/packaging.md).
+# Libraries that the system provides, in the versions below or newer (docs/engine/packaging.md).
 _OF_THE_SYSTEM = (
     "ld-linux",
     "libc.so",
