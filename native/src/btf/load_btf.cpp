@@ -66,7 +66,7 @@ std::shared_ptr<const BtfMeasurement> load_btf(const std::string& path, const Bt
   if (is_csv(path)) return load_csv(path, options);
   if (is_archive(path)) throw Error(Status::unsupported, path + ": is an archive; unpack it and give its folder.");
   throw Error(Status::bad_data, path + ": is no BTF: neither a .btf file of Bonn, nor a CSV index of pictures, nor a " +
-                                    "folder; see docs/engine/btf_models.md for what is read.");
+                                    "folder; see docs/reference/btf_formats.md for what is read.");
 }
 
 bool is_btf(const std::string& path) {
