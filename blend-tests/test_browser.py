@@ -54,5 +54,5 @@ class MakeThumbnails(BlenderTest):
 
     def test_a_folder_that_is_gone_is_a_sentence(self):
         said = self._said(directory=str(self.folder / "gone"))
-        self.assertIn("gone: cannot be read", said)
+        self.assertIn("gone cannot be read", said)
         self.assertIn("0 files", said)

@@ -139,7 +139,7 @@ def test_frames_from_near_and_far_need_what_the_nearest_needs(folder):
     assert velour("observe", *options, "--merge", folder / "far.json", "-o", both).status == 0
     _, report = reduce(folder, "svd", "both.json")
     assert report["texels"] == [32, 32]
-    assert any("needs all" in warning for warning in report["warnings"])
+    assert any("needs the full model" in warning for warning in report["warnings"])
 
 
 @pytest.mark.parametrize(

@@ -192,7 +192,7 @@ def test_a_btf_has_its_error_against_bytes_and_says_so_of_the_rest(tmp_path):
 
 def test_wrong_styles_are_refused(model, tmp_path):
     with Plot.of(model, "order") as plot:
-        with pytest.raises(VelourError, match="side"):
+        with pytest.raises(VelourError, match="size of the plot"):
             plot.draw(side=20)
         with pytest.raises(VelourError, match=r"background.*2\.0"):
             plot.draw(background=(0, 2, 0))

@@ -94,8 +94,8 @@ def test_what_is_missing_and_what_is_there_twice_is_named(render, tmp_path):
     merged = tmp_path / "merged.exr"
     merged.write_text("old")
     parts = tiles(render)
-    assert "samples 0:37 of the pixels 13:32,0:5." in refused("merge", *parts[:1], *parts[2:], "-o", merged)
-    assert "of some of the pixels 0:32,0:11." in refused("merge", parts[1], parts[3], "-o", merged)
+    assert "samples 0:37 of the pixels 13:32,0:5;" in refused("merge", *parts[:1], *parts[2:], "-o", merged)
+    assert "of some of the pixels 0:32,0:11;" in refused("merge", parts[1], parts[3], "-o", merged)
     more = render("--crop", "12:14,4:6")
     sentence = refused("merge", *parts, more, "-o", merged)
     assert parts[0].name in sentence
@@ -103,7 +103,7 @@ def test_what_is_missing_and_what_is_there_twice_is_named(render, tmp_path):
     assert "both have samples 0:37 of the pixels 12:13,4:6." in sentence
 
     parts = ranges(render)
-    assert "samples 5:25 of the pixels 0:32,0:24." in refused("merge", parts[0], parts[2], "-o", merged)
+    assert "samples 5:25 of the pixels 0:32,0:24;" in refused("merge", parts[0], parts[2], "-o", merged)
     sentence = refused("merge", *parts, render("--samples", "20:30"), "-o", merged)
     assert "both have samples 20:25" in sentence
     assert "both have samples 0:5 " in refused("merge", parts[0], parts[0], "-o", merged)
@@ -130,7 +130,7 @@ def test_parts_of_other_pictures_are_refused(key, more, render, tmp_path):
     other = render(*(() if "--samples" in more else ("--samples", RANGES[1])), *more)
     sentence = refused("merge", one, other, "-o", tmp_path / "merged.exr", "--partial")
     assert "parts of different images" in sentence
-    assert f"their {key} differs" in sentence
+    assert f"the {key} differs" in sentence
 
 
 def test_files_are_told_apart_by_what_is_in_them(render, tmp_path, mesh_file, world_file):
@@ -143,14 +143,14 @@ def test_files_are_told_apart_by_what_is_in_them(render, tmp_path, mesh_file, wo
     brighter = tmp_path / "brighter.exr"
     images.write(brighter, images.read(world_file) * 1.01)
     other = render("--samples", RANGES[1], "--world", brighter)
-    assert "their world differs" in refused("merge", one, other, "-o", merged, "--partial")
+    assert "the world differs" in refused("merge", one, other, "-o", merged, "--partial")
     mesh = inputs.write_octahedron(tmp_path / "mesh.obj")
     mesh.write_text(mesh.read_text().replace("v 1 0 0", "v 1.1 0 0"))
     other = render("--samples", RANGES[1], "--mesh", mesh)
-    assert "their mesh differs" in refused("merge", one, other, "-o", merged, "--partial")
+    assert "the mesh differs" in refused("merge", one, other, "-o", merged, "--partial")
     measurement = inputs.write_merl(tmp_path / "paint.binary")
     other = render("--samples", RANGES[1], "--material", measurement)
-    assert "their material differs" in refused("merge", one, other, "-o", merged, "--partial")
+    assert "the material differs" in refused("merge", one, other, "-o", merged, "--partial")
 
 
 def test_a_partial_merge_says_what_it_has_and_goes_on(render, tmp_path):

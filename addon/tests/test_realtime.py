@@ -416,7 +416,7 @@ def test_more_lamps_on_btfs_than_the_shader_holds_are_refused():
             scene.add_light("sun", (1, 1, 1), np.eye(3, 4))
         scene.check()
         scene.add_model_material(model)
-        with pytest.raises(UnshownError, match="more than 8 lamps"):
+        with pytest.raises(UnshownError, match="more than 8 lights"):
             scene.check()
         scene.lamps.pop()
         scene.check()

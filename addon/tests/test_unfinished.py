@@ -131,7 +131,7 @@ def test_sigterm_leaves_the_samples_that_it_says(arguments, side, tmp_path):
     assert status == UNFINISHED, sentence
     assert not (tmp_path / "o.exr").exists()
     begin, end = open_part(side).ranges[0]
-    assert f"has the samples 0:{end}," in sentence
+    assert f"has samples 0:{end}." in sentence
     assert begin == end % 8 == 0 < end < 2**24
     fresh = tmp_path / "fresh.exr"
     assert velour(*long, "--samples", f"0:{end}", "-o", fresh, "--quiet").status == 0

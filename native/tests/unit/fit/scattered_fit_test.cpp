@@ -80,7 +80,7 @@ TEST(ScatteredFitRules, HeldOutViewsAreNotRead) {
   AnalyticMeasurement watched(test::lambert);
   Progress progress;
   watched.set_coverage([&](const DirectionPair& p) {
-    if (std::string(progress.stage_name()) == "checking") checking = true;
+    if (std::string(progress.stage_name()) == "checking the model") checking = true;
     const double theta = std::acos(std::min(1.0f, p.wv.z)) * 180 / kPiD;
     for (const int degrees : kHeldOutViews) {
       if (!checking && std::abs(theta - degrees) < kHeldOutMargin) read = true;
