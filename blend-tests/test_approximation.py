@@ -275,7 +275,7 @@ class Group(Approximation):
         """Also of one whose content nobody has vouched for, as of images that were opened by hand."""
         module = importlib.import_module(f"{inputs.ADDON}.ui.approximation_panel")
         files = importlib.import_module(f"{inputs.ADDON}.export.files")
-        old = "It is not of this model: refresh it."
+        old = "The approximation is of another model. Press Refresh."
 
         def read(image):
             return files.StoredFile.of(image, "Test").model_info()
@@ -425,7 +425,7 @@ class Refusals(Approximation):
             bpy.ops.velour.approximate(**arguments)
 
     def test_without_a_material_or_a_model(self):
-        self._refused("No active material")
+        self._refused("There is no active material")
         self._refused("Nobody", material="Nobody")
         bpy.ops.velour.add_material()
         self._refused("has no model")

@@ -37,7 +37,7 @@ class MakeThumbnails(BlenderTest):
     def test_pictures_and_what_ails_the_others(self):
         folder = self._filled()
         said = self._said(directory=str(folder))
-        self.assertIn("3 files, 2 of them with a picture", said)
+        self.assertIn("3 files, 2 of them with a thumbnail", said)
         self.assertIn("damaged.bsdf", said)
         self.assertEqual(len(list((self.folder / "cache").rglob("*.npz"))), 2)
 
@@ -54,5 +54,5 @@ class MakeThumbnails(BlenderTest):
 
     def test_a_folder_that_is_gone_is_a_sentence(self):
         said = self._said(directory=str(self.folder / "gone"))
-        self.assertIn("gone: cannot be read", said)
+        self.assertIn("gone cannot be read", said)
         self.assertIn("0 files", said)

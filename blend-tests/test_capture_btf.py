@@ -83,7 +83,7 @@ class CaptureBtf(BlenderTest):
         said = io.StringIO()
         with contextlib.redirect_stdout(said):
             self.assertEqual(bpy.ops.velour.estimate_capture(), {"FINISHED"})
-        self.assertRegex(said.getvalue(), r"'Plane': About \d+ seconds, \d+ kB on disk, [\d.]+ kB of memory")
+        self.assertRegex(said.getvalue(), r"'Plane': About \d+ seconds, \d+ kB on disk, [\d.]+ kB of additional memory")
         self.assertIn(state.estimate, said.getvalue())
         tiles = importlib.import_module(f"{inputs.ADDON}.operators.tiles")
         self.assertEqual(state.estimated, tiles.captured_as(obj))
@@ -100,7 +100,7 @@ class CaptureBtf(BlenderTest):
             folder = self.folder / f"tile.{number:03}.btf"
             self.assertEqual(obj.velour.directory, str(folder))
             self.assertEqual(self._files(json.loads((folder / "btf.json").read_text())), self._files(first))
-        with self.assertRaisesRegex(RuntimeError, "resume it, or give another folder"):
+        with self.assertRaisesRegex(RuntimeError, "resume the capture, or choose another folder"):
             bpy.ops.velour.capture_btf()
         panel = importlib.import_module(f"{inputs.ADDON}.ui.tile_panel").VELOUR_OBJECT_PT_tile
         layout = Layout(panel)
@@ -252,7 +252,7 @@ class Refusals(BlenderTest):
         self._refused(["no active object"])
         self._refused(["Bricks"], collection="Bricks")
         bpy.ops.object.empty_add()
-        self._refused(["Empty", "no geometry"])
+        self._refused(["Empty", "no visible geometry"])
 
     def test_unsupported_material(self):
         self._glass()
@@ -288,7 +288,7 @@ class Refusals(BlenderTest):
             self._refused(["Material 'Painted", f"'{socket}'", "Approximate"])
         for sockets in (("Emission Color", "Emission"), ("Emission Strength",)):
             bpy.context.view_layer.objects.active = self._textured(sockets, (0.2, 0.4, 0.6, 0.8))[0]
-            self._refused(["Material 'Painted", "what glows", "Approximate"])
+            self._refused(["Material 'Painted", "emission", "Approximate"])
         path = self.folder / "approximate.btf"
         arguments = {**_SMALL, "directory": str(path), "use_approximate": True}
         self.assertEqual(bpy.ops.velour.capture_btf(**arguments), {"FINISHED"})
@@ -314,5 +314,5 @@ class Refusals(BlenderTest):
 
     def test_without_a_place(self):
         scenes.add_plane()
-        with self.assertRaisesRegex(RuntimeError, "save the .blend first"):
+        with self.assertRaisesRegex(RuntimeError, "save the .blend file first"):
             bpy.ops.velour.capture_btf(**_SMALL)

@@ -135,7 +135,7 @@ class Compare(BallTest):
         measurement.filepath_raw = "//gone.binary"
         self._refused("gone.binary", bpy.ops.velour.compare, material="Paint")
         scenes.velour_node(material).velour.measurement = None
-        self._refused("nothing to compare with", bpy.ops.velour.compare, material="Paint")
+        self._refused("no measurement to compare with", bpy.ops.velour.compare, material="Paint")
         scenes.velour_node(material).image = None
         self._refused("has no model", bpy.ops.velour.compare, material="Paint")
 
@@ -156,7 +156,7 @@ class Asset(BallTest):
         self.assertTrue(asset.description.startswith("Measured: "))
         if hasattr(asset, "license"):
             self.assertEqual(asset.license, "CC0-1.0")
-        self.assertEqual("keeps no license" in said, not hasattr(asset, "license"))
+        self.assertEqual("does not store the license" in said, not hasattr(asset, "license"))
         self.assertEqual(tuple(material.preview.image_size), (256, 256))
         pixels = np.array(material.preview.image_pixels_float).reshape(256, 256, 4)
         self.assertTrue((pixels[..., 3] == 1).all())

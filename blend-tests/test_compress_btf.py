@@ -50,16 +50,16 @@ class CompressBtf(BlenderTest):
         folder = self._captured(**_SMALLEST)
         with mock.patch.dict(os.environ, XDG_CACHE_HOME=str(self.folder / "cache")):
             before = self._estimate()
-            self.assertIn("No such fit was made here yet", before)
-            self.assertIn("MB of memory", before)
+            self.assertIn("no similar fit was made on this computer yet", before)
+            self.assertIn("MB of additional memory", before)
             bpy.ops.velour.compress_btf()
-            self.assertIn("by one fit made here", self._estimate())
-            self.assertIn("by one fit made here", self._estimate(filepath=str(folder)))
-            self.assertIn("No such fit", self._estimate(method="SVD"))
+            self.assertIn("estimated from one fit on this computer", self._estimate())
+            self.assertIn("estimated from one fit on this computer", self._estimate(filepath=str(folder)))
+            self.assertIn("no similar fit", self._estimate(method="SVD"))
             self.assertEqual(bpy.context.object.velour.method, "SRBF")  # it was only asked about
-            self.assertIn("as large as the error takes", self._estimate(tolerance=0.2))
+            self.assertIn("smallest model within Max Error", self._estimate(tolerance=0.2))
             bpy.ops.velour.compress_btf()
-            self.assertIn("by 2 fits made here", self._estimate())
+            self.assertIn("estimated from 2 fits on this computer", self._estimate())
         with self.assertRaisesRegex(RuntimeError, "nothing.btf"):
             self._estimate(filepath=str(self.folder / "nothing.btf"))
 
@@ -217,7 +217,7 @@ class CompressBtf(BlenderTest):
     def test_what_is_not_a_btf_is_refused_with_its_name(self):
         with self.assertRaisesRegex(RuntimeError, "nowhere.btf"):
             bpy.ops.velour.compress_btf(filepath=str(self.folder / "nowhere.btf"))
-        with self.assertRaisesRegex(RuntimeError, "save the .blend first"):
+        with self.assertRaisesRegex(RuntimeError, "save the .blend file first"):
             bpy.ops.mesh.primitive_plane_add()
             bpy.ops.velour.compress_btf()
         self.assertNotIn("nowhere", bpy.data.materials)

@@ -46,4 +46,4 @@ class CompressMethods(BlenderTest):
                 self.assertEqual(side["members"], members)
                 self.assertEqual(sum(side["bytes"].values()), side["parameter_bytes"])
                 rows = dict(panel._btf_rows(info))
-                self.assertIn(f"of which a texel has {members}", rows["Clusters"])
+                self.assertIn(f"{members} per texel", rows["Clusters"])

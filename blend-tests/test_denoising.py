@@ -77,7 +77,7 @@ class Missing(BlenderTest):
         scenes.set_world()
         scene.velour.use_denoising = True
         missing = mock.patch.object(denoising, "missing", return_value="it is not there.")
-        with missing, self.assertRaisesRegex(RuntimeError, "is to be denoised, but it is not there"):
+        with missing, self.assertRaisesRegex(RuntimeError, "cannot be denoised: it is not there"):
             bpy.ops.render.render()
         scene.velour.use_denoising = False
         bpy.ops.render.render()

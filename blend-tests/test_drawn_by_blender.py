@@ -71,7 +71,7 @@ class DrawnByBlender(BlenderTest):
         if style is None:  # which ends Blender itself, whatever the engine
             lines[0].linestyle = bpy.data.linestyles.new("Lines")
         self.assertGreater(
-            self._share("View layer 'ViewLayer': Blender itself adds Freestyle's strokes")[0], 0.02
+            self._share("View layer 'ViewLayer': Blender itself adds Freestyle strokes")[0], 0.02
         )
 
 

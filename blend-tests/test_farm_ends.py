@@ -37,8 +37,7 @@ class FarmEnds(FarmTest):
         self.job_of("written", 64)
         told = "def _forget_written(*_args):\n"
         kill = "    import os, signal, time; os.kill(os.getppid(), signal.SIGTERM); time.sleep(1)\n"
-        docs = '    """After Blender wrote the frame: a crash before that has lost nothing."""\n'
-        ended = self.another_stage("writes", "engine/frame_parts.py", told + docs, told + kill)
+        ended = self.another_stage("writes", "engine/frame_parts.py", told, told + kill)
         done = self.node("--frames", "1-2", environment=ended)
         self.assertEqual(done.returncode, 3, done.stdout)
         self.assertEqual(self.status()[1].splitlines()[0], "not done yet: 2-3")

@@ -140,7 +140,7 @@ class StillOnSlurm(SlurmTest):
 
     def _begun(self, element):
         log = self.folder / f"{element}.txt"
-        return log.is_file() and "Rendering the samples" in log.read_text()
+        return log.is_file() and "Rendering samples" in log.read_text()
 
     def _velour(self, *arguments):
         done = process.run(["env", "-C", self.folder, "scripts/velour", *arguments, "--quiet"])
@@ -152,7 +152,7 @@ class StillOnSlurm(SlurmTest):
         self.slurm.run("scancel", "--signal=TERM", f"{number}_1")
         self.slurm.wait_until_empty()
         said = (self.folder / "1.txt").read_text()
-        self.assertRegex(said, r"1\.unfinished\.exr has the samples 512:\d+, and the same command goes on")
+        self.assertRegex(said, r"1\.unfinished\.exr has samples 512:\d+\. Run the same command again")
         self.assertEqual(self.job(f"{number}_1")["ExitCode"], "3:0")
         self.assertEqual(
             sorted(path.name for path in self.folder.glob("parts/*")), ["0.exr", "1.unfinished.exr"]

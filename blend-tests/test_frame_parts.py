@@ -101,7 +101,7 @@ class FrameParts(BlenderTest):
             )
         self.assertEqual(self._files(), ["0001.0-8.exr", "0001.24-40.exr", "0001.8-24.exr"])
         said = self._render(blend, "merged", "--velour-parts", self.parts)
-        self.assertIn("All samples were there", said)
+        self.assertIn("All samples were already rendered", said)
         self._assert_same("merged", "whole", _ROUNDING)
         self.assertEqual(self._files(), [])
         header = inputs.native().images.header(self._path("part2"))
@@ -149,7 +149,7 @@ class FrameParts(BlenderTest):
         self._render(blend, "whole")
         parts = ("--velour-parts", self.parts)
         said = self._render(blend, "ended", *parts, before=("--python-expr", _END_LAYER), status=1)
-        found = re.search(r"Stopped at sample (\d+) of 4000; .* the same command goes on", said)
+        found = re.search(r"Stopped at sample (\d+) of 4000; .* Run the same command again", said)
         self.assertTrue(found, said)
         self.assertEqual(self._files(), [f"0001.0-{found[1]}.exr", "0001.0-4000.exr"])
         said = self._render(blend, "ended", "--velour-parts", self.parts)
@@ -207,7 +207,7 @@ class FrameParts(BlenderTest):
         self.assertEqual(begin, 0)
         self.assertTrue(8 <= end < 100000 and end % 8 == 0, said)
         said = self._render(blend, "kept", "--velour-parts", self.parts, status=1)
-        self.assertIn("the same command goes on from there", said)
+        self.assertIn("Run the same command again to continue", said)
         self.assertEqual(len(self._files()), 1)
 
     def test_another_state_is_refused(self):
@@ -216,8 +216,8 @@ class FrameParts(BlenderTest):
         bpy.context.scene.velour.seed += 1
         bpy.ops.wm.save_mainfile()
         said = self._render(blend, "merged", "--velour-parts", self.parts, status=1)
-        self.assertIn("is not of this render: their blend differs", said)
-        self.assertIn("remove it, or name another folder", said)
+        self.assertIn("belongs to another render, as the blend differs", said)
+        self.assertIn("remove it, or choose another folder", said)
 
     def test_a_damaged_part_is_refused(self):
         blend = self._save()
@@ -232,11 +232,11 @@ class FrameParts(BlenderTest):
         blend = self._save()
         folder = ("--velour-parts", self.parts)
         for options, words in (
-            (("--velour-part", "1"), "there is no option --velour-part"),
+            (("--velour-part", "1"), "unknown option --velour-part"),
             (("--velour-samples", "0:8"), "needs a folder"),
             ((*folder, "--velour-samples", "0:7"), "multiples of 8"),
-            ((*folder, "--velour-samples", "0:80"), "go beyond 40"),
-            ((*folder, "--velour-samples", "4/3"), "there are 3 parts"),
+            ((*folder, "--velour-samples", "0:80"), "exceed the 40 samples"),
+            ((*folder, "--velour-samples", "4/3"), "at most 3"),
             ((*folder, "--velour-samples", "1/6"), "5 camera rays"),
             (("--velour-memory", "some"), "some"),
         ):
@@ -245,7 +245,7 @@ class FrameParts(BlenderTest):
         bpy.context.scene.velour.use_noise_target = True
         bpy.ops.wm.save_mainfile()
         said = self._render(blend, "wrong", *folder, "--velour-samples", "0:8", status=1)
-        self.assertIn("A noise threshold looks at a whole picture", said)
+        self.assertIn("Noise Threshold needs all samples of the image", said)
 
     def test_memory_is_stated_and_limited(self):
         blend = self._save(samples=8, size=1024)
@@ -260,10 +260,10 @@ class FrameParts(BlenderTest):
         self.assertGreater(peak, int(stated[1]) / 1.5)
         said = self._render(blend, "refused", "--velour-memory", "100M", status=1)
         self.assertRegex(
-            said, r"would take about \d+ MiB of memory \(.*\), above its limit of 100 MiB \(--velour"
+            said, r"needs about \d+ MiB of memory \(.*\), more than the limit of 100 MiB \(--velour"
         )
-        self.assertIn("not all exported yet", said)  # not after it, when the system may have ended Blender
+        self.assertIn("only partly exported yet", said)  # before the system might end Blender
         self._render(blend, "allowed", "--velour-memory", "8G")
         above = int(stated[1]) - int(stated[2]) // 2
         said = self._render(blend, "refused", "--velour-memory", f"{above}M", status=1)
-        self.assertRegex(said, r"The frame would take about \d+ MiB of memory \(.*, picture")
+        self.assertRegex(said, r"The frame needs about \d+ MiB of memory \(.*, picture")

@@ -106,7 +106,7 @@ class Materials(NotesTest):
         node.image = bpy.data.images.new("clip", 4, 4)
         tree.links.new(node.outputs[0], tree.nodes["Principled BSDF"].inputs["Base Color"])
         for node.image.source in ("SEQUENCE", "MOVIE"):
-            self.assert_said("Material 'Bare'", "the image 'clip' is no single picture")
+            self.assert_said("Material 'Bare'", "the image 'clip' is not a single image")
 
     def test_opaque_shadows_of_what_is_transparent(self):
         tree = self._tree()

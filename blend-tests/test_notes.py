@@ -33,7 +33,7 @@ class Notes(NotesTest):
 
     def test_unsupported_shader(self):
         self._material("ShaderNodeBsdfGlass")
-        self.assert_said("Material 'Glass'", "Glass BSDF", "rendered grey")
+        self.assert_said("Material 'Glass'", "Glass BSDF", "rendered gray")
 
     def test_index_of_refraction(self):
         tree = self._material("ShaderNodeBsdfPrincipled").node_tree
@@ -82,7 +82,7 @@ class Notes(NotesTest):
         node.distribution = "GGX"
         self.assertEqual(self.notes(), [])
         node.distribution = "BECKMANN"
-        self.assert_said("Material 'Glass'", node.name, "'Beckmann' is shown as GGX")
+        self.assert_said("Material 'Glass'", node.name, "'Beckmann' is not supported; rendered as GGX")
 
     def _shows_attribute(self, name, idname="ShaderNodeAttribute"):
         """A sphere of colours by an attribute; the object and the node."""
@@ -93,27 +93,27 @@ class Notes(NotesTest):
     def test_missing_attribute(self):
         obj, _ = self._shows_attribute("paint")
         self.assert_said(
-            f"Object '{obj.name}'", "no colours or numbers 'paint'", "material 'Glass'", "shows 0"
+            f"Object '{obj.name}'", "no attribute 'paint'", "material 'Glass'", "0 is used instead"
         )
         obj.data.attributes.new("paint", "FLOAT_COLOR", "POINT")
         self.assertEqual(self.notes(), [])
 
     def test_missing_colour_attribute(self):
         obj, _ = self._shows_attribute("", "ShaderNodeVertexColor")
-        self.assert_said(f"Object '{obj.name}'", "no colour attribute", "material 'Glass'")
+        self.assert_said(f"Object '{obj.name}'", "no color attribute", "material 'Glass'")
         obj.data.color_attributes.new("paint", "BYTE_COLOR", "CORNER")
         self.assertEqual(self.notes(), [])
 
     def test_attributes_of_objects(self):
         _, node = self._shows_attribute("paint")
         node.attribute_type = "OBJECT"
-        self.assert_said("Material 'Glass'", "'Color'", f"'{node.name}' shows an attribute of type 'Object'")
+        self.assert_said("Material 'Glass'", "'Color'", f"'{node.name}' reads an attribute of type 'Object'")
 
     def test_attribute_in_the_place_of_a_normal_map(self):
         _, normal_map = self._linked("ShaderNodeNormalMap")
         tree = normal_map.id_data
         tree.links.new(tree.nodes.new("ShaderNodeVertexColor").outputs[0], normal_map.inputs["Color"])
-        self.assert_said("Material 'Glass'", normal_map.name, "it is no picture")
+        self.assert_said("Material 'Glass'", normal_map.name, "it is not an image")
 
     def test_many_attributes(self):
         """Five in one material, of which four are shown."""
@@ -128,7 +128,7 @@ class Notes(NotesTest):
             shown.attribute_name = f"paint {i}"
             mesh.attributes.new(shown.attribute_name, "FLOAT_COLOR", "POINT")
             tree.links.new(shown.outputs["Color"], node.inputs[socket])
-        self.assert_said("Material 'Glass'", "5 attributes", "beyond 4")
+        self.assert_said("Material 'Glass'", "5 mesh attributes", "only 4")
 
     def test_unsupported_part_of_a_mix(self):
         tree = self._material("ShaderNodeMixShader").node_tree
@@ -136,7 +136,7 @@ class Notes(NotesTest):
         tree.links.new(tree.nodes.new("ShaderNodeBsdfTransparent").outputs[0], mix.inputs[1])
         self.assertEqual(self.notes(), [])
         tree.links.new(tree.nodes.new("ShaderNodeBsdfTranslucent").outputs[0], mix.inputs[2])
-        self.assert_said("Material 'Glass'", "Translucent BSDF", "rendered grey")
+        self.assert_said("Material 'Glass'", "Translucent BSDF", "rendered gray")
 
     def test_ignored_input(self):
         material = self._material("ShaderNodeBsdfPrincipled")
@@ -151,8 +151,8 @@ class Notes(NotesTest):
         obj.visible_camera = obj.visible_shadow = False
         self.assertEqual(self.notes(), [])
         obj.visible_glossy, obj.is_shadow_catcher = False, True
-        self.assert_said("Object 'Sphere'", "hidden from glossy rays alone")
-        self.assert_said("Object 'Sphere'", "a shadow catcher")
+        self.assert_said("Object 'Sphere'", "hiding it from glossy rays only")
+        self.assert_said("Object 'Sphere'", "Shadow Catcher is not supported")
 
     def test_light_visibility(self):
         lamp = bpy.data.objects.new("Spot", bpy.data.lights.new("Spot", "SPOT"))
@@ -160,14 +160,14 @@ class Notes(NotesTest):
         lamp.visible_camera = False  # it never is
         self.assertEqual(self.notes(), [])
         lamp.visible_glossy = False
-        self.assert_said("Light 'Spot'", "hidden from glossy rays")
+        self.assert_said("Light 'Spot'", "hiding it from glossy rays")
 
     def test_world_without_shadows(self):
         settings = bpy.context.scene.world.cycles
         if not hasattr(settings, "use_shadows"):
             self.skipTest("worlds cast shadows before Blender 5.2")
         settings.use_shadows = False
-        self.assert_said(f"World '{bpy.context.scene.world.name}'", "casts no shadow")
+        self.assert_said(f"World '{bpy.context.scene.world.name}'", "disabling its shadows")
 
     def _picture_on(self, tree, uv_map, socket):
         """Links an image on that UV map, which the object has then, to an input."""
@@ -200,7 +200,7 @@ class Notes(NotesTest):
             tree.links.new(shader.outputs[0], add.inputs[i])
             tree.links.new(normal_map.outputs[0], shader.inputs["Normal"])
             self._picture_on(tree, uv_map, normal_map.inputs["Color"])
-        self.assert_said("Material 'Glass'", "Normal Maps ask for several UV maps", "'a'")
+        self.assert_said("Material 'Glass'", "Normal Maps use several UV maps", "'a'")
 
     def test_light_factors(self):
         lamp = bpy.data.objects.new("Fill", bpy.data.lights.new("Fill", "POINT"))
@@ -217,7 +217,7 @@ class Notes(NotesTest):
         self.assertEqual(self.notes(), [])
         profile = tree.nodes.new("ShaderNodeTexIES")
         tree.links.new(profile.outputs[0], tree.nodes["Emission"].inputs["Strength"])
-        self.assert_said("Light 'Down'", "shader nodes of lights are ignored", "IES")
+        self.assert_said("Light 'Down'", "shader nodes of lights, such as IES files, are not supported")
 
     def test_motion_blur(self):
         bpy.context.scene.render.use_motion_blur = True

@@ -62,5 +62,5 @@ class OpenFile(BlenderTest):
             with self.assertRaisesRegex(RuntimeError, words):
                 operator(filepath=path)
         bpy.context.object.active_material = bpy.data.materials.new("Plain")
-        with self.assertRaisesRegex(RuntimeError, "'Plain' is not a measured one"):
+        with self.assertRaisesRegex(RuntimeError, "'Plain' is not measured"):
             bpy.ops.velour.open_model(filepath=model)

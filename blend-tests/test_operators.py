@@ -168,7 +168,7 @@ class Operators(BlenderTest):
 
         with (
             mock.patch.object(Btf, "load", noted),
-            self.assertRaisesRegex(RuntimeError, "cloth.btf: is no BTF"),
+            self.assertRaisesRegex(RuntimeError, "cloth.btf: is not a BTF"),
         ):
             bpy.ops.velour.compress_btf(filepath=str(path))
         self.assertEqual(len(threads), 1)
@@ -194,12 +194,12 @@ class Operators(BlenderTest):
         with contextlib.redirect_stdout(said):
             bpy.ops.velour.load_material(filepath=str(path), fit=False)
         self.assertTrue(bpy.data.materials[path.stem].use_fake_user)
-        sentence = f"Object '{name}' takes no material; material '{path.stem}' is kept without an object."
+        sentence = f"Object '{name}' cannot have materials; material '{path.stem}' is kept without an object"
         self.assertIn(sentence, said.getvalue())
         bpy.context.view_layer.objects.active = None
         with contextlib.redirect_stdout(said):
             bpy.ops.velour.load_material(filepath=str(path), fit=False)
-        self.assertIn("No object is active; material", said.getvalue())
+        self.assertIn("There is no active object; material", said.getvalue())
 
     def test_a_slot_is_that_of_the_face_that_is_met(self):
         cube = _two_sided_cube()
@@ -227,7 +227,7 @@ class Operators(BlenderTest):
         (folder / "noise.bsdf").write_bytes(bytes(range(256)) * 40)
         names = ("noise.bsdf", "good.binary", "nothing.binary")
         said = self._refused(
-            "2 of 3 files were left out.",
+            "2 of 3 files were not imported.",
             "noise.bsdf",
             "nothing.binary",
             directory=str(folder),
@@ -392,7 +392,7 @@ class Slots(BlenderTest):
         self.assertTrue(material.use_fake_user)
         ((kind, sentence),) = self.said
         self.assertEqual(kind, {"WARNING"})
-        self.assertIn(f"Slot 2 of object '{name}' is gone; material 'New'", sentence)
+        self.assertIn(f"Slot 2 of object '{name}' no longer exists; material 'New'", sentence)
 
     def test_a_slot_that_is_gone(self):
         self.cube.data.materials.pop(index=1)
@@ -456,7 +456,7 @@ class Refusals(BlenderTest):
         self._refused(["cut.binary"], bpy.ops.velour.load_material, filepath=str(path))
 
     def test_fit_without_material(self):
-        self._refused(["No active material"], bpy.ops.velour.fit)
+        self._refused(["There is no active material"], bpy.ops.velour.fit)
 
     def test_fit_unknown_material(self):
         self._refused(["Nobody"], bpy.ops.velour.fit, material="Nobody")

@@ -18,7 +18,6 @@ PAGES = [ROOT / "README.md", *sorted((ROOT / "docs").rglob("*.md"))]
 NOT_RUN = {
     ("README.md", "scripts/demo"): "installs and builds for minutes; the second is what runs this test",
     ("README.md", "BLENDER_USER_SCRIPTS="): "opens a window that waits for a user",
-    ("blender.md", "BLENDER_USER_SCRIPTS="): "opens a window that waits for a user",
     ("chart.md", "scripts/figures"): "takes hours, and Mitsuba",
     ("reference/farm.md", "scripts/farm shot.blend"): "needs Slurm; test_farm_slurm has one of its own",
     (
@@ -137,7 +136,7 @@ class PageSnippets(SnippetTest):
         self._has("frames/shot_0012.exr")
 
     def test_blender(self):
-        place, render, fit = self._runnable("blender.md")
+        place, render, fit = self._runnable("reference/operators.md")
         self._shot(self.folder / "scene.blend")
         self.run_shell(render)
         self._has("out_0001.exr")
@@ -162,7 +161,7 @@ class PageSnippets(SnippetTest):
             "engine/votf.md",
             "engine/regression.md",
             "reference/farm.md",
-            "blender.md",
+            "reference/operators.md",
         }
         found, reasons = set(), set()
         for page in set(PAGES) - set(guide.PAGES):

@@ -161,9 +161,7 @@ class Panels(BlenderTest):
         layout = Layout()
         model_panel._draw_numbers(layout, info)
         rows = dict(zip(layout.labels[::2], layout.labels[1::2], strict=False))
-        shown = {
-            name: rows[name] for name in ("Source", "Relative error", "Largest albedo", "Reciprocity error")
-        }
+        shown = {name: rows[name] for name in ("Source", "Relative error", "Max albedo", "Reciprocity error")}
         self.assertEqual(list(shown.values()), ["paint", "0.125", "0.75", "0.0625"])
 
     def _read_and_offered(self, context, panel=VELOUR_MATERIAL_PT_measured):

@@ -33,7 +33,7 @@ class ParityPage(CheckFolderTest):
         self.assertEqual(next(iter(outcomes)), "blind")  # what was not even rendered
         self.assertIn("Cycles: it has no camera; give its scene one.", outcomes["blind"]["sentence"])
         page = (self.shots / "velour-check/index.html").read_text()
-        self.assertIn("(Glass BSDF) is not supported; rendered grey.", page)
+        self.assertIn("(Glass BSDF) is not supported; rendered gray.", page)
         self.assertIn("<figcaption>Cycles</figcaption>", page)
 
     def command(self, *arguments):

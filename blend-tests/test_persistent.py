@@ -350,7 +350,7 @@ class PersistentData(BlenderTest):
         for is_persistent in (True, False):
             with contextlib.redirect_stdout(io.StringIO()) as out:
                 self._pictures(is_persistent)
-            said[is_persistent] = out.getvalue().count("is not supported; rendered grey")
+            said[is_persistent] = out.getvalue().count("is not supported; rendered gray")
         self.assertEqual(said, {True: 1, False: 3})
 
     def test_a_frame_that_fails_leaves_nothing_behind(self):

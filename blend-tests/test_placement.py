@@ -30,7 +30,7 @@ class Pictures(Placed):
         for vertex in obj.data.vertices:
             vertex.co.y /= 2
         self.assertEqual(self._rows()["Stretch"], "1.00:1, 0% above 2:1")
-        self.assertEqual(self._rows()["Tile here"], "500 x 500 mm, real size")
+        self.assertEqual(self._rows()["Tile size"], "500 x 500 mm, real size")
         self._check_picture(((2, 0, 0), (0, 1, 0)), height=0.5)
 
     def test_entered_size_goes_before_the_btfs_own(self):
@@ -176,7 +176,7 @@ class Projected(Placed):
         (note,) = self._notes()
         self.assertIn("Object 'Plane': it has no UV map; material 'Quarters' is projected", note)
         self.assertEqual(list(self._report().warnings), [note])
-        self.assertEqual(self._rows()["Tile here"], "500 x 500 mm, real size")
+        self.assertEqual(self._rows()["Tile size"], "500 x 500 mm, real size")
         self._placement().mode = "REAL_SIZE"
         self._check_picture(expected)
         self._placement().uv_density = (7, 7)  # of another object, which has a UV map

@@ -32,7 +32,7 @@ class Panel(Placed):
         ui["placement_summary"].measured(context, material)
         ui["placement_summary"]._measure()
         report = ui["placement_summary"].measured(context, material)
-        self.assertEqual(dict(report.placement.rows)["Tile here"], "2 x 2 m, 4 x 4 of real size")
+        self.assertEqual(dict(report.placement.rows)["Tile size"], "2 x 2 m, 4 x 4 times real size")
 
 
 class Reports(Placed):
@@ -41,11 +41,11 @@ class Reports(Placed):
         self.assertEqual(
             self._rows(),
             {
-                "UV density": "0.5 x 0.5 per metre",
-                "Tile here": "500 x 500 mm, real size",
+                "UV density": "0.5 x 0.5 per meter",
+                "Tile size": "500 x 500 mm, real size",
                 "Spread": "1.00 to 1.00",
                 "Texels": "0.032 per mm",  # 16 over 500 mm
-                "In the camera": "1 texels per pixel, least 1",  # a pixel is 1/32 m wide
+                "In the camera": "1 texels per pixel, minimum 1",  # a pixel is 1/32 m wide
                 "Stretch": "1.00:1, 0% above 2:1",
             },
         )
@@ -57,16 +57,16 @@ class Reports(Placed):
         camera = self.scene.camera
         camera.data.type, camera.data.angle = "PERSP", 2 * np.arctan(0.5)  # a pixel is distance / 64 wide
         camera.location.z = 4
-        self.assertEqual(self._rows()["In the camera"], "4 texels per pixel, least 4")
+        self.assertEqual(self._rows()["In the camera"], "4 texels per pixel, minimum 4")
         near = scenes.add_plane(material)
         near.location.z = 2
         bpy.context.view_layer.update()
-        self.assertEqual(self._rows(obj=near)["In the camera"], "2 texels per pixel, least 2")
-        self.assertEqual(self._rows(obj=far)["In the camera"], "not seen")
+        self.assertEqual(self._rows(obj=near)["In the camera"], "2 texels per pixel, minimum 2")
+        self.assertEqual(self._rows(obj=far)["In the camera"], "not visible")
         near.hide_set(True)
         camera.location.z = 9  # the plane fills a small part of the picture
         bpy.context.view_layer.update()
-        self.assertEqual(self._rows(obj=far)["In the camera"], "9 texels per pixel, least 9")
+        self.assertEqual(self._rows(obj=far)["In the camera"], "9 texels per pixel, minimum 9")
 
     def test_ground_that_reaches_the_eye(self):
         obj = scenes.add_plane(self._material(repeats=(100, 100)), size=100.0)
@@ -76,7 +76,8 @@ class Reports(Placed):
         bpy.context.view_layer.update()
         value = self._rows(obj=obj)["In the camera"]
         median, least = (
-            float(value.split(word)[1 if word == "least" else 0].split()[0]) for word in ("texels", "least")
+            float(value.split(word)[1 if word == "minimum" else 0].split()[0])
+            for word in ("texels", "minimum")
         )
         pixel = 2 * np.tan(camera.data.angle / 2) / SIZE  # at distance 1
         lowest = 1.5 / np.sin(np.radians(10) + camera.data.angle / 2)  # along the lowest rays
@@ -96,7 +97,7 @@ class Reports(Placed):
         curve.data.extrude = 0.5
         bpy.context.view_layer.update()
         # u runs around once, v over 1 m.
-        self.assertEqual(self._rows()["UV density"], "0.159 x 1 per metre")
+        self.assertEqual(self._rows()["UV density"], "0.159 x 1 per meter")
         self.assertIn("stretched", self._notes()[0])
         self._placement().mode = "REAL_SIZE"
         self.assertEqual(self._notes(), [])
@@ -105,14 +106,14 @@ class Reports(Placed):
         obj = scenes.add_plane(self._material(mode="REAL_SIZE"))
         array = obj.modifiers.new("Array", "ARRAY")
         array.count = 3
-        self.assertEqual(self._rows()["Tile here"], "500 x 500 mm, real size")
+        self.assertEqual(self._rows()["Tile size"], "500 x 500 mm, real size")
         obj.modifiers.new("Lift", "DISPLACE").strength = 0.5
         self.assertEqual(self._rows()["Stretch"], "1.00:1, 0% above 2:1")
 
     def test_without_a_camera(self):
         scenes.add_plane(self._material())
         self.scene.camera = None
-        self.assertEqual(self._rows()["In the camera"], "no camera that renders")
+        self.assertEqual(self._rows()["In the camera"], "no render camera")
 
     def test_spread_and_stretch_of_a_sphere(self):
         bpy.ops.mesh.primitive_uv_sphere_add()
@@ -134,11 +135,11 @@ class Reports(Placed):
         with self.assertRaisesRegex(RuntimeError, "no object 'Gone'"):
             bpy.ops.velour.describe_placement(object="Gone")
         obj = scenes.add_plane()
-        with self.assertRaisesRegex(RuntimeError, "Object 'Plane': there is no material"):
+        with self.assertRaisesRegex(RuntimeError, "Object 'Plane' has no material"):
             bpy.ops.velour.describe_placement()
         data = inputs.model_bytes(inputs.glossy_measurement())
         obj.data.materials.append(scenes.measured_material(data))
-        with self.assertRaisesRegex(RuntimeError, "'Paint' is the same all over"):
+        with self.assertRaisesRegex(RuntimeError, "'Paint' is uniform"):
             bpy.ops.velour.describe_placement()
         obj.data.materials[0] = self._material()
         obj.data.uv_layers.remove(obj.data.uv_layers[0])
@@ -171,12 +172,12 @@ class Warnings(Placed):
             "material 'Quarters'",
             "2:1 on 100% of it",
             "up to 3.0:1",
-            "own axes",
+            "local coordinates",
         ):
             self.assertIn(words, notes[0])
         report = self._report()
         self.assertEqual(list(report.warnings), notes)
-        self.assertEqual(dict(report.rows)["Tile here"], "6 x 2 m, 12 x 4 of real size")
+        self.assertEqual(dict(report.rows)["Tile size"], "6 x 2 m, 12 x 4 times real size")
         for vertex in obj.data.vertices:
             vertex.co.x /= 3
         obj.scale.x = 3
@@ -201,13 +202,13 @@ class Warnings(Placed):
 
     def test_real_size_of_unknown_size_is_refused(self):
         scenes.add_plane(self._material(metres=0, mode="REAL_SIZE"))
-        with self.assertRaisesRegex(RuntimeError, "Material 'Quarters': its model does not know how large"):
+        with self.assertRaisesRegex(RuntimeError, "Material 'Quarters': its model does not store the size"):
             scenes.render(self.folder)
         report = self._report()
         self.assertIn("enter Tile Size", report.warnings[0])
         self._placement().tile_size = (500, 500)
         self._check_picture(((4, 0, 0), (0, 4, 0)))
-        self.assertEqual(self._rows()["Tile here"], "500 x 500 mm, real size")
+        self.assertEqual(self._rows()["Tile size"], "500 x 500 mm, real size")
 
     def test_a_preview_without_a_size_is_not_refused(self):
         scenes.add_plane(self._material(metres=0, mode="REAL_SIZE"))
@@ -220,7 +221,7 @@ class Warnings(Placed):
     def test_repeats_of_unknown_size_are_fine_and_said(self):
         scenes.add_plane(self._material(metres=0))
         self.assertEqual(self._notes(), [])
-        self.assertEqual(self._rows()["Tile here"], "2 x 2 m, real size not known")
+        self.assertEqual(self._rows()["Tile size"], "2 x 2 m, real size unknown")
 
     def test_slots_are_measured_apart(self):
         """Two faces, one of them 3 times as dense in u: only the material of that one is stretched."""

@@ -73,7 +73,7 @@ class Plots(BlenderTest):
     def test_what_cannot_be_plotted_says_why(self):
         with open(_WEAVE, "rb") as file:
             self.node.image = scenes.velour_node(scenes.measured_material(file.read(), "Weave")).image
-        with self.assertRaisesRegex(RuntimeError, "BTF has no plot 'lobes'"):
+        with self.assertRaisesRegex(RuntimeError, "BTF models have no plot 'lobes'"):
             bpy.ops.velour.save_plot(filepath=str(self.folder / "btf.png"), kind="LOBES")
         self.assertFalse((self.folder / "btf.png").exists())
         self._saved("btf.svg", kind="ORDER")

@@ -80,7 +80,7 @@ class BadLibrary(BlenderTest):
     """One sentence on the console and in the preferences, no traceback, and a render that refuses."""
 
     def test_missing(self):
-        self._refused(self.folder / "nothing.so", "is not there")
+        self._refused(self.folder / "nothing.so", "does not exist")
 
     def test_foreign(self):
         self._refused(self._built("int answer(void) { return 42; }\n"), "is not a Velour library")

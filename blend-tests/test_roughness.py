@@ -72,10 +72,10 @@ class Roughness(BlenderTest):
         self.assertTrue(any(words in note for note in notes), list(notes))
 
     def test_of_a_btf(self):
-        self._is_left_out(self._ball(inputs.quarters_model()), "Roughness Offset is for models of BRDFs")
+        self._is_left_out(self._ball(inputs.quarters_model()), "no effect on the model of a BTF")
 
     def test_of_the_measurement_itself(self):
         settings = self._plastic()
         settings.measurement = bpy.data.images.load(str(inputs.plastic_measurement()))
         settings.use_reference = True
-        self._is_left_out(settings, "switch off Render from Measurement")
+        self._is_left_out(settings, "Disable Render from Measurement")

@@ -89,12 +89,12 @@ class Fits(PaintedPlane):
         self.assertEqual(info["scene"]["frames"], 1)
         self.assertEqual((self.scene.frame_current, self.scene.frame_subframe), (7, 0.25))
         self.assertEqual([scene.name for scene in bpy.data.scenes], ["Scene"])
-        self.assertIn("looked at frame 1 (1/1)", said.getvalue())
+        self.assertIn("observed frame 1 (1/1)", said.getvalue())
 
     def test_picture_close_to_the_full_one(self):
         bpy.ops.velour.fit_for_scene()
         pixels, said = self.render()
-        self.assertIn("rendered with that model", said)
+        self.assertIn("rendered with the scene model", said)
         full = self.full_picture()
         self.assertGreater(np.abs(pixels - full).max(), 0, "the full model was rendered")
         np.testing.assert_allclose(scenes.middle(pixels), scenes.middle(full), rtol=0.02)
@@ -113,7 +113,7 @@ class Fits(PaintedPlane):
         self.assertLess(info["parameter_bytes"], self.info(full)["parameter_bytes"])
         self.assertEqual(info["shell"], self.info(full)["shell"])
         pixels, said = self.render()
-        self.assertIn("rendered with that model", said)
+        self.assertIn("rendered with the scene model", said)
         alpha = pixels[..., 3].mean()
         self.assertAlmostEqual(alpha, self.full_picture()[..., 3].mean(), delta=1e-3)
 
@@ -175,7 +175,7 @@ class Fits(PaintedPlane):
         )
         child = run_blender(blend, "--python-exit-code", 1, "--python", script)
         self.assertEqual(child.returncode, 0, child.stdout)
-        words = r"Fitted 'Paint' for scene 'Scene', 1 frames, in .* picture error [0-9]"
+        words = r"Fitted 'Paint' for scene 'Scene', 1 frames, in .* image error [0-9]"
         self.assertRegex(child.stdout, words)
         bpy.ops.wm.open_mainfile(filepath=str(blend))
         info = self.info(self.settings.scene_model)
@@ -215,12 +215,12 @@ class Fits(PaintedPlane):
         self.scene.render.use_persistent_data = True
         bpy.ops.velour.fit_for_scene()
         picture, said = self.render()
-        self.assertIn("rendered with that model", said)
+        self.assertIn("rendered with the scene model", said)
         self.settings.use_scene_model = False
         self.assertNotIn("Paint", self.render()[1])
         self.settings.use_scene_model = True
         again, said = self.render()
-        self.assertIn("rendered with that model", said)
+        self.assertIn("rendered with the scene model", said)
         np.testing.assert_array_equal(again, picture)
 
     def test_a_new_fit_switches_it_off(self):
@@ -269,7 +269,7 @@ class Frames(PaintedPlane):
     def test_brighter_world_is_no_other_light(self):
         """Negative control: the domain is of directions, not of brightness."""
         scenes.set_world((3, 3, 3))
-        self.assertIn("rendered with that model", self.render()[1])
+        self.assertIn("rendered with the scene model", self.render()[1])
 
     def test_order_of_frames(self):
         """Frame 3 alone, and after frames 1 and 2, one of which takes the full model."""
@@ -279,8 +279,8 @@ class Frames(PaintedPlane):
             self.camera.keyframe_insert("rotation_euler", frame=frame)
         self.scene.frame_set(3)
         alone, said = self.render("alone")
-        self.assertIn("rendered with that model", said)
-        for frame, words in ((1, "rendered with that model"), (2, "rendered with the full model")):
+        self.assertIn("rendered with the scene model", said)
+        for frame, words in ((1, "rendered with the scene model"), (2, "rendered with the full model")):
             self.scene.frame_set(frame)
             self.assertIn(words, self.render()[1])
         self.scene.frame_set(3)
@@ -301,7 +301,7 @@ class Frames(PaintedPlane):
         self.assertEqual(pixels_said[0].shape[:2], (HEIGHT, WIDTH))
         header = (self.folder / "picture.exr").read_bytes()[:4096]
         self.assertIn(b"velour.ViewLayer.Paint", header)
-        self.assertIn(b"rendered with that model", header)
+        self.assertIn(b"rendered with the scene model", header)
 
     def test_missing_full_model(self):
         place_camera(self.camera, 0.05)
@@ -364,7 +364,7 @@ class Refusals(PaintedPlane):
 
     def test_not_seen(self):
         self.obj.hide_render = True
-        self._refused("Paint", "not seen", "frame 1")
+        self._refused("Paint", "not visible", "frame 1")
 
     def test_no_measurement(self):
         self.settings.measurement = None
@@ -392,7 +392,7 @@ class Refusals(PaintedPlane):
         self.settings.measurement.filepath = str(inputs.lambert_measurement())
         self._refused("Paint", "has changed")
         self.settings.measurement.velour.sha256 = ""
-        self._refused("Paint", "not of this measurement")
+        self._refused("Paint", "not fitted to this measurement")
 
     def test_missing_measurement(self):
         self.settings.measurement.filepath = str(self.folder / "gone.binary")

@@ -58,7 +58,7 @@ class SceneModelsOfBtfs(SceneModelTest):
     def test_the_picture_stays(self):
         bpy.ops.velour.fit_for_scene()
         pixels, said = self.render()
-        self.assertIn("rendered with that model", said)
+        self.assertIn("rendered with the scene model", said)
         full = self.full_picture()
         self.assertGreater(np.abs(pixels - full).max(), 0, "the full model was rendered")
         np.testing.assert_allclose(pixels.mean(), full.mean(), rtol=0.02)

@@ -48,7 +48,7 @@ class Checked(SceneModelTest):
         self.assertIn("velour.check_scene", self._panel().operators)
         self.assertEqual(self._found(), [])
         (said,) = self._sentences()
-        self.assertRegex(said, r"frame 1: 0\.\d\d% .*rendered with that model\.$")
+        self.assertRegex(said, r"frame 1: 0\.\d\d% .*rendered with the scene model\.$")
 
     def test_it_does_not_serve(self):
         """What the check says without a picture is what the render says."""
@@ -71,7 +71,7 @@ class Checked(SceneModelTest):
         self.node.image = None
         (found,) = self._found()
         self.assertIn("the full model is missing", found)
-        self.assertIn("Fit the material, or put the full model back.", found)
+        self.assertIn("Restore the full model, or fit the material again.", found)
 
     def test_switched_off(self):
         """Negative control."""

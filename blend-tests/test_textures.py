@@ -138,7 +138,7 @@ class Textures(BlenderTest):
         self._plane(bpy.data.images.load(str(path)))
         found = self._notes()
         self.assertEqual(len(found), 2, found)
-        self.assertTrue("upside down" in found[0] and "exposure" in found[1], found)
+        self.assertTrue("flipped vertically" in found[0] and "exposure" in found[1], found)
         np.testing.assert_allclose(self._rendered()[-1, 0], (0.5, 0.25, 0.125), atol=3e-3)
         np.testing.assert_allclose(self._rendered()[0, 0], (0.125, 0.25, 0.5), atol=3e-3)
 
@@ -190,11 +190,11 @@ class Textures(BlenderTest):
     def test_other_nodes_are_named(self):
         self._plane(_image("named", _colours()))
         self.texture.projection = "BOX"
-        self.assertIn("is not projected flat", "".join(self._notes()))
+        self.assertIn("is not projected with Flat", "".join(self._notes()))
         self.texture.projection = "FLAT"
         generated = self.tree.nodes.new("ShaderNodeTexCoord")
         self.tree.links.new(generated.outputs["Generated"], self.texture.inputs["Vector"])
-        self.assertIn("are not texture coordinates", "".join(self._notes()))
+        self.assertIn("are not UV coordinates", "".join(self._notes()))
         self.tree.links.clear()
         self.assertNotIn("coordinates", "".join(self._notes()))
 

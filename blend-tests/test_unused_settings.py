@@ -37,10 +37,10 @@ class Settings(NotesTest):
     def test_scene(self):
         for words, values in (
             ("Open Shading Language", {"shading_system": True}),
-            ("Reflective Caustics of Cycles: not copied", {"caustics_reflective": False}),
-            ("Filter Glossy of Cycles: not copied", {"blur_glossy": 0.5}),
-            ("Clamp Direct of Cycles: not copied", {"sample_clamp_direct": 3.0}),
-            ("Clamp Indirect of Cycles: not copied", {"sample_clamp_indirect": 2.0}),
+            ("Reflective Caustics of Cycles: ignored; use Copy from Cycles", {"caustics_reflective": False}),
+            ("Filter Glossy of Cycles: ignored; use Copy from Cycles", {"blur_glossy": 0.5}),
+            ("Clamp Direct of Cycles: ignored; use Copy from Cycles", {"sample_clamp_direct": 3.0}),
+            ("Clamp Indirect of Cycles: ignored; use Copy from Cycles", {"sample_clamp_indirect": 2.0}),
             ("Fast GI Approximation", {"use_fast_gi": True}),
             ("Pixel Filter", {"filter_width": 3.0, "pixel_filter_type": "GAUSSIAN"}),
         ):
@@ -56,7 +56,10 @@ class Settings(NotesTest):
         cycles = self.scene.cycles
         cycles.sample_clamp_direct, cycles.blur_glossy, cycles.caustics_reflective = 3.0, 0.5, False
         (note,) = self.notes()
-        self.assertIn("Clamp Direct, Filter Glossy and Reflective Caustics of Cycles: not copied", note)
+        self.assertIn(
+            "Clamp Direct, Filter Glossy and Reflective Caustics of Cycles: ignored; use Copy from Cycles",
+            note,
+        )
         bpy.ops.velour.copy_cycles_settings()
         self.assertEqual(self.notes(), [])
 
@@ -83,7 +86,7 @@ class Settings(NotesTest):
         world = self.scene.world
         for owner, settings in (("Light 'Key'", self.lamp.cycles), ("World 'World'", world.cycles)):
             self._said(owner, "shadow caustics", settings, is_caustics_light=True)
-            self._said(owner, "limit of its own to bounces", settings, max_bounces=2)
+            self._said(owner, "its own Max Bounces", settings, max_bounces=2)
 
     def test_view_layer_without_surfaces(self):
         self._said("View layer 'ViewLayer'", "surfaces", self.layer, use_solid=False)
@@ -115,7 +118,7 @@ class Settings(NotesTest):
         self.layer.cycles.use_pass_volume_direct = False
         self.layer.cycles.denoising_store_passes = True
         (note,) = self._missing()
-        self.assertIn("Denoising is asked of Cycles alone", note)
+        self.assertIn("Denoising is enabled for Cycles only", note)
         self.layer.velour.use_pass_denoising = True
         self.assertEqual(self._missing(), [])
 

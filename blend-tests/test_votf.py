@@ -114,7 +114,7 @@ class Outline(BlenderTest):
         self.assertEqual(flat.warnings, ())
         folded = report(1.2 * 0.5 / -low)
         self.assertIn("folds", folded.warnings[0])
-        self.assertEqual(dict(folded.rows)["Of the least radius"], "120%")
+        self.assertEqual(dict(folded.rows)["Height / radius"], "120%")
 
     def test_an_estimate_before_it_begins(self):
         """By small outlines, which change nothing; it is of this structure and these texels alone."""
@@ -125,7 +125,7 @@ class Outline(BlenderTest):
             bpy.ops.velour.estimate_votf()
         self.assertEqual(bpy.ops.velour.estimate_votf(structure=self.tile.name, texels=48), {"FINISHED"})
         said = state.outline_estimate
-        self.assertRegex(said, r"^About \d+ (seconds|minutes).*[kM]B of memory beside the scene; rays wrong")
+        self.assertRegex(said, r"^About \d+ (seconds|minutes).*[kM]B of additional memory; wrong rays")
         self.assertEqual(state.outline_estimated, asked(self.material, self.tile, 48))
         self.assertNotEqual(state.outline_estimated, asked(self.material, self.tile, 49))
         self.assertEqual((node.image, len(bpy.data.images)), (before, images))
@@ -138,7 +138,7 @@ class Outline(BlenderTest):
         self.assertIn(f"({points} points)", said)
 
     def test_its_curve_is_what_it_covers_from_above(self):
-        with self.assertRaisesRegex(RuntimeError, "no outline"):
+        with self.assertRaisesRegex(RuntimeError, "no silhouette"):
             bpy.ops.velour.save_plot(
                 material=self.material.name, kind="OUTLINE", filepath=str(self.folder / "no.csv")
             )

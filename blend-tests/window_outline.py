@@ -63,7 +63,7 @@ def outline_of_a_ball(folder):
     yield from window.show_properties("MATERIAL")
     outline = yield from _measured()
     assert outline.share < 1, outline
-    assert dict(outline.rows)["Tile here"] == "100 mm wide", outline.rows
+    assert dict(outline.rows)["Tile width"] == "100 mm", outline.rows
     yield from _scroll_to_the_panel()
     window.screenshot(folder, "outline")
     settings.outline_width = 10

@@ -68,16 +68,16 @@ def model_rows(folder):
     size = scenes.velour_node(material).image.packed_file.size
     rows = dict(_ui("model_panel")._btf_rows(info))
     raw = 6 * (inputs.QUARTER_TEXELS * 16) ** 2  # texels and pairs of half-float colours
-    assert rows["Kind"] == "BTF, srbf", rows
+    assert rows["Model"] == "BTF, srbf", rows
     assert rows["Texels"] == "16 x 16", rows
     assert rows["Tile"] == "500 x 500 mm", rows
     assert rows["Directions"] == "16 views, 16 lights", rows
-    assert rows["Lobes"] == f"{info['lobes']}, {info['coefficients']} coefficients a texel", rows
+    assert rows["Lobes"] == f"{info['lobes']}, {info['coefficients']} coefficients per texel", rows
     assert rows["Side"] == f"front: {data_size(info['parameter_bytes'])} in memory", rows
-    assert rows["Speed"].endswith("million a second, one core"), rows
+    assert rows["Speed"].endswith("million/s on one core"), rows
     assert rows["Size"] == f"{data_size(size)}, 1:{raw / size:.0f}", rows
     assert float(rows["PSNR"].removesuffix(" dB")) > 40, rows  # four greys: a constant holds them
-    assert rows["Unseen pairs"] == "not measured", rows
+    assert rows["Held-out pairs"] == "not measured", rows
     yield from _report()
     window.scroll_down(600)
     yield 0.3
@@ -87,12 +87,12 @@ def model_rows(folder):
 def repeats(folder):
     yield from _plane()
     report = yield from _report()
-    assert dict(report.rows)["Tile here"] == "2 x 2 m, 4 x 4 of real size", report.rows
+    assert dict(report.rows)["Tile size"] == "2 x 2 m, 4 x 4 times real size", report.rows
     before = window.screenshot(folder, "repeats-one")
     _settings().repeats = (4, 4)
     report = yield from _report()
     yield 0.3
-    assert dict(report.rows)["Tile here"] == "500 x 500 mm, real size", report.rows
+    assert dict(report.rows)["Tile size"] == "500 x 500 mm, real size", report.rows
     assert np.abs(window.screenshot(folder, "repeats-four") - before).max() > 0.2, (
         "the panel shows nothing new"
     )
@@ -104,9 +104,9 @@ def real_size(folder):
     report = yield from _report()
     yield 0.3
     rows = dict(report.rows)
-    assert rows["UV density"] == "0.5 x 0.5 per metre", rows
+    assert rows["UV density"] == "0.5 x 0.5 per meter", rows
     assert rows["Texels"] == "0.032 per mm", rows
-    assert rows["In the camera"] == "1 texels per pixel, least 1", rows
+    assert rows["In the camera"] == "1 texels per pixel, minimum 1", rows
     assert report.warnings == ()
     window.screenshot(folder, "real-size")
 
@@ -119,9 +119,7 @@ def unknown_size(folder):
     assert "enter Tile Size" in report.warnings[0], report.warnings
     window.screenshot(folder, "unknown-size")
     image = scenes.velour_node(bpy.data.materials["Quarters"]).image
-    assert (
-        dict(_ui("model_panel")._btf_rows(_ui("summaries").model_summary(image)))["Tile"] == "size not known"
-    )
+    assert dict(_ui("model_panel")._btf_rows(_ui("summaries").model_summary(image)))["Tile"] == "unknown size"
 
 
 def follows_changes(folder):
@@ -138,7 +136,7 @@ def follows_changes(folder):
     bpy.context.view_layer.update()
     report = yield from _report()
     texels = 16 / np.sqrt(12) * 4 / 64  # 12 m^2 for a tile of 16 x 16
-    assert dict(report.rows)["In the camera"] == f"{texels:.3g} texels per pixel, least {texels:.3g}", (
+    assert dict(report.rows)["In the camera"] == f"{texels:.3g} texels per pixel, minimum {texels:.3g}", (
         report.rows
     )
 

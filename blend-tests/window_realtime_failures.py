@@ -95,7 +95,7 @@ def _change_scene():
 def no_texture(folder):
     with _Log() as log, _Failing("GPUTexture", kept="RGBA16F") as made:  # that of the ray tracer's pictures
         _set_up()
-        yield from _refused(folder, "no-texture", "refuses a texture of", "choose Real Time again")
+        yield from _refused(folder, "no-texture", "cannot create a texture of", "choose Real Time again")
         assert made.count == len(log.records) == 1, (made.count, log.records)
     yield from _chosen_again()
 
@@ -103,7 +103,7 @@ def no_texture(folder):
 def no_pictures_to_draw_into(folder):
     with _Log() as log, _Failing("GPUOffScreen") as made:
         _set_up()
-        yield from _refused(folder, "no-pictures", "to draw into", "choose Real Time again")
+        yield from _refused(folder, "no-pictures", "images of", "choose Real Time again")
         assert made.count == len(log.records) == 1, (made.count, log.records)
     yield from _chosen_again()
 
@@ -121,7 +121,7 @@ def lost_while_drawing(folder):
     try:
         with _Log() as log:
             _set_up()
-            yield from _refused(folder, "lost", "refuses a picture of", "choose Real Time again")
+            yield from _refused(folder, "lost", "cannot create an image of", "choose Real Time again")
             assert len(asked) == len(log.records) == 1, (asked, log.records)
     finally:
         drawing.full_screen = sky

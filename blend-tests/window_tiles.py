@@ -172,7 +172,7 @@ def estimate(folder):
         yield 0.1
         if not bpy.context.window_manager.velour.reading:
             break
-    assert "MB of memory" in bpy.context.window_manager.velour.fit_estimate
+    assert "MB of additional memory" in bpy.context.window_manager.velour.fit_estimate
     yield 0.5
     told = window.screenshot(folder, "fit-estimate")
     assert np.abs(told - before).max() > 0.2, "the panel shows nothing new"

@@ -68,7 +68,7 @@ def no_studio_light(folder):
         shading.use_scene_world_render = False
         yield 0.5
         sentence = viewport.the_one()._scene_error
-        assert "no picture" in sentence
+        assert "no image" in sentence
         assert viewport.text_width(folder, "no-studio-light") > 4 * len(sentence)
     finally:
         look._studio_light = studio_light

@@ -1,4 +1,4 @@
-# Compile options of every target of ours. No -march here: kernels pick their instruction set at run time (Highway).
+# Compile options of all our targets. No -march here: kernels pick their instruction set at run time (Highway).
 set(CMAKE_CXX_STANDARD 20)
 set(CMAKE_CXX_STANDARD_REQUIRED ON)
 set(CMAKE_CXX_EXTENSIONS OFF)
@@ -16,7 +16,7 @@ target_compile_options(velour_options INTERFACE
   $<$<COMPILE_LANGUAGE:CXX>:-fno-math-errno>
   # Symbols are hidden by version scripts, not here: native/tests links a library that exports all of them.
   -fno-semantic-interposition
-  # One rounding a written operation, so that inlining cannot change results between builds of one instruction set.
+  # Round after every written operation, so that inlining cannot change results between builds for one instruction set.
   -ffp-contract=off)
 if(VELOUR_FUZZ)
   target_compile_options(velour_options INTERFACE -fsanitize=fuzzer-no-link)
@@ -30,16 +30,16 @@ endif()
 
 find_program(CCACHE ccache)
 if(CCACHE)
-  # Relative to the sources, so that a clone elsewhere finds what was compiled here.
+  # Cache paths relative to the sources, so that clones in other folders share the results.
   set(CMAKE_CXX_COMPILER_LAUNCHER
       ${CMAKE_COMMAND} -E env CCACHE_BASEDIR=${PROJECT_SOURCE_DIR} CCACHE_NOHASHDIR=1 ${CCACHE})
   set(CMAKE_C_COMPILER_LAUNCHER ${CMAKE_CXX_COMPILER_LAUNCHER})
 endif()
 
 # join_sources(TARGET BATCH FILES...): compiles up to BATCH sources as one translation unit (a CMake unity build), which
-# halves compile time: headers are parsed and templates instantiated once. Names in anonymous namespaces and static names
-# must therefore be unique within a folder, and a type in an anonymous namespace cannot be a member of a type that a header
-# declares. Sources that define macros, as Highway's kernels do, stay separate.
+# halves compile time: headers are parsed and templates instantiated once. Names in anonymous namespaces and static
+# names must therefore be unique within a folder, and a type in an anonymous namespace cannot be a member of a type that
+# a header declares. Sources that define macros, as Highway's kernels do, stay separate.
 function(join_sources target batch)
   list(FILTER ARGN INCLUDE REGEX "\\.cpp$")
   foreach(source ${ARGN})
@@ -51,9 +51,9 @@ function(join_sources target batch)
   set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE ${batch})
 endfunction()
 
-# velour_library(NAME FILES... LINK ... [BATCH n]): one folder of native/src, one static library. What a folder may use is
-# what it links; scripts/check_layers holds the includes to the same order. BATCH, for join_sources(): fewer than 8 where
-# sources take long to compile, so that a change of one is compiled within 10 seconds.
+# velour_library(NAME FILES... LINK ... [BATCH n]): builds a folder of native/src as a static library. A folder may use
+# only what it links; scripts/check_layers enforces the same order for includes. BATCH, for join_sources(): fewer than 8
+# where sources take long to compile, so that a changed source is compiled within 10 seconds.
 function(velour_library name)
   cmake_parse_arguments(ARG "" "BATCH" "FILES;LINK" ${ARGN})
   if(NOT ARG_BATCH)
@@ -66,9 +66,9 @@ function(velour_library name)
   share_precompiled(velour_${name} velour_precompiled)
 endfunction()
 
-# velour_test(NAME FILES... [LINK ...] [LABEL unit|stat|capi] [OPTIMIZE]): one GoogleTest program, one ctest entry. A test
-# program is compiled without optimization, which halves its compile time: the time of a test should be spent in the library.
-# OPTIMIZE: for test programs that compute much themselves.
+# velour_test(NAME FILES... [LINK ...] [LABEL unit|stat|capi] [OPTIMIZE]): one GoogleTest program and its ctest entry.
+# Test programs are compiled without optimization, which halves their compile time: a test should spend its time in the
+# library. OPTIMIZE: for test programs that do much computation themselves.
 function(velour_test name)
   cmake_parse_arguments(ARG "OPTIMIZE" "LABEL" "FILES;LINK" ${ARGN})
   add_executable(test_${name} ${ARG_FILES})

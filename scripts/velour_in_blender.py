@@ -1,7 +1,7 @@
 """The command line of Velour inside Blender: blender -b --python-exit-code 1 -P THIS -- VERB ...
 
-Of the add-on that scripts/build staged, which need not be enabled. From Blender 4.2 on an installed one has
-`blender --command velour VERB ...`, which does the same.
+Runs the add-on that scripts/build staged, which need not be enabled. From Blender 4.2 on,
+`blender --command velour VERB ...` does the same with an installed add-on.
 """
 
 import os

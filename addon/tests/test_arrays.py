@@ -17,7 +17,7 @@ def test_a_good_array_passes_as_it_is():
 @pytest.mark.parametrize(
     ("array", "word"),
     [
-        ([[0.0, 0.0]], "numpy array"),
+        ([[0.0, 0.0]], "NumPy array"),
         (np.zeros((3, 2)), "float64"),
         (np.zeros((3, 3), np.float32), "shape"),
         (np.zeros(6, np.float32), "shape"),

@@ -106,15 +106,15 @@ def test_csv_indices(tmp_path):
 
 def test_damaged_sets_are_one_sentence(named_set):
     images.write(named_set / "00009 tl075 pl000 tv000 pv000.exr", picture(0, 0))
-    assert "1 of 8 pictures are missing, first 'tl075 pl000 tv045 pv180'" in refused("info", named_set)
+    assert "1 of 8 images are missing, the first is 'tl075 pl000 tv045 pv180'" in refused("info", named_set)
     images.write(named_set / "00010 tl075 pl000 tv045 pv180.exr", picture(0, 0)[:1])
-    assert "bring all pictures of the set to one size" in refused("info", named_set)
+    assert "All images of the set must have the same size" in refused("info", named_set)
     images.write(named_set / "preview.png", picture(0, 0))
-    assert "preview.png: its name does not give the angles" in refused("info", named_set)
+    assert "preview.png: the file name does not contain the angles" in refused("info", named_set)
 
 
 def bonn_file(width=2, height=1) -> bytes:
-    """Two views, one light, one component a channel; the layout of docs/reference/btf_formats.md."""
+    """Two views, one light, one component a channel; the layout of docs/engine/btf_models.md."""
     description = struct.pack("<I80s80s80sf3fI", 2, b"dome", b"camera", b"lamp", 4.0, 1, 1, 1, 0)
     sampling = struct.pack("<I", 2)
     for theta in (0.0, 0.5):
@@ -134,7 +134,7 @@ def test_files_of_bonn(tmp_path):
     report = velour("info", path, "--json").json
     assert (report["format"], report["description"], report["pairs"]) == ("ubo2014", "dome", 2)
     assert report["tile_metres"] == pytest.approx([0.0005, 0.00025])
-    assert report["details"]["compression_error"].startswith("not known")
+    assert report["details"]["compression_error"].startswith("unknown")
     with Btf.load(path) as btf:
         assert btf.read(1)[0, 0, 0].tolist() == [0.5, 2.5, 4.5]
     path.write_bytes(bonn_file()[:-3])
@@ -143,7 +143,7 @@ def test_files_of_bonn(tmp_path):
 
 def test_misuse(named_set, tmp_path):
     with Btf.load(named_set) as btf:
-        with pytest.raises(VelourError, match="not among them"):
+        with pytest.raises(VelourError, match="out of range"):
             btf.read(6)
         with pytest.raises(VelourError, match="is not empty"):
             export_btf_job(btf, named_set).run()
@@ -153,4 +153,4 @@ def test_misuse(named_set, tmp_path):
         Btf.load(named_set, values="light")
     assert "No such file" in refused("info", tmp_path / "none")
     (tmp_path / "empty").mkdir()
-    assert "holds no pictures" in refused("export", tmp_path / "empty", "-o", tmp_path / "x")
+    assert "contains neither images" in refused("export", tmp_path / "empty", "-o", tmp_path / "x")

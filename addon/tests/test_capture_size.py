@@ -121,4 +121,4 @@ def test_words():
     ]
     text = capture_text(_settings(), (Timed(1.0, 2.0), Timed(2.0, 3.0)), 2)
     assert text.startswith("About ")
-    assert text.endswith(" MB of memory beside the scene")
+    assert text.endswith(" MB of additional memory")

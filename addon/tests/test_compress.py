@@ -209,7 +209,7 @@ def test_the_model_evaluates_over_the_whole_tile(model):
 @pytest.mark.parametrize(
     ("arguments", "word"),
     [
-        (["--bytes", 100], "ask for more"),
+        (["--bytes", 100], "Raise the maximum size"),
         (["--clusters", 3], "kcta"),
         (["--method", "svd", "--no-relief"], "kcta"),
         (["--method", "tucker", "--clusters", 2], "one cluster"),

@@ -158,7 +158,7 @@ def test_too_little_memory_is_refused_with_the_least_that_would_do(folder, btf):
             "--memory",
             1_000_000,
         )
-        least = int(sentence.split("holds ")[1].split(" MB")[0])
+        least = int(sentence.split("requires at least ")[1].split(" MB")[0])
         done = velour(
             "compress", btf, "-o", folder / "least.velour", "--method", method, "--bytes", BYTES,
             "--memory", least * 1_000_000, "--quiet",
@@ -174,7 +174,7 @@ def test_memory_that_makes_another_model_says_so_and_what_would_not(folder, btf)
         return done.json["warnings"], parameters(out)
 
     sentence = refused("compress", btf, "-o", path_of(folder), "--bytes", BYTES, "--memory", 1_000_000)
-    least = int(sentence.split("holds ")[1].split(" MB")[0]) * 1_000_000
+    least = int(sentence.split("requires at least ")[1].split(" MB")[0]) * 1_000_000
     no_warnings, unlimited = compressed()
     warnings, other = compressed("--memory", least)
     assert not any("another model" in w for w in no_warnings)
@@ -225,7 +225,7 @@ def test_what_is_left_of_another_fit_is_ignored(folder, btf):
     checkpoint = killed(btf, path, "--bytes", BYTES)
     report = velour("compress", btf, "-o", path, "--bytes", BYTES // 4, "--resume", "--json").json
     (sentence,) = report["warnings"]
-    assert "nothing was resumed" in sentence
+    assert "the fit was not resumed" in sentence
     assert str(checkpoint) in sentence
     assert not checkpoint.exists()
     checkpoint.write_bytes(b"v/1\x01" + os.urandom(500))

@@ -56,7 +56,8 @@ def _run(task, *arguments):
 def test_out_of_time_is_not_failed(task, capsys):
     """Nor is it done. What failed beside it is what the status says."""
     stopped = (
-        "Stopped at sample 64 of 400; 0002.exr has what there is, and the same command goes on from there."
+        "Stopped at sample 64 of 400; 0002.exr has the samples so far."
+        " Run the same command again to continue."
     )
     _blender_that(
         task, f'case "$*" in *"-f 1 "*) echo "Error: no lamp.";; *) echo "Error: {stopped}";; esac; exit 1'

@@ -50,7 +50,7 @@ def _megabytes(size):
 @pytest.mark.parametrize("method", _METHODS)
 def test_least_is_what_the_library_asks_for(btf, method, asked):
     least = compress_size(btf, method=method, bytes=asked, threads=_THREADS).least_memory
-    said = re.search(r"holds (\d+) MB at least", _said(btf, method, 1_000_000, bytes=asked))
+    said = re.search(r"requires at least (\d+) MB", _said(btf, method, 1_000_000, bytes=asked))
     assert said, method
     of_sides = method == "srbf" and btf.info()["largest_theta"]["view"] > 90  # dark ones are left out later
     assert int(said[1]) < _megabytes(least) if of_sides else int(said[1]) == _megabytes(least)

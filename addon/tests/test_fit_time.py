@@ -15,7 +15,7 @@ def test_the_same_fit_takes_what_it_took(tmp_path):
     assert found.least < 40 < found.most
     assert found.most / found.least < 4
     assert found.made == 1
-    assert time_text(tmp_path, _FIT) == "27 seconds to 60 seconds, by one fit made here"
+    assert time_text(tmp_path, _FIT) == "27 seconds to 60 seconds, estimated from one fit on this computer"
 
 
 def test_larger_ones_take_longer_but_not_in_proportion(tmp_path):
@@ -34,7 +34,7 @@ def test_larger_ones_take_longer_but_not_in_proportion(tmp_path):
 def test_other_kinds_tell_nothing(tmp_path, other):
     remember(tmp_path, _FIT._replace(**other), 4000.0)
     assert expected(tmp_path, _FIT) is None
-    assert "no such fit was made here yet" in time_text(tmp_path, _FIT)
+    assert "no similar fit was made on this computer yet" in time_text(tmp_path, _FIT)
 
 
 def test_the_nearest_in_size_count(tmp_path):

@@ -139,7 +139,7 @@ def test_frames_from_near_and_far_need_what_the_nearest_needs(folder):
     assert velour("observe", *options, "--merge", folder / "far.json", "-o", both).status == 0
     _, report = reduce(folder, "svd", "both.json")
     assert report["texels"] == [32, 32]
-    assert any("needs all" in warning for warning in report["warnings"])
+    assert any("needs the full model" in warning for warning in report["warnings"])
 
 
 @pytest.mark.parametrize(
@@ -170,6 +170,6 @@ def test_the_fit_of_the_full_model_is_not_all_of_the_progress(folder):
         job.start()
         while not job.wait(timeout=0.001):
             shown.append(job.poll())
-    fits = [state for state in shown if state.running and state.stage != "scene"]
+    fits = [state for state in shown if state.running and state.stage != "reducing to the scene"]
     assert fits
     assert max(state.fraction for state in fits) < 0.99

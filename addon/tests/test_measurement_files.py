@@ -56,7 +56,7 @@ def test_a_folder_that_is_not_there_is_a_sentence(tmp_path):
     files, problems = find_measurements(tmp_path / "gone")
     assert not files
     assert len(problems) == 1
-    assert "gone: cannot be read (No such file or directory)" in problems[0]
+    assert "gone cannot be read (No such file or directory)" in problems[0]
 
 
 def test_a_folder_without_end_is_left_with_what_was_found(tmp_path, monkeypatch):
@@ -65,7 +65,7 @@ def test_a_folder_without_end_is_left_with_what_was_found(tmp_path, monkeypatch)
     files, problems = find_measurements(tmp_path)
     assert 0 < len(files) < 50
     assert len(problems) == 1
-    assert "only the first 50 files were looked at" in problems[0]
+    assert "only the first 50 entries were searched" in problems[0]
 
 
 def test_a_search_can_be_stopped(tmp_path):

@@ -131,9 +131,9 @@ def test_a_terminal_is_told_the_estimate(small):
 def test_more_than_the_limit_is_refused_before_anything_is_rendered(small):
     sentence = refused(*render(small | {"size": "20000x20000"}, "--memory", "2G"))
     for words in (
-        "would take about 3",
+        "needs about 3",
         "picture 35.8 GiB",
-        "above its limit of 2.0 GiB (--memory)",
+        "more than the limit of 2.0 GiB (--memory)",
         "--crop",
     ):
         assert words in sentence
@@ -141,7 +141,7 @@ def test_more_than_the_limit_is_refused_before_anything_is_rendered(small):
     assert result.status == 0
     assert "Estimated memory: " in result.err
     assert " of 2.0 GiB (--memory): program " in result.err
-    assert "above its limit of 1 MiB (the Slurm job)" in refused(*render(small), SLURM_MEM_PER_NODE="1")
+    assert "more than the limit of 1 MiB (the Slurm job)" in refused(*render(small), SLURM_MEM_PER_NODE="1")
 
 
 @pytest.mark.parametrize("size", ["", "G", "-1", "1.5G", "2X", "2GB", "16777216T"])

@@ -72,11 +72,11 @@ def test_corners_that_are_not_there_are_refused():
     positions, vertices, triangles, _, _ = _cube_faces()
     mesh = {"positions": positions, "triangles": triangles, "corner_vertices": vertices}
     with Scene() as scene:
-        with pytest.raises(VelourError, match="names corner 24 of a mesh with 24 corners"):
+        with pytest.raises(VelourError, match="has corner index 24, but the mesh has only 24 corners"):
             scene.add_mesh(**{**mesh, "triangles": triangles + np.uint32(1)})
-        with pytest.raises(VelourError, match="names vertex 8 of a mesh with 8 vertices"):
+        with pytest.raises(VelourError, match="has vertex index 8, but the mesh has only 8 vertices"):
             scene.add_mesh(**{**mesh, "corner_vertices": vertices + np.uint32(1)})
-        with pytest.raises(VelourError, match="smooth holds 6 numbers; 12 are needed"):
+        with pytest.raises(VelourError, match="smooth has 6 numbers; 12 are needed"):
             scene.add_mesh(**mesh, smooth=np.ones(6, np.uint8))
         with pytest.raises(VelourError, match=r"corner_uvs has shape \(12, 3, 2\)"):
             scene.add_mesh(**mesh, corner_uvs=np.zeros((12, 3, 2), np.float32))
@@ -139,11 +139,11 @@ def test_of_many_meshes_all_or_none_are_added():
     flat = _bare(*_cube_faces())
     wrong = {**flat, "corner_vertices": flat["corner_vertices"] + np.uint32(1)}
     with Scene() as scene:
-        with pytest.raises(VelourError, match="names vertex 8 of a mesh with 8 vertices"):
+        with pytest.raises(VelourError, match="has vertex index 8, but the mesh has only 8 vertices"):
             scene.add_meshes(_in_turn([flat, wrong]))
         short = {**flat, "smooth": flat["smooth"][:-1]}
-        with pytest.raises(VelourError, match="smooth holds 11 numbers; 12 are needed"):
+        with pytest.raises(VelourError, match="smooth has 11 numbers; 12 are needed"):
             scene.add_meshes(_in_turn([flat, short]))
-        with pytest.raises(VelourError, match="a mesh has no positions"):
+        with pytest.raises(VelourError, match="The mesh has no positions"):
             scene.add_meshes({"triangles": _in_turn([flat])["triangles"]})
         assert scene.add_mesh(**flat) == (0, 0)

@@ -118,9 +118,9 @@ def test_a_job_gives_nothing_that_it_has_not_made(model, measurement_file, tmp_p
         with pytest.raises(VelourError, match="never started"):
             job.result_plot()
         job.run()
-        with pytest.raises(VelourError, match="reads no measurement"):
+        with pytest.raises(VelourError, match="does not read a measurement"):
             job.result_measurement()
-        with pytest.raises(VelourError, match="makes no model"):
+        with pytest.raises(VelourError, match="does not produce a model"):
             job.result_model()
     (tmp_path / "broken.binary").write_bytes(b"\0" * 40)
     with measurement_job(tmp_path / "broken.binary") as job:
@@ -177,10 +177,10 @@ def test_colors_are_taken_and_kept_readable(model):
 
 def test_a_btf_has_its_error_against_bytes_and_says_so_of_the_rest(tmp_path):
     with Model.load(BTF_MODEL) as model:
-        with pytest.raises(VelourError, match="no outline"):
+        with pytest.raises(VelourError, match="no silhouette"):
             Plot.of(model, "outline")
         for kind in set(table.PLOTS) - {"order", "outline"}:
-            with pytest.raises(VelourError, match=r"BTF has no plot .*it has 'order'"):
+            with pytest.raises(VelourError, match=r"BTF models have no plot .*Use 'order'"):
                 Plot.of(model, kind)
         order = model.info()["order"]
         with Plot.of(model, "order") as plot:
@@ -192,7 +192,7 @@ def test_a_btf_has_its_error_against_bytes_and_says_so_of_the_rest(tmp_path):
 
 def test_wrong_styles_are_refused(model, tmp_path):
     with Plot.of(model, "order") as plot:
-        with pytest.raises(VelourError, match="side"):
+        with pytest.raises(VelourError, match="size of the plot"):
             plot.draw(side=20)
         with pytest.raises(VelourError, match=r"background.*2\.0"):
             plot.draw(background=(0, 2, 0))

@@ -20,7 +20,7 @@ def test_missed_views_are_one_sentence(model_file):
     about_views = [w for w in info["warnings"] if w.startswith(("view ", "fitted views"))]
     assert len(about_views) > 3
     first, *others = panel_warnings(info)
-    assert first.startswith("The tolerance of 0.0001 is missed at 5°, 30°")
+    assert first.startswith("The model exceeds Max Error (0.0001) at 5°, 30°")
     assert others == [plain(w) for w in info["warnings"] if w not in about_views]
 
 
@@ -29,7 +29,7 @@ def test_views_that_were_not_measured_are_one_sentence():
 
     warnings = [f"view {angle} degrees: the measurement does not cover it" for angle in (75, 85)]
     (sentence,) = panel_warnings({"warnings": warnings, "tolerance": 0.02})
-    assert sentence.startswith("The measurement has no view at 75°, 85°:")
+    assert sentence.startswith("The measurement has no view at 75°, 85°, so")
 
 
 def test_views_between_the_reported_ones():
@@ -39,7 +39,7 @@ def test_views_between_the_reported_ones():
         "fitted views that miss the tolerance with at most 3 lobes (degrees): 72.1; the worst is 72.1"
     ]
     (sentence,) = panel_warnings({"warnings": warnings, "tolerance": 0.02})
-    assert sentence.startswith("The tolerance of 0.02 is missed between the reported views.")
+    assert sentence.startswith("The model exceeds Max Error (0.02) between the reported views.")
 
 
 @pytest.mark.parametrize(
@@ -64,7 +64,7 @@ def test_a_tint_that_makes_light_is_told(albedo, gain, said):
     [
         ({"model": "parametric"}, False, None),
         ({}, False, None),
-        ({"model": "scattered"}, True, "switch off Render from Measurement"),
+        ({"model": "scattered"}, True, "Disable Render from Measurement"),
         ({"texels": [4, 4]}, False, "of a BTF"),
     ],
 )
@@ -79,5 +79,5 @@ def test_a_tolerance_is_told_in_plain_words():
     from velour.core.model_warnings import tolerance_words
 
     told = [tolerance_words(tolerance) for tolerance in (0.0005, 0.02, 0.1, 1.0)]
-    assert told[1].startswith("At most 2 % off up to 75\N{DEGREE SIGN}, twice that beyond: most pictures")
+    assert told[1].startswith("Error of at most 2 % up to 75\N{DEGREE SIGN}, twice that beyond: most images")
     assert len({sentence.split(": ")[1] for sentence in told}) == 4

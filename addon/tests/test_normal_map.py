@@ -79,7 +79,7 @@ def test_none_where_it_would_make_pictures_worse(wires, steps, monkeypatch):
 
 
 def test_its_progress_is_told(steps):
-    fractions = [fraction for stage, fraction in steps[1] if stage == "finding normals"]
+    fractions = [fraction for stage, fraction in steps[1] if stage == "computing normals"]
     assert fractions == sorted(fractions)
     assert fractions[-1] == 1
 

@@ -94,7 +94,7 @@ def test_memory_grows_with_the_points():
 def test_words():
     text = outline_text(256, _probed(256), approximated=True)
     assert text.startswith("About ")
-    assert "a few seconds for the look in other engines" in text
+    assert "a few seconds for the approximation in other engines" in text
     assert "MB in the model (256 x 256 x 55 points)" in text
-    assert "rays wrong with fewer texels: 0.78% at 64, 0.39% at 128" in text
+    assert "wrong rays at coarser resolutions: 0.78% at 64, 0.39% at 128" in text
     assert "other engines" not in outline_text(256, _probed(256), approximated=False)

@@ -49,7 +49,7 @@ def test_labels_and_mist(scene):
         np.testing.assert_array_equal(ids[..., 1:], (np.ones((8, 8, 1)) * (1, 0, 0)))
         np.testing.assert_allclose(job.read_pass("Mist")[3:5, 3:5], 0.5, atol=0.01)
         for name in ("Position", "CryptoAsset00", "CryptoObject03"):
-            with pytest.raises(VelourError, match="not asked for"):
+            with pytest.raises(VelourError, match="not requested"):
                 job.read_pass(name)
 
 

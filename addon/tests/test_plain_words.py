@@ -20,16 +20,16 @@ _NAMED = {"where +": "albedo 1.5 at view 5 degrees: ", "views.names() +": "view 
 # As the library says them, each with what its sentence has to have kept of it.
 SAMPLES = (
     (
-        "250 of 1000 entries are invalid and were left out; errors are those of the others",
+        "250 of 1000 entries are invalid and were left out; errors are measured on the others",
         "25%",
     ),
     (
-        "the measurement has 40 samples: what lies between them is a guess, and the errors rest on 5",
+        "the measurement has 40 samples: what lies between them is a guess, and the errors are measured",
         "40",
     ),
     (
         "the measurement's own noise exceeds the tolerance at 2 of the reported views; at 85 degrees",
-        "Tolerance",
+        "Max Error",
     ),
     (
         "views 75, 85 degrees: the highlight, or a lobe of the model, is narrower than the spacing",
@@ -40,11 +40,11 @@ SAMPLES = (
         "31%",
     ),
     (
-        "no reported view is covered: the error is not known, and is given as 1",
+        "no reported view is covered: the error is not known and is reported as 1",
         "not known",
     ),
     (
-        "the model is black: the measurement is darker than what can be fitted; check",
+        "the model is black: the measurement is darker than any value that can be fitted; check",
         "black",
     ),
     (
@@ -52,7 +52,7 @@ SAMPLES = (
         "black",
     ),
     (
-        "albedo at most 0.0004 at every view, darker than any material we know of: check",
+        "albedo at most 0.0004 at every view, darker than any known material; check",
         "0.04%",
     ),
     (
@@ -64,11 +64,11 @@ SAMPLES = (
         "Limit Albedo",
     ),
     (
-        "albedo 1.2 at view 85.0 degrees: the model reflects more light there than arrives, the measurement",
+        "albedo 1.2 at view 85.0 degrees: the model reflects more light there than arrives, but the",
         "Max Lobes",
     ),
     (
-        "the measurement is not reciprocal: exchanging light and view changes it by 0.21 (relative L2); the",
+        "the measurement is not reciprocal: exchanging light and view changes it by 0.21 (relative L2), and",
         "21%",
     ),
     (
@@ -80,7 +80,7 @@ SAMPLES = (
         "3%",
     ),
     (
-        "1 of 9000 fitted values have a negative channel (a colour outside Rec. 709), which non-neg",
+        "1 of 9000 fitted values have a negative channel (a color outside Rec. 709), which non-neg",
         "less than 1%",
     ),
     (
@@ -88,15 +88,15 @@ SAMPLES = (
         "900",
     ),
     (
-        "the scene needs all of the full model: nothing smaller makes pictures as good",
-        "whole model",
+        "the scene needs all of the full model: no smaller model gives images of the same",
+        "full model",
     ),
     (
-        "of clustered tensors the finest levels were left out, and no more: they are not fitted anew",
+        "of clustered tensors the finest levels were left out, and no more: they are not refitted",
         "Method SRBF",
     ),
     (
-        "the scene resolves the finest texels: it needs all of the full model",
+        "the scene resolves the finest texels, so it needs the full model",
         "farther away",
     ),
     (
@@ -104,7 +104,7 @@ SAMPLES = (
         "a factor of 1.8",
     ),
     (
-        "12 entries of the BTF are not finite; the mean of their image stands in for them.",
+        "12 entries of the BTF are not finite; they were replaced by the mean of their image.",
         "12 values",
     ),
     (
@@ -117,18 +117,18 @@ SAMPLES = (
     ),
     (
         "the tolerance of 0.1 is not met: the error is 0.2 with 9 bytes; a tolerance of 0.21 would do",
-        "Ask for 0.21",
+        "Max Error to 0.21",
     ),
     (
-        "7 of 4096 vertical lines meet a sheet that has no inside; it becomes about a texel thick.",
+        "7 of 4096 vertical lines meet a sheet without thickness, which was made about one texel thick.",
         "Solidify",
     ),
 )
 # Sentences of the library that say it in everybody's words already.
 PLAIN_ALREADY = (
-    "A material of the tile lets rays through",
+    "A material of the tile is transparent (alpha)",
     "A material of the tile emits light",
-    "nothing was resumed: ",
+    "the fit was not resumed but started from the beginning: ",
     "the fit cannot be resumed: ",
     "fitted views that miss the tolerance",  # these three by panel_warnings
     " degrees: relative L2 ",
@@ -190,7 +190,9 @@ def test_each_sentence_has_a_sample():
 
 
 def test_what_is_not_known_is_left_as_it_is():
-    assert plain_words.plain("made rougher by 0.2; errors are those before").startswith("made rougher")
+    assert plain_words.plain("made rougher by 0.2; errors are those of the model before that").startswith(
+        "made rougher"
+    )
 
 
 def test_a_bad_fit_is_told_in_plain_words(model_file):

@@ -74,7 +74,7 @@ def test_wrong_calls_are_refused_with_a_sentence():
         with pytest.raises(VelourError, match="not finite"):
             shader.weigh_layer("gain", float("nan"))
         colour = Texture.from_pixels(np.ones((2, 2, 3), np.float32))
-        with pytest.raises(VelourError, match=r"vlr_factor_desc\.texture needs a texture of numbers"):
+        with pytest.raises(VelourError, match=r"vlr_factor_desc\.texture requires a texture of numbers"):
             shader.weigh_layer("share", texture=colour)
         colour.close()
 

@@ -76,7 +76,7 @@ def test_without_the_module_a_picture_says_what_to_do(png, without_module):
         with pytest.raises(VelourError) as caught:
             call(png)
         sentence = str(caught.value)
-        assert sentence.startswith(f"{png}: needs OpenImageIO, but {MODULE.name} cannot be loaded")
+        assert sentence.startswith(f"{png}: requires OpenImageIO, but {MODULE.name} cannot be loaded")
         assert "scripts/build" in sentence
         assert "\n" not in sentence
 

@@ -64,14 +64,14 @@ def test_values_hold_where_no_texture_is():
 
 def test_colours_and_numbers_are_not_mixed_up():
     with Texture.from_pixels(_picture()) as colour, Texture.from_pixels(_picture(), channel=2) as number:
-        with pytest.raises(VelourError, match="roughness needs a texture of numbers"):
+        with pytest.raises(VelourError, match="roughness requires a texture of numbers"):
             _rendered({"roughness": TextureSlot(colour)})
-        with pytest.raises(VelourError, match="base_color needs a texture of colours"):
+        with pytest.raises(VelourError, match="base_color requires a texture of colors"):
             _rendered({"base_color": TextureSlot(number)})
 
 
 def test_wrong_textures_are_refused_with_a_sentence(tmp_path):
-    with pytest.raises(VelourError, match="channel is 3; the picture has 3"):
+    with pytest.raises(VelourError, match="channel is 3, but the image has 3"):
         Texture.from_pixels(_picture(), channel=3)
     with pytest.raises(VelourError, match="wrap is 'tile'"):
         Texture.from_pixels(_picture(), wrap="tile")
@@ -130,7 +130,7 @@ def test_numbers_are_the_first_channel_of_corners():
 
 
 def test_sets_of_corner_colours_are_few_and_whole():
-    with pytest.raises(VelourError, match="no set 4 of corner colours"):
+    with pytest.raises(VelourError, match="no corner color set 4"):
         Texture.of_corners(4)
     with Scene() as scene:
         with pytest.raises(VelourError, match="color_sets is 5"):

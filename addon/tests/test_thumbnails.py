@@ -158,7 +158,7 @@ def test_a_file_that_is_gone_is_a_sentence(folder, model_file):
     os.remove(file.path)
     made = thumbnail(file, _cache(folder), lambda: None)
     assert made.pixels is None
-    assert "a.velour: cannot be read" in made.sentence
+    assert "a.velour cannot be read" in made.sentence
 
 
 def _several(folder, model_file):

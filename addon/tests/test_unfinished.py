@@ -42,7 +42,7 @@ def test_the_next_run_goes_on_to_the_uninterrupted_picture(arguments, side, tmp_
     for samples in ("0:5", "0:10"):
         status, said, err = velour(*few, *AT_ONCE, "--json")
         assert (status, said) == (UNFINISHED, "")
-        assert f"has the samples {samples}, and the same command goes on from there." in err
+        assert f"has samples {samples}. Run the same command again to continue." in err
         assert not out.exists()
         assert images.header(side)["texts"][SAMPLES] == samples
     assert velour(*few, "--json").json["samples"] == [[0, 37]]
@@ -77,12 +77,12 @@ def test_the_side_file_of_another_render_is_refused(arguments, side):
     kept = side.read_bytes()
     for more, word in [
         (("--seed", 1), "seed differs"),
-        (("--samples", "8:64"), "other pixels or samples"),
-        (("--samples", "0:8"), "other pixels or samples"),
-        (("--crop", "0:4,0:4"), "other pixels or samples"),
+        (("--samples", "8:64"), "its pixels or samples differ"),
+        (("--samples", "0:8"), "its pixels or samples differ"),
+        (("--crop", "0:4,0:4"), "its pixels or samples differ"),
     ]:
         sentence = refused(*arguments, *more)
-        assert f"{side} is not of this render" in sentence
+        assert f"{side} belongs to another render" in sentence
         assert word in sentence
     assert side.read_bytes() == kept
 
@@ -131,7 +131,7 @@ def test_sigterm_leaves_the_samples_that_it_says(arguments, side, tmp_path):
     assert status == UNFINISHED, sentence
     assert not (tmp_path / "o.exr").exists()
     begin, end = open_part(side).ranges[0]
-    assert f"has the samples 0:{end}," in sentence
+    assert f"has samples 0:{end}." in sentence
     assert begin == end % 8 == 0 < end < 2**24
     fresh = tmp_path / "fresh.exr"
     assert velour(*long, "--samples", f"0:{end}", "-o", fresh, "--quiet").status == 0

@@ -1,22 +1,22 @@
-"""Velour: measured materials for Blender. Only names the add-on and hands over to `registration`."""
+"""Velour: measured materials for Blender. Only describes the add-on and delegates to `registration`."""
 
 import importlib.util
 
-# Read as text by Blender and by a test: literal values only, the version of CMakeLists.txt and the manifest.
+# Parsed as text by Blender and a test: literals only; the version is that of CMakeLists.txt and the manifest.
 bl_info = {
     "name": "Velour",
     "author": "The Velour authors",
     "version": (0, 1, 0),
     "blender": (3, 4, 0),
     "location": "Properties > Render > Render Engine; File > Import > Measured Material",
-    "description": "Measured BRDFs as compact models, fitted, sampled in closed form and ray traced",
+    "description": "Render measured materials with compact models that are fitted and importance sampled",
     "category": "Render",
     "support": "COMMUNITY",
 }
 
 _NO_NUMPY = (
-    "Velour: Blender's Python has no numpy, which Velour needs. A Blender of a distribution takes"
-    " the Python of an active virtual environment or pyenv: start it outside of that, or install numpy there."
+    "Velour cannot start: Blender's Python has no NumPy. A Blender from a Linux distribution uses the Python"
+    " of an active virtual environment or pyenv: start Blender outside of it, or install NumPy there."
 )
 _is_registered = False
 
@@ -43,7 +43,7 @@ def unregister():
 
 
 class glTF2ExportUserExtension:
-    """Blender's exporter asks each add-on for a class of that name."""
+    """Blender's glTF exporter looks for a class of this name in each add-on."""
 
     def gather_material_hook(self, gltf_material, material, export_settings):
         from .operators.approximation_gltf import fill

@@ -38,7 +38,7 @@ class Mixed(ShaderTest):
         tree = self.tree
         tree.end(tree.mix(tree.node("ShaderNodeFresnel"), tree.transparent(), tree.diffuse()))
         name = self.tree.nodes.new("ShaderNodeMixShader").inputs[0].name  # not the same in all versions
-        self.assert_ignored("Mix Shader: factor of a Fresnel node", f"the link to '{name}' is ignored")
+        self.assert_ignored("Mix Shader: factor of a Fresnel node", f"the link to '{name}' is not supported")
 
     def test_image_factor(self):
         tree = self.tree

@@ -1,4 +1,4 @@
-"""Do two estimates of the same picture agree within their error bars?"""
+"""Tests whether two estimates of the same picture agree within their error bars."""
 
 from __future__ import annotations
 
@@ -7,17 +7,17 @@ from dataclasses import dataclass
 import numpy as np
 from scipy import stats
 
-LEVEL = 0.01  # of the whole list of tests, not of each
+LEVEL = 0.01  # significance level of all tests together, not of each
 LUMINANCE = np.array([0.2126, 0.7152, 0.0722])
 
 
 @dataclass(frozen=True)
 class Agreement:
-    tests: int  # pixels that vary, and their mean
+    tests: int  # number of tests: the pixels that vary, and the mean
     largest_z: float
-    sidak_z: float  # what the largest |z| of so many tests stays below with probability 1 - LEVEL
-    p_value: float  # of the largest |z| among so many (Sidak)
-    ratio: float  # of the means of both
+    sidak_z: float  # bound on the largest |z| of that many tests, with probability 1 - LEVEL
+    p_value: float  # probability of the largest |z| among that many tests (Sidak)
+    ratio: float  # mean of a over mean of b
 
     @property
     def holds(self) -> bool:
@@ -27,7 +27,8 @@ class Agreement:
 def agreement(a: np.ndarray, b: np.ndarray, where: np.ndarray) -> Agreement:
     """a, b: independent renders of both estimates, [batch, row, column, channel].
 
-    Luminance of each pixel of `where` and their mean; Welch's t of the batches, as the z that is as unlikely.
+    Tests the luminance of each pixel of `where` and their mean: Welch's t of the batches, converted to the z
+    of equal probability.
     """
     a, b = (_with_mean(stack[:, where] @ LUMINANCE) for stack in (a, b))
     varies = (a.var(axis=0) > 0) | (b.var(axis=0) > 0)
@@ -47,5 +48,5 @@ def two_sided_z(p: float) -> float:
 
 
 def _with_mean(luminance: np.ndarray) -> np.ndarray:
-    """[batch, pixel], the last column their mean."""
+    """Appends the mean over the pixels as the last column: [batch, pixel + 1]."""
     return np.column_stack([luminance, luminance.mean(axis=1)])

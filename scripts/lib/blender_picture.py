@@ -1,4 +1,4 @@
-"""Runs inside Blender: renders the scene into files and hands back what the engine reported."""
+"""Runs inside Blender: renders the scene into files and returns the engine's report."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ import bpy
 
 
 def empty_scene(size: tuple[int, int], samples: int, bounces: int) -> bpy.types.Scene:
-    """For Velour, with the display transform that changes least."""
+    """An empty scene for Velour, with the display transform that changes least."""
     bpy.ops.wm.read_factory_settings(use_empty=True)
     addon_utils.enable("velour", default_set=False, handle_error=_raise)
     scene = bpy.context.scene
@@ -43,7 +43,7 @@ def render_picture(scene: bpy.types.Scene, folder: str, name: str) -> dict:
 
 
 class _ReportHandler(logging.Handler):
-    """Picks the report of each render out of the engine's log."""
+    """Takes the report of each render from the engine's log."""
 
     def __init__(self):
         super().__init__()

@@ -1,4 +1,4 @@
-"""The measured tables of docs/blender_support.md: what the parity tests left, and seconds of large scenes."""
+"""The measured tables of docs/blender_support.md: parity tests, and export times of large scenes."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ from velour_cli import ROOT
 PAGE = ROOT / "docs/blender_support.md"
 ROWS = ROOT / "build/blend-tests/parity"
 HEADER = ["feature", "verdict", "largest block difference, %", "in standard errors"]
-SEED = 0  # of the first of four pictures of each engine
+SEED = 0  # seed of the first of each engine's four pictures
 
 
 def main() -> int:
@@ -61,7 +61,7 @@ def _conditions(rows: list[dict]) -> str:
 
 
 def _errors(z: float | None) -> str:
-    """`z`: None of pictures without noise."""
+    """`z`: None for pictures without noise."""
     if z is None:
         return "-"
     return f"{z:.1f}" if z < 100 else f"{z:.0f}"

@@ -1,4 +1,4 @@
-"""scripts/chart --btf: every way to compress a BTF at equal bytes, on captures and on measured sets."""
+"""scripts/chart --btf: all methods of BTF compression at equal bytes, on captures and on measured sets."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from renders import Settings
 from velour.native.table import COMPRESS_METHODS
 from velour_cli import ROOT
 
-MEMBERS = (None, 2, 3, 4)  # of K-CTA; None: sought
+MEMBERS = (None, 2, 3, 4)  # K of K-CTA; None: searched for
 SWITCHES = {
     "btf": "this chart",
     "kept": "writes what the fits say that are there, and makes no others",
@@ -30,7 +30,7 @@ _ORDER = ("svd", "svd-view", "srbf", "tucker", "cta", "kcta")
 
 
 def methods(known: tuple[str, ...], wanted: list[str] | None = None) -> list[Method]:
-    """Those of the library, in the chart's order; K-CTA once for each K."""
+    """The library's methods, in the chart's order; K-CTA once for each K."""
     found = []
     for name in sorted(known, key=lambda n: _ORDER.index(n) if n in _ORDER else len(_ORDER)):
         members = MEMBERS if name == "kcta" else (None,)
@@ -90,7 +90,7 @@ def _extent(args: argparse.Namespace) -> Extent:
 
 
 def _before(args: argparse.Namespace) -> tuple[list[str], list[Entry]]:
-    """When the entries were measured that are added to, and these."""
+    """The kept entries, preceded by the dates and commits at which they were measured."""
     if not args.add:
         return [], []
     conditions, entries = btf_chart_rows.read(args.output / btf_chart_rows.FILE)
@@ -100,7 +100,7 @@ def _before(args: argparse.Namespace) -> tuple[list[str], list[Entry]]:
 
 
 def _entries(study: Study, tiles: list[Tile], contenders: list[Method], extent: Extent):
-    """The most telling number of bytes first, so that a run that is stopped has it of all tiles."""
+    """Starts with the most informative ratio, so that an interrupted run has it for all tiles."""
     for ratio in sorted(extent.ratios, key=lambda r: r != extent.speed_ratio):
         for tile in tiles:
             for method in contenders:
@@ -108,7 +108,7 @@ def _entries(study: Study, tiles: list[Tile], contenders: list[Method], extent: 
 
 
 def _pictures(study: Study, tile: Tile, contenders: list[Method], ratio: int) -> dict:
-    """By method, the BTF itself first."""
+    """Pixels by method name, the BTF itself first."""
     found = {"the BTF": study.picture(tile, tile.btf).pixels}
     for method in contenders:
         model = study.model(tile, method, ratio)

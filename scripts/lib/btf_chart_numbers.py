@@ -1,4 +1,4 @@
-"""The arithmetic of scripts/chart --btf: which fit has the bytes, what is better than what, the targets."""
+"""The arithmetic of scripts/chart --btf: fits of a given size, comparisons of methods, and the targets."""
 
 from __future__ import annotations
 
@@ -7,16 +7,16 @@ from dataclasses import dataclass
 
 import numpy as np
 
-HEADERS = 2300  # bytes of a model's file besides what is fitted, about
-_CLOSE = 0.08  # of the bytes that may be left unused where a further fit could use them
+HEADERS = 2300  # approximate bytes of a model's file besides the fitted parameters
+_CLOSE = 0.08  # share of the bytes that may stay unused before another fit is tried
 _SLACK = 1.01
 _TRIES = 4
-_MARGIN = 0.99  # of what is tried first
+_MARGIN = 0.99  # share of the target that is tried first
 
 
 @dataclass(frozen=True)
 class Method:
-    """A way to compress, as it is called and as the command line takes it."""
+    """A method of compression: its name, and its command line options."""
 
     name: str
     options: tuple[tuple[str, object], ...]
@@ -24,44 +24,44 @@ class Method:
 
 @dataclass(frozen=True)
 class Entry:
-    """What is known of a method at one number of bytes."""
+    """Results of a method at one size."""
 
     tile: str
     method: str
     ratio: int
-    bytes: int  # of the model's file
-    seconds: float  # of the fit
-    processor_seconds: float  # of the whole call, all threads
+    bytes: int  # size of the model's file
+    seconds: float  # duration of the fit
+    processor_seconds: float  # whole call, all threads
     psnr: float
     ser: float
-    evaluations: float  # a second and thread
+    evaluations: float  # per second and thread
     psnr_unseen: float | None = None
     ser_unseen: float | None = None
     picture: float | None = None  # relative error of the rendered picture
     flip: float | None = None
-    render_seconds: float | None = None  # of a processor, to the chart's level of noise
-    brightness: float | None = None  # the model's mean light over the BTF's
+    render_seconds: float | None = None  # processor seconds to the chart's noise level
+    brightness: float | None = None  # mean radiance of the model over that of the BTF
 
 
 def packing(report: dict) -> float:
-    """Bytes of the file for each that is fitted."""
+    """Bytes of the file per fitted byte."""
     return max(report["bytes"] - HEADERS, 1) / report["parameter_bytes"]
 
 
 def largest_within(target: int, reports: Iterable[dict]) -> dict | None:
-    """Within, and a hundredth: less than errors feel, and often a fit."""
+    """The largest file within 1.01 `target`: the excess does not change errors, and often saves a fit."""
     return max((r for r in reports if r["bytes"] <= _SLACK * target), key=lambda r: r["bytes"], default=None)
 
 
 def fills(target: int, report: dict | None, least: float = 1 - _CLOSE) -> bool:
-    """Whether so much of the bytes is used; by default: so much that a further fit would hardly use more."""
+    """Whether at least this share of the bytes is used; by default, a share that is not worth another fit."""
     return report is not None and report["bytes"] >= least * target
 
 
 def within(target: int, fit: Callable[[int], dict | None], packed: float = 1.0) -> dict | None:
-    """The report of the largest file within `target` bytes. `fit` takes the bytes of all that is fitted and
-    says what became of them, or refuses with None; files hold more than that, and less where they pack.
-    `packed`: the packing that is expected."""
+    """The report of the largest file within `target` bytes. `fit` takes the bytes of the fitted parameters
+    and returns a report, or None if it refuses; files are larger by their headers and smaller by compression.
+    `packed`: the expected packing()."""
     best, tried, size = None, [], max(int(_MARGIN * (target - HEADERS) / packed), 1)
     for _ in range(_TRIES):
         report = fit(size)
@@ -77,7 +77,7 @@ def within(target: int, fit: Callable[[int], dict | None], packed: float = 1.0) 
 
 
 def _next(target: int, tried: list[tuple[int, int]]) -> int:
-    """What would fill the file, on a line through what was tried last: (bytes fitted, bytes of the file)."""
+    """Fitted bytes that would fill the file, by a line through the last two of (fitted bytes, file size)."""
     fitted, size = tried[-1]
     slope = 1.0
     if len(tried) > 1 and tried[-2][0] != fitted:
@@ -86,13 +86,13 @@ def _next(target: int, tried: list[tuple[int, int]]) -> int:
 
 
 def relative_error(picture: np.ndarray, reference: np.ndarray) -> float:
-    """Root mean square of the difference over that of the reference."""
+    """Root mean square of the difference, relative to that of the reference."""
     return float(np.sqrt(((picture - reference) ** 2).mean() / (reference**2).mean()))
 
 
 def widest_spread(pictures: list[np.ndarray], side: int) -> tuple[int, int]:
-    """The top left corner of the window of side x side pixels in which pictures differ most from one another,
-    by how they are looked at: the root of each channel, clipped at 1."""
+    """Row and column of the side x side window in which the pictures differ most from one another, as
+    displayed: the square root of each channel, clipped at 1."""
     shown = np.sqrt(np.clip(np.stack(pictures), 0, 1))
     spread = shown.var(axis=0).sum(axis=-1)
     sums = np.pad(spread.cumsum(axis=0).cumsum(axis=1), ((1, 0), (1, 0)))
@@ -123,14 +123,14 @@ class Results:
         return sorted({e.ratio for e in self.all()})
 
     def best(self, tile: str, ratio: int, value: str = "psnr") -> str | None:
-        """The method of the largest `value`."""
+        """The method with the largest `value`."""
         known = [
             e for e in self.all() if e.tile == tile and e.ratio == ratio and getattr(e, value) is not None
         ]
         return max(known, key=lambda e: getattr(e, value)).method if known else None
 
     def gain(self, tile: str, ratio: int, method: str, other: str, value: str = "psnr") -> float | None:
-        """Of `method` over `other`, at equal bytes."""
+        """`value` of `method` minus that of `other`, at equal bytes."""
         a, b = self.get(tile, method, ratio), self.get(tile, other, ratio)
         if a is None or b is None or getattr(a, value) is None or getattr(b, value) is None:
             return None
@@ -165,7 +165,7 @@ def verdicts(results: Results) -> Iterator[Verdict]:
 
 
 def _at_least(results: Results, target: str, methods: list[str], other: str) -> Iterator[Verdict]:
-    """The best of `methods` against the other, at the ratio of each tile where it gains least."""
+    """Compares the best of `methods` with `other`, for each tile at the ratio where it gains least."""
     for tile in results.tiles():
         gains = {
             ratio: _largest([results.gain(tile, ratio, name, other) for name in methods])

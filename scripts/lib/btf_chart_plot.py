@@ -1,4 +1,4 @@
-"""Errors of all methods against the bytes, tile by tile."""
+"""Plots the errors of all methods against bytes, tile by tile."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from pathlib import Path
 import plots
 from btf_chart_numbers import Results
 
-# What is drawn, and how its axis is called.
+# Plotted values and their axis labels.
 VALUES = {
     "psnr": "PSNR of fitted pairs, dB",
     "psnr_unseen": "PSNR of unseen pairs, dB",

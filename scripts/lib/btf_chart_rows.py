@@ -1,4 +1,4 @@
-"""docs/chart_btf.csv: how the numbers were taken, then a row for each entry; written, and read to add to."""
+"""Reads and writes docs/chart_btf.csv: the conditions of the measurement, then a row for each entry."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ def write(path: Path, results: Results, conditions: dict) -> None:
 
 
 def read(path: Path) -> tuple[dict, list[Entry]]:
-    """The conditions, as texts, and the entries."""
+    """The conditions, as strings, and the entries."""
     with path.open(newline="", encoding="utf-8") as file:
         rows = list(csv.DictReader(file))
     conditions = {row["tile"]: row["method"] for row in rows if not row["ratio"]}

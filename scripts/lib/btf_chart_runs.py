@@ -1,4 +1,4 @@
-"""Captures, fits and pictures of scripts/chart --btf, each kept under a key of all it depends on."""
+"""Captures, fits and renders of scripts/chart --btf, each kept under a hash of everything it depends on."""
 
 from __future__ import annotations
 
@@ -20,10 +20,10 @@ from velour.core import files
 from velour_cli import velour, velour_to_file
 
 WORLD = "potsdamer_platz"
-# How files of methods pack, about.
+# Approximate packing() of the files, by method.
 _PACKED, _PACKED_ELSE = {"svd": 0.85, "svd-view": 0.66}, 0.9
-_HALF = 0.55  # of the bytes: fits that fill less were made for fewer
-_CAPTURE_COST, _FIT_COST = 4e7, 6e7  # in samples
+_HALF = 0.55  # share of the bytes: fits that fill less were made for a smaller target
+_CAPTURE_COST, _FIT_COST = 4e7, 6e7  # in samples, for the progress
 
 
 @dataclass(frozen=True)
@@ -37,11 +37,11 @@ class Extent:
     held_out: int = 64
     size: tuple[int, int] = (200, 150)
     spp: int = 64
-    speed_ratio: int = 500  # where seconds of renders are taken
+    speed_ratio: int = 500  # at which render times are measured
     speed_size: tuple[int, int] = (64, 48)
     speed_spp: tuple[int, ...] = (16, 64)
     speed_reference: int = 1024
-    level: float = 0.02  # relmse that seconds are told of
+    level: float = 0.02  # relmse to which render times are measured
 
 
 QUICK = Extent(
@@ -53,14 +53,14 @@ QUICK = Extent(
 @dataclass(frozen=True)
 class Tile:
     name: str
-    btf: Path  # its btf.json, or what else Velour reads
+    btf: Path  # its btf.json, or another file that Velour reads
     held_out: Path | None
     raw_bytes: int
 
 
 class Study:
     def __init__(self, renders: Renders, extent: Extent, data: Path, only_kept: bool = False):
-        """`only_kept`: no new fits."""
+        """`only_kept`: makes no new fits."""
         self._only_kept = only_kept
         self._renders, self._extent = renders, extent
         self._world = data_files.world(data, WORLD)
@@ -87,7 +87,7 @@ class Study:
         return Tile(path.name, path, None, velour("info", path, "--quiet")["raw_bytes"])
 
     def _capture(self, kind: str, options: dict) -> Path:
-        """Kept whatever the library: captures of one seed are meant to stay the same."""
+        """Captures are kept across builds of the library: those of one seed are meant to stay the same."""
         seed, threads = self._renders.settings.seed, self._renders.settings.threads
         options = {"texels": self._extent.texels, "sides": "one", "seed": seed, **options}
         name = "-".join([kind, *map(str, options.values()), *(k for k in options if k == "held-out")])
@@ -103,13 +103,13 @@ class Study:
         return index
 
     def interpolated(self, tile: Tile) -> dict | None:
-        """Errors of the BTF itself at unseen pairs."""
+        """Errors of the interpolated BTF itself at held-out pairs; None if the tile has none."""
         if tile.held_out is None:
             return None
         return self._compare(tile.held_out, tile.btf)
 
     def entry(self, tile: Tile, method: Method, ratio: int) -> Entry | None:
-        """Nothing where the method has no model of so few bytes."""
+        """None if the method has no model that small."""
         report = self._sized(tile, method, ratio)
         if report is None:
             return None
@@ -130,12 +130,12 @@ class Study:
         return replace(entry, render_seconds=self._seconds_to_level(tile, model), brightness=brightness)
 
     def model(self, tile: Tile, method: Method, ratio: int) -> Path | None:
-        """Of an entry that was asked for."""
+        """Model file of an entry; entry() must have been called for it."""
         report = self._found[tile.name, method.name, ratio]
         return Path(report["file"]) if report else None
 
     def _sized(self, tile: Tile, method: Method, ratio: int) -> dict | None:
-        """What fits there are come first; then how files pack is taken from the method's fit before."""
+        """Prefers kept fits. New fits expect the packing of the method's previous fit."""
         target = tile.raw_bytes // ratio
         report = largest_within(target, self._kept_fits(tile, method))
         if self._only_kept:
@@ -150,7 +150,7 @@ class Study:
         return report
 
     def _series(self, tile: Tile, method: Method) -> dict:
-        """All that a fit depends on but its size."""
+        """Everything that a fit depends on, except its size."""
         return {"btf": tile.btf, **dict(method.options), "seed": self._renders.settings.seed}
 
     def _kept_fits(self, tile: Tile, method: Method) -> list[dict]:
@@ -162,7 +162,7 @@ class Study:
         return found
 
     def _fit(self, tile: Tile, method: Method, size: int) -> dict | None:
-        """The report of a fit, with the processor's seconds and the file; None where it was refused."""
+        """The report of a fit, with its processor seconds and file; None if it was refused."""
         series = self._series(tile, method)
         parameters = {**series, "bytes": size}
         out = self._renders.stem("compress", parameters).with_suffix(".velour")
@@ -182,7 +182,7 @@ class Study:
         return self._renders.keep(f"errors of {other.name}", "compare", {"btf": btf, "other": other}, run)
 
     def picture(self, tile: Tile, material: Path) -> Picture:
-        """Directions of the light alone: the same for every material, so noise is nearly the same too."""
+        """Samples only the light: the directions, and nearly the noise, are the same for every material."""
         return self._render(tile, material, self._extent.spp, self._extent.size, "light")
 
     def _render(self, tile: Tile, material: Path, spp: int, size: tuple[int, int], strategy: str) -> Picture:
@@ -191,7 +191,7 @@ class Study:
         return self._renders.render(scene, spp, size=size, **options)
 
     def _seconds_to_level(self, tile: Tile, model: Path) -> float | None:
-        """Of one processor, by the better strategy, to a level of relmse against the model's own picture."""
+        """Processor seconds of the better strategy to the level of relmse against the model's own picture."""
         e = self._extent
         reference = self._render(tile, model, e.speed_reference, e.speed_size, "mis").pixels
         found = []
@@ -209,7 +209,7 @@ class Study:
 
 
 def flip(picture: np.ndarray, reference: np.ndarray) -> float | None:
-    """The mean over what is seen of the sheet, at one exposure; None without its package."""
+    """Mean FLIP at one exposure; None if its package is not installed."""
     scale = exposure(reference, np.ones(reference.shape[:2], bool))
     try:
         return float(flip_map(display(scale * reference), display(scale * picture)).mean())
@@ -218,7 +218,7 @@ def flip(picture: np.ndarray, reference: np.ndarray) -> float | None:
 
 
 def _reported(report: Path, series: str, *arguments) -> dict:
-    """Of a call that may be refused; with what it belongs to and the seconds that processors spent on it."""
+    """Report of a call that may be refused, with the series it belongs to and its processor seconds."""
     beside = report.with_suffix(".partial")
     before = _processor_seconds()
     try:

@@ -1,4 +1,4 @@
-"""What the chart of BTFs renders: a bent sheet under an environment."""
+"""The scene of the BTF chart: a bent sheet under an environment."""
 
 from __future__ import annotations
 
@@ -14,8 +14,8 @@ _HALF_ANGLE = np.radians(80)
 
 
 def write_sheet(path: Path) -> Path:
-    """Part of a cylinder of radius 1 about the x axis, its top upwards, z up; texture coordinates keep
-    lengths: one unit is the length of the arc, and of as much along the axis."""
+    """Part of a cylinder of radius 1 about the x axis, its top upwards, z up. Texture coordinates preserve
+    lengths: one unit is the length of the arc, along the arc and along the axis."""
     angle = np.linspace(-_HALF_ANGLE, _HALF_ANGLE, _STRIPS + 1)
     length = 2 * _HALF_ANGLE
     lines = []

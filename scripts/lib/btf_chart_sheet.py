@@ -1,4 +1,4 @@
-"""A tile's pictures at equal bytes beside the reference, and the place where they differ most, magnified."""
+"""A tile's pictures at equal bytes beside the reference, with the region where they differ most magnified."""
 
 from __future__ import annotations
 
@@ -10,9 +10,9 @@ from btf_chart_numbers import Results, relative_error, widest_spread
 from display import display
 from flip_metric import exposure
 
-_CELL, _COLUMNS = 2.0, 5  # inches of a picture's width, at 100 dots an inch
-_FAR = 0.5  # error of pictures that differ everywhere: they do not choose the crop
-_CROP = 28  # pixels of the reference picture along a crop
+_CELL, _COLUMNS = 2.0, 5  # width of a picture in inches, at 100 dots per inch
+_FAR = 0.5  # pictures with a larger error differ everywhere and do not influence the choice of the crop
+_CROP = 28  # side of a crop, in pixels
 
 
 def draw(path: Path, tile, pictures: dict[str, np.ndarray], results: Results, ratio: int) -> None:

@@ -1,4 +1,4 @@
-"""docs/chart_btf.md and its csv from the numbers of scripts/chart --btf."""
+"""Writes docs/chart_btf.md and its CSV from the numbers of scripts/chart --btf."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ _WORDS = {True: "met", False: "missed", None: "not measured"}
 
 
 def _origin(conditions: dict) -> str:
-    """Where the numbers come from: a page of kept results is of as many runs as those were."""
+    """Where the numbers come from: kept results may come from several runs."""
     sentence, one_run = provenance.sentence(conditions), "All numbers come from one run:"
     if conditions["kept"]:
         sentence = sentence.replace(one_run, "Written from kept results of several runs; this page:")

@@ -1,4 +1,4 @@
-"""Where the processor time of a command goes, by perf's samples of the function in work."""
+"""Where the processor time of a command goes, by perf's samples of the running function."""
 
 from __future__ import annotations
 
@@ -7,7 +7,8 @@ import shutil
 import subprocess
 from pathlib import Path
 
-# The first that matches a function counts it; what no line names belongs to loading and is left out.
+# The first pattern that matches counts the function. Functions without a match belong to loading, which is
+# omitted.
 _PARTS = [
     ("tracing rays (Embree)", r"libembree|EmbreeScene|RayLog"),
     ("products of lobes", r"SkyProposals|multiply_|keep_products|select_|expm1|log2f|lround|exp2f"),
@@ -23,7 +24,7 @@ _PARTS = [
 
 
 def available() -> bool:
-    """perf is there and may look."""
+    """Whether perf is installed and permitted."""
     if shutil.which("perf") is None:
         return False
     probe = ["perf", "record", "-e", "cpu-clock", "-o", "/dev/null", "true"]
@@ -31,7 +32,7 @@ def available() -> bool:
 
 
 def profile(command: list, data: Path) -> dict[str, float]:
-    """Share of each part in the processor time of `command` that any part has."""
+    """Share of each part in the processor time of all parts of `command`."""
     record = ["perf", "record", "-q", "-e", "cpu-clock", "-F", "1999", "-o", data]
     subprocess.run([*map(str, [*record, "--", *command])], check=True, stdout=subprocess.DEVNULL)
     report = ["perf", "report", "-i", str(data), "-g", "none", "--percent-limit", "0"]

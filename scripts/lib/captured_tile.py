@@ -1,4 +1,4 @@
-"""Runs inside Blender: the tile that is the active object becomes a BTF, and that a material."""
+"""Runs inside Blender: captures the active object, a tile, as a BTF and makes a material from it."""
 
 from __future__ import annotations
 
@@ -9,13 +9,13 @@ from collections.abc import Callable
 import bpy
 from blender_picture import measured_node
 
-NAME = "tile"  # of the material; the BTF lies in NAME.btf
+NAME = "tile"  # name of the material; its BTF is in NAME.btf
 
 
 def capture_and_compress(
     folder: str, capture: dict, megabytes: float, captured: Callable[[], None] = lambda: None
 ) -> dict:
-    """Seconds and bytes. `capture`: arguments of the operator; `megabytes`: 0 lets the library choose.
+    """Returns seconds and bytes. `capture`: arguments of the operator; `megabytes`: 0: the library chooses.
     `captured` is called before the fit."""
     btf = os.path.join(folder, f"{NAME}.btf")
     start = time.perf_counter()

@@ -1,4 +1,4 @@
-"""Error against seconds for every strategy on seven scenes, the tables read from it, and the peers."""
+"""Error against seconds for every strategy on seven scenes, the resulting tables, and other renderers."""
 
 from __future__ import annotations
 
@@ -20,9 +20,9 @@ from renders import Renders, Settings
 from velour.native.table import STRATEGIES
 from velour_cli import ROOT
 
-# The dissertation's have numbers of their own.
+# The dissertation's strategies have their own random numbers.
 CURVES = {name: Contender(name, "sobol") for name in STRATEGIES}
-# Curves that targets compare closely: more seeds. Those that no target names end a step earlier.
+# Curves that targets compare closely have more seeds. Curves that no target names end a step earlier.
 COMPARED = (DEFAULT, "mis-ggx", "product")
 LONG = (*COMPARED, "uniform", DISSERTATION)
 BEST = {"strategy": "product"}
@@ -36,15 +36,15 @@ class Extent:
     worlds: tuple[str, ...] = (chart_scenes.STUDIO, chart_scenes.SUNSET)
     skipped: tuple[str, ...] = ()  # curves
     spp: tuple[int, ...] = (16, 64, 256, 1024)
-    level_spp: int = 800  # of the default: its error is the level of the equal-error table
-    equal_spp: int = 256  # of these, where targets compare equal samples
-    seeds: int = 3  # of compared curves; others have one
-    reference_spp: int = 2048  # of each of
+    level_spp: int = 800  # the default strategy's error here is the level of the equal-error table
+    equal_spp: int = 256  # one of `spp`, at which targets compare equal samples
+    seeds: int = 3  # compared curves; others have one seed
+    reference_spp: int = 2048  # per batch
     reference_batches: int = 4
     bound_hits: int = 200
     peer_materials: int = 3
     peer_size: tuple[int, int] = (160, 120)
-    peer_rays: tuple[int, ...] = (8, 32, 128)  # camera rays a pixel, eight light directions each
+    peer_rays: tuple[int, ...] = (8, 32, 128)  # camera rays per pixel, with eight light directions each
     peer_reference_rays: int = 256
     cycles_rays: tuple[int, int] = (64, 512)
 
@@ -98,7 +98,7 @@ def _curves(extent: Extent) -> dict[str, Contender]:
 
 
 def _ladder(name: str, extent: Extent) -> list[tuple[int, int]]:
-    """spp and seeds of a curve."""
+    """Pairs (spp, number of seeds) of a curve."""
     seeds = extent.seeds if name in COMPARED else 1
     steps = {*extent.spp, extent.level_spp} if name == DEFAULT else {*extent.spp}
     return [(spp, seeds) for spp in sorted(steps) if name in LONG or spp < max(steps)]

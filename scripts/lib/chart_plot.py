@@ -1,4 +1,4 @@
-"""One picture a scene: both errors against seconds."""
+"""One plot per scene: both errors against seconds."""
 
 from __future__ import annotations
 

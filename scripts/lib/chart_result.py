@@ -1,4 +1,4 @@
-"""What the chart knows of one scene, and the numbers that its tables and targets are made of."""
+"""Results of one scene, and the numbers for tables and targets derived from them."""
 
 from __future__ import annotations
 
@@ -29,8 +29,8 @@ class Point:
     spp: int
     seed: int
     seconds: float
-    mse: float  # of linear RGB, without the reference's own share
-    relmse: float  # likewise
+    mse: float  # linear RGB, with the reference's noise subtracted
+    relmse: float  # the reference's noise is subtracted
 
 
 def point_of(
@@ -43,7 +43,7 @@ def point_of(
 
 @dataclass(frozen=True)
 class Gain:
-    """A quotient of means over seeds, and the standard error that the seeds tell."""
+    """A ratio of means over seeds, and its standard error, estimated from the seeds."""
 
     value: float
     error: float
@@ -63,7 +63,7 @@ class Result:
 
     @functools.cached_property
     def curves(self) -> dict[str, Curve]:
-        """relmse against seconds; means over seeds."""
+        """relmse against seconds, as means over seeds."""
         return {name: Curve([p[:2] for p in self.means(name).values()]) for name in self.points}
 
     def means(self, name: str) -> dict[int, tuple[float, float, float]]:
@@ -72,7 +72,7 @@ class Result:
 
     @property
     def level(self) -> float:
-        """The relmse that the default has at its 800 samples."""
+        """relmse of the default strategy at `level_spp` samples."""
         return self._mean(DEFAULT, self.level_spp)[1]
 
     @property
@@ -86,22 +86,22 @@ class Result:
         return self.curves[name].error_at(self.level_seconds)
 
     def time_ratio(self, name: str, other: str) -> Reading | None:
-        """Seconds to the level, of the one over the other's."""
+        """Ratio of `name` to `other` in seconds to the level."""
         return ratio(self.seconds_to_level(name), self.seconds_to_level(other))
 
     def error_ratio(self, name: str, other: str) -> Reading | None:
-        """relmse at equal time, of the one over the other's."""
+        """Ratio of `name` to `other` in relmse at equal time."""
         return ratio(self.error_at_equal_time(name), self.error_at_equal_time(other))
 
     def gain(self, name: str, other: str, spp: int) -> Gain:
-        """relmse at equal samples, of the one over the other's."""
+        """Ratio of `name` to `other` in relmse at equal samples."""
         a, b = (np.array([p.relmse for p in self.points[n] if p.spp == spp]) for n in (name, other))
         value = a.mean() / b.mean()
         relative = sum(_relative_variance(x) for x in (a, b))
         return Gain(float(value), float(abs(value) * relative**0.5))
 
     def share_of_bound(self) -> float | None:
-        """Of the variance that exact product sampling would save over the default."""
+        """Share of the variance reduction of exact product sampling over the default that `product` has."""
         if not self.bound:
             return None
         mis, product, exact = (self.bound[name] for name in ("mis", "product", "exact"))

@@ -1,4 +1,4 @@
-"""The scenes of the chart: the figures' under two worlds, and one under a synthetic sky."""
+"""The scenes of the chart: those of the figures under two environments, and one under a synthetic sky."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ def _scene(subject: figure_scenes.Subject, scene: Scene, world: str) -> ChartSce
 
 
 def sun_lobes(scene: Scene, renders: Renders) -> synthetic_sky.SunLobes:
-    """What product sampling keeps of the synthetic sun: read from the mixture that a small render leaves."""
+    """What product sampling keeps of the synthetic sun, read from the mixture that a small render caches."""
     folder = renders.settings.folder / "sun"
     folder.mkdir(exist_ok=True)
     renders.render(scene, 8, size=(16, 12), strategy="product", cache=str(folder))

@@ -1,4 +1,4 @@
-"""What the chart must show, and whether its numbers do."""
+"""Targets of the chart, and whether its numbers meet them."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from curve import Reading, shown
 from peer_mitsuba import Comparison
 from synthetic_sky import SUN_SHARE, SunLobes
 
-# relmse of `product` over that of the default at equal samples.
+# Maximum relmse of `product` relative to the default strategy at equal samples.
 _EQUAL_SAMPLES = {
     ("nickel", SUNSET): 0.6,
     ("blue-metallic-paint", SUNSET): 0.4,
@@ -19,7 +19,7 @@ _EQUAL_SAMPLES = {
     ("blue-metallic-paint", STUDIO): 0.5,
     ("krylon-blue", STUDIO): 0.5,
 }
-_MOST_GGX_ERROR = 0.2  # relative L2, above which SRBF lobes must be clearly faster
+_MOST_GGX_ERROR = 0.2  # relative L2 above which SRBF lobes must be clearly faster
 
 
 @dataclass(frozen=True)
@@ -27,7 +27,7 @@ class Verdict:
     target: str
     where: str
     measured: str
-    met: bool | None  # None: the numbers are not there
+    met: bool | None  # None: not measured
 
 
 def verdicts(

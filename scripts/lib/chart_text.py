@@ -1,4 +1,4 @@
-"""docs/chart: one picture and one CSV a scene, and the page with the tables read from them."""
+"""Writes docs/chart: a plot and a CSV per scene, and the page with the tables derived from them."""
 
 from __future__ import annotations
 

@@ -1,8 +1,8 @@
-# What every script of this folder starts with: strict mode, the project's root, two ways to speak. Sourced, not run.
+# Sourced by the scripts of this folder: strict mode, the project's root, messages, and progress of programs.
 set -euo pipefail
 root=$(cd "$(dirname "$(readlink -f "${BASH_SOURCE[0]}")")/../.." && pwd)
 
-# What scripts/setup --denoise has installed; libvelour opens it.
+# The Open Image Denoise that scripts/setup --denoise installed; libvelour opens it.
 for oidn in "$root"/build/tools/lib/python3*/site-packages/pyoidn/oidn/lib/libOpenImageDenoise.so.2; do
   if [[ -e $oidn ]]; then export VELOUR_OIDN=${VELOUR_OIDN:-$oidn}; fi
 done
@@ -14,7 +14,7 @@ die() {
   exit 1
 }
 
-# usage_if_asked "$@": prints the comment at the head of the script for -h or --help.
+# usage_if_asked "$@": prints the header comment of the script for -h or --help.
 usage_if_asked() {
   local argument
   for argument in "$@"; do
@@ -28,8 +28,8 @@ usage_if_asked() {
 }
 
 # with_progress STAGE COUNTER LOG PROGRAM...: runs a program with its output in LOG and prints its progress: on a
-# terminal one line that changes, elsewhere a line every ten seconds. `COUNTER LOG` prints "DONE TOTAL", or nothing while
-# that is unknown. If the program fails, shows the errors in LOG and dies. Ctrl-C and SIGTERM end the program as well.
+# terminal one line that is updated, elsewhere a line every ten seconds. `COUNTER LOG` prints "DONE TOTAL", or nothing
+# while that is unknown. If the program fails, shows the errors in LOG and dies. Ctrl-C and SIGTERM end the program too.
 with_progress() {
   if ! try_with_progress "$@"; then
     show_failure "$3"
@@ -37,10 +37,10 @@ with_progress() {
   fi
 }
 
-# quietly LOG STAGE PROGRAM...: the same for a program whose progress cannot be counted.
+# quietly LOG STAGE PROGRAM...: with_progress for a program whose progress cannot be counted.
 quietly() { with_progress "$2" count_nothing "$1" "${@:3}"; }
 
-# try_with_progress STAGE COUNTER LOG PROGRAM...: the same, but returns the program's exit status and shows no errors.
+# try_with_progress STAGE COUNTER LOG PROGRAM...: with_progress that returns the exit status and shows no errors.
 try_with_progress() {
   local stage=$1 counter=$2 log=$3 begin=$SECONDS status=0 stopped=0 reporting reporter program traps
   shift 3
@@ -49,8 +49,8 @@ try_with_progress() {
   # The reporter ends when this file is closed, even if this shell is killed.
   exec {reporting}> >(report_progress "$stage" "$counter" "$log")
   reporter=$!
-  # In the background, because only `wait` lets a trap run at once. Programs in the background of a shell ignore Ctrl-C,
-  # which env undoes.
+  # Runs in the background, because only `wait` lets a trap run at once. Background programs of a shell ignore Ctrl-C; env
+  # restores the default.
   env --default-signal=INT,QUIT "$@" >"$log" 2>&1 {reporting}>&- &
   program=$!
   traps=$(trap -p INT TERM HUP)
@@ -58,7 +58,7 @@ try_with_progress() {
   trap 'stop_program TERM 143' TERM
   trap 'stop_program HUP 129' HUP
   wait "$program" || status=$?
-  # A trap ends `wait` before the program has ended. Bash may wait forever for a program that it has reaped already.
+  # A trap ends `wait` before the program ends. Bash may wait forever for a program that it has already reaped.
   while ((stopped)) && [[ -e /proc/$program ]]; do wait "$program" || true; done
   trap - INT TERM HUP
   eval "$traps"
@@ -74,7 +74,7 @@ try_with_progress() {
   return "$status"
 }
 
-# Used by the traps of try_with_progress. Ctrl-C reaches the program by itself, a signal to this shell alone does not.
+# Used by the traps of try_with_progress. Ctrl-C reaches the program by itself, but a signal to this shell does not.
 stop_program() {
   stopped=$2
   kill -s "$1" "$program" 2>/dev/null || true
@@ -90,7 +90,7 @@ progress_interval=10
 # report_progress STAGE COUNTER LOG: prints the progress until its input is closed.
 report_progress() {
   local interval=$progress_interval begin=$SECONDS before='' after='\n'
-  trap '' INT # it has its line to clear first
+  trap '' INT # it must clear its line first
   if [[ -t 1 ]]; then interval=1 before='\r\e[K' after=''; fi
   while read -rt "$interval" || (($? > 128)); do
     printf "$before%s$after" "$(progress_line "$1" $((SECONDS - begin)) $("$2" "$3"))"
@@ -106,13 +106,13 @@ progress_line() {
   printf '%s: %d s%s' "$stage" "$seconds" "$left"
 }
 
-# duration SECONDS: in the words of scripts/lib/progress.py.
+# duration SECONDS: formatted as in scripts/lib/progress.py.
 duration() { if (($1 < 600)); then printf '%d s' "$1"; else printf '%d min' $((($1 + 30) / 60)); fi; }
 
 # Counters for with_progress.
 count_nothing() { :; }
 count_ninja() { grep -aoE '^\[[0-9]+/[0-9]+\]' "$1" | tail -n 1 | tr '[/]' ' '; }
-count_apt() { # each package is fetched, unless it is in the cache; unpacked; and set up
+count_apt() { # each package is fetched (unless it is cached), unpacked and set up
   awk '/^Get:/ { fetched++ }
     /^(Unpacking|Setting up) / { installed++ }
     / newly installed, / { packages = $1 + $3 }

@@ -1,4 +1,4 @@
-"""Error against time, read between the measured points and, where it must be, beyond them."""
+"""Error against time, interpolated between the measured points and extrapolated if necessary."""
 
 from __future__ import annotations
 
@@ -10,21 +10,21 @@ import numpy as np
 @dataclass(frozen=True)
 class Reading:
     value: float
-    measured: bool  # between measured points; otherwise continued by the fitted power law
+    measured: bool  # between measured points; otherwise extrapolated by the fitted power law
 
     def __str__(self) -> str:
         return f"{'' if self.measured else '~'}{self.value:.3g}"
 
 
 class Curve:
-    """Points (seconds, error), a straight line between neighbours in logarithms of both."""
+    """Points (seconds, error), interpolated linearly in the logarithms of both."""
 
     def __init__(self, points: list[tuple[float, float]]):
         usable = sorted(point for point in points if min(point) > 0)
         self.x, self.y = np.log(usable).T if usable else (np.empty(0), np.empty(0))
 
     def seconds_at(self, error: float) -> Reading | None:
-        """When the curve falls to `error` for good; None where it does not fall."""
+        """When the curve falls below `error` for good; None if it does not."""
         y = np.log(error)
         below = np.flatnonzero(self.y > y)
         k = below[-1] + 1 if len(below) else 0
@@ -48,7 +48,7 @@ class Curve:
         return Reading(float(np.exp(self.y[end] + slope * (x - self.x[end]))), False)
 
     def _slope(self) -> float | None:
-        """Of the least-squares line through all points; None through fewer than two."""
+        """Slope of the least-squares line through all points; None for fewer than two."""
         if len(self.x) < 2 or np.ptp(self.x) == 0:
             return None
         return float(np.polyfit(self.x, self.y, 1)[0])

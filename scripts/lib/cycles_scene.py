@@ -20,14 +20,14 @@ def main(task: dict) -> None:
     subject.data.materials.append(_material(task))
     _add_camera(scene, task)
     _add_world(scene, task["world"])
-    _render(scene, task["rays"][0])  # the first one of a process does more
+    _render(scene, task["rays"][0])  # the first render of a process does extra work
     seconds = [_render(scene, rays) for rays in task["rays"]]
     with open(task["report"], "w") as file:
         json.dump({"seconds": seconds, "version": bpy.app.version_string}, file)
 
 
 def _settings(task: dict) -> bpy.types.Scene:
-    """Direct light, every sample taken, nothing after the last one."""
+    """Direct light only, without adaptive sampling and denoising."""
     scene = bpy.context.scene
     scene.render.engine = "CYCLES"
     scene.render.resolution_x, scene.render.resolution_y = task["size"]

@@ -1,4 +1,4 @@
-"""The test data: where they are, and what must be made of them first."""
+"""Locates the test data and prepares files from them."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ _SMOOTH = ROOT / "build/meshes"
 
 
 class NoDataError(RuntimeError):
-    """A sentence about inputs that are absent."""
+    """Its message is a sentence that names the missing data."""
 
 
 def folder() -> Path:
@@ -30,7 +30,7 @@ def merl_names(data: Path) -> list[str]:
 
 
 def merl(data: Path, name: str) -> Path:
-    """A MERL-layout file, expanded once, or by each of those who ask at once: what is there is whole."""
+    """A MERL-layout file, expanded on first use. Concurrent callers may each expand it; it appears whole."""
     path = _EXPANDED / f"{name}.binary"
     if not path.is_file():
         _EXPANDED.mkdir(parents=True, exist_ok=True)
@@ -42,7 +42,7 @@ def merl(data: Path, name: str) -> Path:
 
 
 def materials(data: Path) -> list[tuple[str, Path]]:
-    """Every one of the data: its name and its file."""
+    """Names and files of all measurements in the data."""
     found = [(name, merl(data, name)) for name in merl_names(data)]
     for ending in ("bsdf", "brdf"):
         found += [(path.stem, path) for path in sorted((data / "brdf").glob(f"*.{ending}"))]
@@ -50,7 +50,7 @@ def materials(data: Path) -> list[tuple[str, Path]]:
 
 
 def mesh(data: Path, name: str) -> Path:
-    """One smooth surface; as they are, meshes of the data are flat: no normals, no smoothing groups."""
+    """The mesh as one smoothing group: meshes of the data have neither normals nor smoothing groups."""
     source, path = data / f"mesh/{name}.obj", _SMOOTH / f"{name}.obj"
     if not path.is_file() or path.stat().st_mtime < source.stat().st_mtime:
         _SMOOTH.mkdir(parents=True, exist_ok=True)

@@ -1,4 +1,4 @@
-"""The demonstration: measurement, fit, picture through Blender, difference, report; then a BTF; or shells."""
+"""scripts/demo: measurement, fit, renders in Blender, difference, report; then a BTF. With --votf: shells."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The demonstration's second part: a tile, its BTF, a model of it, two pictures through Blender, report."""
+"""The demonstration's second part: a tile, its BTF, a model of it, two renders in Blender, report."""
 
 from __future__ import annotations
 
@@ -42,7 +42,7 @@ def demonstrate(folder: Path, parts: Parts) -> None:
 
 
 def _make(folder: Path, steps: Steps) -> dict:
-    shutil.rmtree(folder, ignore_errors=True)  # a capture goes over nothing
+    shutil.rmtree(folder, ignore_errors=True)  # a capture overwrites nothing
     folder.mkdir(parents=True)
     steps.begin(_STARTING)
     with tempfile.TemporaryDirectory(prefix="velour-demo-") as temporary:

@@ -1,5 +1,5 @@
-"""Runs inside Blender: a tile of weave is captured and compressed, and the demo's subject wears it: the
-model, and the BTF itself. The task is the JSON text after "--"."""
+"""Runs inside Blender: captures and compresses a tile of weave, and renders the demo's subject with the model
+and with the BTF itself. The task is the JSON text after "--"."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from steps import print_step
 
 SAMPLES, BOUNCES = 96, 1
 CAPTURE = {"texels": 48, "views": 81, "lights": 81, "samples": 8, "bounces": 1}
-TILE = 0.11  # metres on the subject: large enough to see
+TILE = 0.11  # meters on the subject: large enough to see
 
 
 def main(task: dict) -> None:
@@ -52,7 +52,7 @@ def _make_material(folder: str) -> dict:
 
 
 def _add_subject() -> bpy.types.Object:
-    """Projected from six sides: tiles of one size all over it, with seams between the sides."""
+    """With a cube projection: tiles of one size all over the subject, with seams between the six sides."""
     subject = add_subject()
     bpy.ops.object.mode_set(mode="EDIT")
     bpy.ops.mesh.select_all(action="SELECT")

@@ -1,4 +1,4 @@
-"""The default measurement: a virtual goniometer over a rough metal, made once for its settings and kept."""
+"""The default measurement: a rough metal under a virtual goniometer, made once for its settings and kept."""
 
 from __future__ import annotations
 
@@ -12,14 +12,14 @@ from demo_parts import Parts
 from velour.core import files
 from velour.native import library, microsurface_job
 
-SETTINGS = {"seed": 1}  # all else as the library has it
+SETTINGS = {"seed": 1}  # the rest are the library's defaults
 COST = 7  # seconds on two cores
 _STEP = "capturing the default measurement"
 
 
 class Capture(NamedTuple):
     path: Path
-    seconds: float | None = None  # what the capture took when it was made; None: it is the user's own file
+    seconds: float | None = None  # duration of the original capture; None: the user's own file
     cached: bool = False
 
 
@@ -42,6 +42,6 @@ def _cache_folder() -> Path:
 
 
 def _key() -> str:
-    """Of the settings and of the library: another build may measure another surface."""
+    """Hash of the settings and of the library: another build may measure another surface."""
     code = hashlib.sha256(library.library_path().read_bytes()).hexdigest()
     return hashlib.sha256(json.dumps([SETTINGS, code]).encode()).hexdigest()[:16]

@@ -1,4 +1,4 @@
-"""The picture of the model beside that of what it was fitted to."""
+"""The difference between the renders of the model and of its measurement or BTF."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from velour.native import images
 
 
 def write_difference(folder: Path) -> tuple[float, float]:
-    """difference.{exr,png} of model.exr and reference.exr; rmse and relmse."""
+    """Writes difference.{exr,png} of model.exr and reference.exr; returns rmse and relmse."""
     model, reference = (
         images.read(folder / f"{name}.exr")[..., :3].copy() for name in ("model", "reference")
     )

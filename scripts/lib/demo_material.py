@@ -1,4 +1,4 @@
-"""The demonstration's first part: a model of a measurement, pictures of both through Blender, and a plot."""
+"""The demonstration's first part: a model of a measurement, renders of both in Blender, and a plot."""
 
 from __future__ import annotations
 
@@ -75,7 +75,7 @@ def _make(folder: Path, measurement: Path, steps: Steps) -> dict:
 
 
 def save_fit(measurement_file: Path, model_file: Path) -> dict:
-    """The report of the fit."""
+    """Returns the report of the fit."""
     with Measurement.load(measurement_file) as measurement, fit_job(measurement) as job:
         report = job.run()
         with job.result_model() as model:
@@ -84,7 +84,7 @@ def save_fit(measurement_file: Path, model_file: Path) -> dict:
 
 
 def _render(model: Path, measurement: Path, folder: Path, steps: Steps) -> dict:
-    """Writes pictures of model and measurement; the report of demo_scene.py."""
+    """Writes pictures of model and measurement; returns the report of demo_scene.py."""
     steps.begin("starting Blender")
     with tempfile.TemporaryDirectory(prefix="velour-demo-") as temporary:
         report = Path(temporary) / "report.json"

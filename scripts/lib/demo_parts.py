@@ -1,4 +1,4 @@
-"""Keeps the results of a demonstration, and makes again only those whose inputs have changed."""
+"""Keeps the results of a demonstration, and remakes only those whose inputs have changed."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ class Part:
     name: str
     title: str
     steps: Mapping[str, float]  # seconds that each takes on two cores
-    files: tuple[str, ...]  # left in the folder; may be folders
+    files: tuple[str, ...]  # files and folders that the part leaves in its folder
 
     def announce(self, progress: Progress) -> None:
         for cost in self.steps.values():

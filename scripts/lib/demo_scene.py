@@ -1,5 +1,5 @@
 """Runs inside Blender: builds the demo's scene, renders it with the model and with the measurement itself,
-and takes the points of the error-against-time plot. The task is the JSON text after "--"."""
+and measures the points of the error-against-time plot. The task is the JSON text after "--"."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ SIZE = (640, 480)
 SAMPLES, BOUNCES = 384, 1
 WORLD, WORLD_ROTATION, WORLD_STRENGTH = "courtyard.exr", 250.0, 0.7
 
-PLOT_REDUCTION = 4  # of the picture's sides
+PLOT_REDUCTION = 4  # factor by which the sides of the picture shrink
 PLOT_REFERENCE_SAMPLES = 2048
 PLOT_SAMPLES = (16, 64, 256)
 PLOT_STRATEGIES = ("uniform", "cosine", "srbf", "light", "mis")
@@ -78,7 +78,7 @@ def add_camera(scene: bpy.types.Scene) -> None:
 
 
 def add_world(scene: bpy.types.Scene) -> None:
-    """One of the worlds that come with Blender."""
+    """One of the environments that come with Blender."""
     world = scene.world = bpy.data.worlds.new("World")
     world.use_nodes = True
     nodes, links = world.node_tree.nodes, world.node_tree.links
@@ -96,7 +96,7 @@ def add_world(scene: bpy.types.Scene) -> None:
 
 
 def _add_materials(subject: bpy.types.Object, model: str, measurement: str) -> bpy.types.ShaderNodeTexImage:
-    """The subject's measured node, with the model and the measurement that it was fitted to."""
+    """The subject's measured node, with the model and the measurement that the model was fitted to."""
     bpy.context.view_layer.objects.active = subject
     bpy.ops.velour.load_material(filepath=measurement, fit=False)
     raw = measured_node(subject.active_material)
@@ -107,7 +107,7 @@ def _add_materials(subject: bpy.types.Object, model: str, measurement: str) -> b
 
 
 def _render_pictures(scene: bpy.types.Scene, node: bpy.types.ShaderNodeTexImage, folder: str) -> dict:
-    """model.{exr,png} and reference.{exr,png}; what the render of the model took."""
+    """Writes model.{exr,png} and reference.{exr,png}; returns the report of the model's render."""
     print_step("rendering the measurement")
     node.velour.use_reference = True
     render_picture(scene, folder, "reference")
@@ -117,7 +117,7 @@ def _render_pictures(scene: bpy.types.Scene, node: bpy.types.ShaderNodeTexImage,
 
 
 def _curves(scene: bpy.types.Scene) -> dict[str, list[tuple[float, float]]]:
-    """Strategy -> (seconds, relmse) against a long render of the same model: sampling error alone."""
+    """Strategy -> (seconds, relmse), against a long render of the same model: sampling error alone."""
     from velour.export import Notes, export_scene
     from velour.export.camera import final_view
 

@@ -1,4 +1,4 @@
-"""The demonstration of shells: a ball and a cloth of net over a floor, beside the same in geometry."""
+"""The demonstration of shells: a ball and a cloth of net over a floor, beside the same in real geometry."""
 
 from __future__ import annotations
 
@@ -18,8 +18,8 @@ from votf_shapes import Cloth, Sphere, Surface, smooth_mesh, structured_mesh
 
 _SIZE = (768, 432)
 _SAMPLES = 64
-_ROWS = 12  # of tiles, from pole to pole of the ball
-_CLOTH = 10  # tiles a side
+_ROWS = 12  # tiles from pole to pole of the ball
+_CLOTH = 10  # tiles per side of the cloth
 _UNMOVED = ((1, 0, 0, 0), (0, 1, 0, 0), (0, 0, 1, 0))
 
 
@@ -111,7 +111,7 @@ def _ball(period: float) -> Sphere:
 
 
 def _placed(period: float) -> list[tuple[Surface, tuple]]:
-    """The ball stands on the floor, the cloth hangs beside it, its corners just over the floor."""
+    """The ball stands on the floor; the cloth hangs beside it with its corners just above the floor."""
     radius, cloth = _ball(period).radius, Cloth(_CLOTH, period)
     lowest = float(cloth.frame(np.array([[0.0, 0.0], [_CLOTH / 2, 0.0]]))[0][:, 2].min())
     gap = 0.02 * radius
@@ -126,7 +126,7 @@ def _moved(x: float, y: float, z: float) -> tuple:
 
 
 def _sun() -> tuple:
-    """From the left and above; its rays go along -z of the map."""
+    """Transform of a sun from the left and above; its rays go along -z of the transform."""
     z = np.array([-0.45, -0.55, 0.7])
     z /= np.linalg.norm(z)
     x = np.cross([0, 0, 1.0], z)

@@ -1,4 +1,4 @@
-"""What the compositor's Denoise node makes of Velour's picture and passes: a sheet, and errors."""
+"""The compositor's Denoise node on Velour's image and denoising passes: a sheet, and errors."""
 
 from __future__ import annotations
 
@@ -19,13 +19,13 @@ from velour.native import VelourError, images
 ROOT = Path(__file__).resolve().parents[2]
 TASK = {"size": (320, 240), "few": 16, "many": 4096}
 SHOWN = {"few": f"{TASK['few']} samples", "denoised": "the same, denoised", "many": f"{TASK['many']} samples"}
-DETAIL = (slice(96, 176), slice(124, 231))  # rows and columns of an eye and what is about it
-_CELL = 2.3  # inches a picture, at 100 dots an inch
+DETAIL = (slice(96, 176), slice(124, 231))  # rows and columns around an eye
+_CELL = 2.3  # width of a picture in inches, at 100 dots per inch
 
 
 def main() -> int:
     parser = argparse.ArgumentParser(prog="denoise")
-    parser.add_argument("--output", type=Path, metavar="FILE", default=ROOT / "docs/images/denoise.png")
+    parser.add_argument("--output", type=Path, metavar="FILE", default=ROOT / "docs/guide/images/denoise.png")
     output, work = parser.parse_args().output, ROOT / "out/denoise"
     work.mkdir(parents=True, exist_ok=True)
     try:
@@ -48,7 +48,7 @@ def main() -> int:
 
 
 def _relative(picture: np.ndarray, reference: np.ndarray) -> float:
-    """Root of the library's relmse: a relative error, of dark parts no more than of a tenth of the mean."""
+    """Root of the library's relmse: the relative error, in dark parts relative to a tenth of the mean."""
     return images.compare(picture, reference)[1] ** 0.5
 
 

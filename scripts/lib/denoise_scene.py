@@ -1,4 +1,4 @@
-"""Runs inside Blender: the demo's scene by few samples, denoised in two ways, and by many.
+"""Runs inside Blender: renders the demo's scene with few samples, denoised in two ways, and with many.
 
 The task is the JSON text after "--".
 """
@@ -44,7 +44,7 @@ def main(task: dict) -> None:
 
 
 def _compose(scene: bpy.types.Scene, passes: tuple[str, ...] | None) -> None:
-    """The picture itself where there are no `passes`, else through a Denoise node with these beside it."""
+    """Outputs the image through a Denoise node that is fed `passes`; None: the image itself."""
     show = scenes.composite(scene)
     show("Image")
     if passes is None:

@@ -1,4 +1,4 @@
-"""Linear pixels as they are looked at."""
+"""Conversion of linear pixels for display."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from velour.native import images
 
 
 def display(pixels: np.ndarray) -> np.ndarray:
-    """As the library writes them for the eye: sRGB, row 0 on top."""
+    """sRGB as the library writes it, row 0 on top."""
     from matplotlib import image
 
     with tempfile.TemporaryDirectory(prefix="velour-sheet-") as folder:

@@ -1,4 +1,4 @@
-"""The processor time that Cycles and Velour take to the same noise, in one run: docs/equal_noise.md."""
+"""The processor time that Cycles and Velour take to reach the same noise, in one run: docs/equal_noise.md."""
 
 from __future__ import annotations
 
@@ -35,22 +35,22 @@ SCENES = (
     "signs",
     "copper",
     "clamped copper",
-)  # of equal_noise_scenes.py
+)  # names in equal_noise_scenes.py
 THREADS = 2
-_CELL = 2.2  # inches a picture
+_CELL = 2.2  # width of a picture in inches
 DENOISED_TO = 0.01  # relmse
-_FIREFLY = 0.25  # luminance above the median of 3 x 3 pixels
+_FIREFLY = 0.25  # luminance above the median of 3 x 3 pixels that makes a firefly
 
 
 @dataclass(frozen=True)
 class Effort:
     size: tuple[int, int]
     seeds: int
-    cycles: int  # samples a pixel: a direction of the material and one of the light each
-    velour: int  # light directions a pixel
+    cycles: int  # samples per pixel: each one direction of the material and one of the light
+    velour: int  # light directions per pixel
 
 
-# As long as Cycles takes, about: noise falls with time in the same way for both.
+# Both take about the same time; noise falls with time in the same way for both.
 WHOLE = Effort((320, 180), 4, 64, 256)
 QUICK = Effort((96, 54), 2, 16, 64)
 
@@ -59,9 +59,9 @@ QUICK = Effort((96, 54), 2, 16, 64)
 class Side:
     seconds: float  # processor time of one render
     noise: float  # relmse of one render, from the spread of the seeds
-    mean: np.ndarray  # of all seeds
-    fireflies: float  # of one render
-    denoised: float | None = None  # seconds to a denoised picture of DENOISED_TO; None: nothing can denoise
+    mean: np.ndarray  # mean picture of all seeds
+    fireflies: float  # mean number per render
+    denoised: float | None = None  # seconds to a denoised picture of DENOISED_TO; None: no denoiser
 
     @property
     def cost(self) -> float:
@@ -97,7 +97,7 @@ def main() -> int:
 
 
 def _measure(name: str, effort: Effort, blender: str | None) -> tuple[tuple[Side, Side], str]:
-    """Cycles' side, Velour's, and the version of the Blender."""
+    """Cycles' side, Velour's side, and the version of Blender."""
     folder = WORK / name.replace(" ", "-")
     folder.mkdir(parents=True, exist_ok=True)
     report = folder / "report.json"
@@ -151,7 +151,7 @@ def _side(folder: Path, engine: str, seconds: list[float]) -> Side:
 
 
 def _fireflies(pictures: np.ndarray, mean: np.ndarray) -> float:
-    """Pixels of one render that are far brighter than their neighbors, where the mean of all is not."""
+    """Mean number of pixels of a render that are far brighter than their neighbors while the mean is not."""
 
     def stand_out(picture: np.ndarray) -> np.ndarray:
         luminance = picture @ np.array([0.2126, 0.7152, 0.0722])
@@ -166,7 +166,7 @@ def _ratio(cycles: Side, velour: Side) -> float:
 
 
 def _apart(cycles: Side, velour: Side) -> float:
-    """Of the mean light, relative: both are asked for the same picture."""
+    """Relative difference of the mean radiance: both should render the same picture."""
     return float(velour.mean.mean() / cycles.mean.mean() - 1)
 
 

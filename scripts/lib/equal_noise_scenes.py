@@ -1,7 +1,7 @@
-"""Inside Blender: the scenes in which Cycles and Velour are compared at equal noise, rendered by one of them.
+"""Runs inside Blender: renders a scene in which Cycles and Velour are compared at equal noise with both.
 
-Nothing is scaled to what either engine does well: things of Principled and diffuse materials under the
-lights that scenes have. The world's picture is one that every Blender brings.
+The scenes favor neither engine: objects with Principled and diffuse materials under common lights. The
+environment maps are those that every Blender includes.
 """
 
 import importlib
@@ -16,7 +16,7 @@ import bpy
 import mathutils
 
 BOUNCES = 4
-_MOST = 1 << 15  # samples of a render that ends by its error
+_MOST = 1 << 15  # maximum number of samples of a render that stops at an error
 _COLORS = ((0.8, 0.2, 0.1), (0.9, 0.6, 0.3), (0.2, 0.3, 0.8), (0.7, 0.7, 0.7))
 
 
@@ -41,8 +41,8 @@ def main(task):
 
 
 def _denoised(scene, relmse, seeds, folder):
-    """Processor seconds of renders that end when the error of the denoised picture is certain to be at most
-    `relmse`; none where nothing can denoise."""
+    """Processor seconds of renders that stop when the error of the denoised picture is certain to be at most
+    `relmse`; empty if there is no denoiser."""
     denoising = importlib.import_module("velour.engine.denoising")
     if denoising.missing():
         return []
@@ -53,7 +53,7 @@ def _denoised(scene, relmse, seeds, folder):
 
 
 def _render(scene, engine, samples, seed, folder):
-    """Processor seconds: of the export and the hierarchy, too."""
+    """Processor seconds, including the export and the BVH build."""
     scene.cycles.seed = scene.velour.seed = seed
     scene.cycles.samples = scene.velour.samples = samples
     scene.render.filepath = str(folder / f"{engine}{seed}.exr")
@@ -64,7 +64,7 @@ def _render(scene, engine, samples, seed, folder):
 
 
 def _set_up(scene, width, height):
-    """The same light for both: unbiased, with a filter of one pixel."""
+    """The same light transport for both: unbiased, with a filter of one pixel."""
     render, cycles = scene.render, scene.cycles
     render.resolution_x, render.resolution_y, render.resolution_percentage = width, height, 100
     render.image_settings.file_format, render.image_settings.color_depth = "OPEN_EXR", "32"
@@ -131,7 +131,7 @@ def _four_balls():
 
 
 def _world(name=None, strength=1.0, color=(0, 0, 0)):
-    """`name`: of a picture that comes with Blender."""
+    """`name`: an environment map that comes with Blender."""
     world = bpy.context.scene.world = bpy.data.worlds.new("World")
     world.use_nodes = True
     tree = world.node_tree
@@ -168,7 +168,7 @@ def _camera(location, towards, lens=50.0):
 
 
 def _floor(size):
-    """An HDR and a soft lamp over four balls; the floor does not end in the picture."""
+    """Four balls under an environment map and an area light, on a floor of `size` m."""
     _plane(size, _material("Floor", Roughness=0.5))
     _four_balls()
     _world("forest")
@@ -177,7 +177,7 @@ def _floor(size):
 
 
 def _interior():
-    """A room with three windows, whose portals both engines know, and ten lamps."""
+    """A room with ten lights and three windows, whose portals both engines support."""
     wall, wood = _diffuse("Wall", (0.75, 0.73, 0.7)), _material("Wood", (0.4, 0.2, 0.1), Roughness=0.3)
     _box((-4, -3, -0.2), (4, 3, 0), wood)
     _box((-4, -3, 3), (4, 3, 3.2), wall)
@@ -216,7 +216,7 @@ def _hundred_lamps():
 
 
 def _metals():
-    """A picture of the world is all the light there is."""
+    """Lit by an environment map alone."""
     _plane(30, _material("Floor", (0.2, 0.2, 0.22), Roughness=0.25))
     for i in range(4):
         look = {"Metallic": 1.0, "Roughness": 0.15 + 0.15 * i}
@@ -226,7 +226,7 @@ def _metals():
 
 
 def _corridor():
-    """Most of it is lit by what the walls send on."""
+    """Lit mostly by indirect light from the walls."""
     wall = _diffuse("Wall", (0.8, 0.78, 0.75))
     _box((-1.2, -0.2, -0.2), (1.2, 12, 0), _material("Tiles", (0.3, 0.3, 0.32), Roughness=0.2))
     _box((-1.2, -0.2, 2.5), (1.2, 12, 2.7), wall)
@@ -241,7 +241,7 @@ def _corridor():
 
 
 def _glowing():
-    """Signs that glow, and a small strong one that shines on one side."""
+    """Emissive signs, and a small strong emissive mesh to one side."""
     _plane(20, _material("Floor", (0.3, 0.3, 0.3), Roughness=0.35))
     _four_balls()
     _world(strength=0.05, color=(0.6, 0.7, 1.0))
@@ -253,7 +253,7 @@ def _glowing():
 
 
 def _copper(clamp=0.0):
-    """Polished copper throws a small lamp's light on a wall. `clamp`: of indirect light, of both engines."""
+    """Polished copper casts a small light's caustics on a wall. `clamp`: indirect clamp of both engines."""
     _plane(8, _material("Floor", (0.3, 0.3, 0.3), Roughness=0.6))
     _plane(8, _diffuse("Wall", (0.7, 0.7, 0.7)), (0, 2, 2), (math.pi / 2, 0, 0))
     copper = _material("Copper", (0.95, 0.64, 0.54), Metallic=1.0, Roughness=0.12)

@@ -15,7 +15,7 @@ SCENES = {
 }
 HEADER = ["scene", "export, s", "Cycles' synchronisation, s", "ratio", "hierarchies for tracing, s", "MiB"]
 RENDERS = 3  # of each engine, in turn; the least seconds count: other programs only add
-_OURS = re.compile(r"Exported .* (\d+) MiB in ([\d.]+) s; ([\d.]+) s of it")
+_OURS = re.compile(r"Exported .* (\d+) MiB in ([\d.]+) s, including ([\d.]+) s")
 _CYCLES = re.compile(r"Total time spent synchronizing data: ([\d.]+)")
 
 

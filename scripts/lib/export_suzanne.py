@@ -1,4 +1,4 @@
-"""Runs inside Blender: writes Suzanne, subdivided and smooth, as OBJ, y up. Its task is JSON after "--"."""
+"""Runs inside Blender: writes Suzanne, subdivided and smooth, as OBJ, y up. The task is JSON after "--"."""
 
 from __future__ import annotations
 

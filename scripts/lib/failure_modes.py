@@ -1,4 +1,4 @@
-"""The table of claimed and true errors in docs/failure_modes.md, from what the test records of itself."""
+"""The table of claimed and true errors in docs/failure_modes.md, from the records of the test."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ def main() -> int:
 
 
 def part(tests: dict) -> str:
-    """`tests`: the JSON of GoogleTest."""
+    """`tests`: GoogleTest's JSON report."""
     conditions = provenance.conditions(seed=0, threads=0)
     intro = f"""
 Claimed / true relative L2 at the reported views, of scattered models of at most 6 Gaussian lobes a view and
@@ -49,7 +49,7 @@ of parametric models of at most 6 lobes in all. Commit {conditions["commit"]}, {
 
 
 def _rows(tests: dict) -> list[list[str]]:
-    """Case by case; what was refused, and views that a measurement does not cover, have no numbers."""
+    """A row per case and model. Refused fits and views that a measurement does not cover have no numbers."""
     found = {}
     for test in tests["testsuites"][0]["testsuite"]:
         kind, case = test["value_param"].strip("()").split(", ", 1)

@@ -1,4 +1,4 @@
-"""Does the dissertation's own reference, uniform samples of the measurement, agree with ours?"""
+"""Checks whether the dissertation's own reference, uniform samples of the measurement, agrees with ours."""
 
 from __future__ import annotations
 
@@ -14,14 +14,14 @@ from renders import Renders
 from scenes import Scene
 from uniform_check import UniformAgreement, uniform_agreement
 
-TOO_BRIGHT = 1.02  # the control: must be refused
-# Every sample on its own, one direction a camera ray: only of independent ones is the variance known.
+TOO_BRIGHT = 1.02  # factor of the control, which must be refused
+# Independent samples, one direction per camera ray: the variance is known only for independent samples.
 UNIFORM = {"strategy": "uniform", "sequence": "random", "split": 1}
 
 
 @dataclass(frozen=True)
 class Check:
-    """Each of them against `product`."""
+    """Results of comparisons with `product`."""
 
     subject: Subject
     uniform: UniformAgreement
@@ -39,7 +39,7 @@ def announce(renders: Renders, extent) -> None:
 
 
 def check(subject: Subject, scene: Scene, renders: Renders, extent) -> Check:
-    """`scene`: of the measurement."""
+    """`scene`: evaluates the measurement itself."""
     size, batches = {"size": extent.check_size}, extent.check_batches
 
     def stack(spp: int, number: int, **strategy) -> np.ndarray:

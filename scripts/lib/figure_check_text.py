@@ -1,4 +1,4 @@
-"""docs/figures/check.md: whether uniform samples of the measurements agree with the references' strategy."""
+"""Writes docs/figures/check.md: whether uniform samples of the measurements agree with the references."""
 
 from __future__ import annotations
 

@@ -23,12 +23,12 @@ class Subject:
     fit: dict
 
     def scene(self, world: str, data: Path) -> Scene:
-        """The model of the measurement, evaluated and drawn from."""
+        """The scene with the model, which is both evaluated and sampled."""
         return Scene(f"{self.name}, {world}", self.mesh, "y", data_files.world(data, world), self.model)
 
 
 def subjects(data: Path, renders: Renders) -> list[Subject]:
-    """Those whose inputs are there; what is left out is said."""
+    """The subjects whose inputs exist. Prints which are omitted."""
     found = [
         ("7.11", "bunny", data_files.mesh(data, "bunny"), data_files.merl(data, "blue-metallic-paint")),
         ("7.12", "buddha", data_files.mesh(data, "buddha"), data / "brdf/krylon_blue.brdf"),
@@ -45,7 +45,7 @@ def _fitted(figure: str, mesh_name: str, mesh: Path, measurement: Path, renders:
 
 
 def _suzanne(renders: Renders) -> Path | None:
-    """Stands in for the Venus, which is not to be had: Blender's own monkey, subdivided."""
+    """Blender's own monkey, subdivided, in place of the Venus, which is not available."""
     path = renders.settings.folder / f"suzanne-{key({'levels': _SUZANNE_LEVELS})}.obj"
     partial = path.with_suffix(".partial.obj")
     task = {"path": str(partial), "levels": _SUZANNE_LEVELS}

@@ -1,4 +1,4 @@
-"""The dissertation's figures 7.11 to 7.13: its strategy at its numbers of samples, against references."""
+"""The dissertation's figures 7.11 to 7.13: its strategy and numbers of samples, compared with references."""
 
 from __future__ import annotations
 
@@ -23,11 +23,11 @@ from scenes import Scene
 from velour_cli import ROOT
 
 WORLD = "venice_sunset"
-# Half of the directions from the environment; the dissertation's densities and numbers, and those of today.
+# Half of the directions from the environment, with the dissertation's densities and random numbers or ours.
 HALF = {"heuristic": "balance", "share": 0.5}
 SAMPLERS = {"dissertation": HALF | {"strategy": "mis-dissertation"}, "default": HALF | {"strategy": "mis"}}
 BEST = {"strategy": "product"}
-# How far below the smallest error of the dissertation's strategy the reference's own must be.
+# Minimum ratio of the smallest error of the dissertation's strategy to the reference's own error.
 MARGIN = 10.0
 
 
@@ -38,13 +38,13 @@ class Extent:
     size: tuple[int, int] = (640, 480)
     spp: tuple[int, ...] = (200, 400, 600, 800, 1000)
     batch_spp: int = 2048
-    batches: tuple[int, int] = (4, 24)  # at first, and at most
-    floor_renders: int = 4  # of the model and of the measurement, for the fit's error
+    batches: tuple[int, int] = (4, 24)  # initial and maximum number
+    floor_renders: int = 4  # renders each of model and measurement, for the fit's error
     floor_spp: int = 128
     check_size: tuple[int, int] = (80, 60)
     check_batches: int = 16
-    uniform_spp: int = 400_000  # in all batches
-    check_spp: int = 2048  # of the others, in each batch
+    uniform_spp: int = 400_000  # in all batches together
+    check_spp: int = 2048  # the other strategies, in each batch
     moment_rays: int = 8192
     moment_runs: int = 4
 
@@ -67,17 +67,17 @@ QUICK = Extent(
 
 @dataclass(frozen=True)
 class Figure:
-    """What one row of the contact sheet shows."""
+    """Contents of one row of the contact sheet."""
 
     subject: figure_scenes.Subject
     pictures: dict[tuple[str, int], Picture]
     errors: dict[tuple[str, int], tuple[float, float]]  # rmse, relmse
     reference: Reference
-    differences: np.ndarray  # of some renders: model minus measurement, with the very same directions
+    differences: np.ndarray  # [render, row, column, channel]: model minus measurement, same light directions
 
     @property
     def floor(self) -> tuple[float, float]:
-        """rmse, relmse of the fit alone."""
+        """rmse and relmse of the fit alone."""
         return fit_error(self.differences, self.reference.mean())
 
     def smallest(self, sampler: str) -> float:
@@ -155,7 +155,7 @@ def _figure(subject: figure_scenes.Subject, scene: Scene, renders: Renders, exte
 
 
 def _converge(pictures: dict, reference: Reference, most: int) -> dict[tuple[str, int], tuple[float, float]]:
-    """Adds to the reference until its error is small beside those of the dissertation; the errors."""
+    """Adds renders to the reference until its error is small beside the dissertation's. Returns errors."""
     while True:
         mean = reference.mean()
         errors = {name: picture.errors(mean) for name, picture in pictures.items()}

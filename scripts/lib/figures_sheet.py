@@ -1,4 +1,4 @@
-"""The contact sheet: a row a figure, a column a number of samples, the reference last, errors below."""
+"""The contact sheet: a row per figure, a column per number of samples, the reference last, errors below."""
 
 from __future__ import annotations
 
@@ -9,8 +9,8 @@ import plots
 from display import display
 from markdown_table import small
 
-_CELL = 2.6  # inches of a picture's width, at 100 dots an inch
-_WORST = 0.2  # relative error that is drawn brightest
+_CELL = 2.6  # width of a picture in inches, at 100 dots per inch
+_WORST = 0.2  # relative error at which the brightness saturates
 
 
 def draw(path: Path, figures: list, spp: tuple[int, ...]) -> None:
@@ -41,7 +41,7 @@ def _show(axes, pixels: np.ndarray, title: str) -> None:
 
 
 def _show_error(axes, pixels: np.ndarray, reference: np.ndarray, title: str) -> None:
-    """Of the channels' sum, relative to the reference and a tenth of its mean, as in relmse."""
+    """Error of the channels' sum, relative to the reference and a tenth of its mean, as in relmse."""
     x, r = pixels.sum(axis=-1), reference.sum(axis=-1)
     error = np.abs(x - r) / np.sqrt(r**2 + 0.01 * r.mean() ** 2)
     axes.imshow(error[::-1], cmap="inferno", vmin=0, vmax=_WORST, interpolation="none")

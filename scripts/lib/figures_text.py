@@ -1,4 +1,4 @@
-"""docs/figures/README.md and figures.csv from the numbers of scripts/figures."""
+"""Writes docs/figures/README.md and figures.csv from the numbers of scripts/figures."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The error of a model in a picture, without the noise of the picture."""
+"""The error that a model causes in a picture, without the picture's noise."""
 
 from __future__ import annotations
 
@@ -7,10 +7,11 @@ from velour.native import images
 
 
 def fit_error(differences: np.ndarray, reference: np.ndarray) -> tuple[float, float]:
-    """rmse, relmse of what independent `differences` [render, row, column, channel] have in common.
+    """rmse and relmse of the common part of independent `differences` [render, row, column, channel].
 
-    Each is model minus measurement with the very same directions, so most noise has cancelled; what is left
-    adds its variance v to the square of each and v / n to that of their mean: two equations, two unknowns.
+    Each difference is model minus measurement with the same light directions, so most noise cancels. The
+    remaining noise adds its variance v to the square of each difference and v / n to that of their mean: two
+    equations with two unknowns.
     """
     n = len(differences)
     each = np.square([_errors(difference, reference) for difference in differences]).mean(axis=0)

@@ -1,4 +1,4 @@
-"""Full and reduced models of one scene: sizes, errors of pictures, and what other pictures are told."""
+"""Full models and scene models: sizes, errors of pictures, reports on pictures outside the scene usage."""
 
 from __future__ import annotations
 
@@ -23,12 +23,12 @@ class Extent:
 
 
 QUICK = Extent((32, 24), 64, 1)
-_SMALL = (32, 24)  # of pictures that are asked for nothing but their domain
+_SMALL = (32, 24)  # size of renders that measure only the share outside the scene usage
 
 
 @dataclass(frozen=True)
 class PictureError:
-    """relmse against the measurement, free of noise on average."""
+    """An unbiased estimate of relmse against the measurement."""
 
     relmse: float
     standard_error: float
@@ -41,7 +41,7 @@ class Row:
     reduced: dict
     full_error: PictureError
     reduced_error: PictureError
-    outside: dict[str, float]  # share of a picture outside of the domain
+    outside: dict[str, float]  # share of a picture outside the scene usage
 
 
 class Study:
@@ -106,7 +106,7 @@ class Study:
         return out, report
 
     def _pictures(self, scene: Scene, first_seed: int) -> tuple[np.ndarray, np.ndarray]:
-        """Two independent ones."""
+        """Two independent renders."""
         seeds = (100 * self._renders.settings.seed + first_seed + i for i in range(2))
         a, b = (
             self._renders.render(scene, self._extent.spp, seed=seed, strategy="mis").pixels.astype(np.float64)
@@ -116,7 +116,7 @@ class Study:
 
     @staticmethod
     def _error(pictures: tuple, references: tuple) -> PictureError:
-        """The product of two independent differences in the place of a square; over the patch alone."""
+        """Uses the product of two independent differences in place of a square, over the patch alone."""
         (a, b), ((r0, r1), (r2, r3)) = pictures, references
         reference = (r0 + r1 + r2 + r3) / 4
         mean = reference.mean(axis=(0, 1))

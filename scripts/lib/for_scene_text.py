@@ -1,4 +1,4 @@
-"""The generated part of docs/for_scene.md and its csv from the numbers of scripts/for_scene."""
+"""Writes the generated part of docs/for_scene.md and its CSV from the numbers of scripts/for_scene."""
 
 from __future__ import annotations
 
@@ -49,7 +49,7 @@ def _excess(row) -> float:
 
 
 def _within(rows: list) -> str:
-    """Of those that are above: how many may be there by chance."""
+    """How many of the materials above the bound may be there by chance."""
     above = [row for row in rows if _excess(row) > 0]
     near = sum(_excess(row) <= 2 * _deviation(row) for row in above)
     return f" (and within two standard errors of that for {near} more)" if near else ""

@@ -1,10 +1,10 @@
-"""Parts of hand-written pages that a script writes: between two markers, which stay."""
+"""Generated parts of hand-written pages, between two markers, which stay."""
 
 from __future__ import annotations
 
 
 def replaced(page: str, part: str, text: str, script: str = "models") -> str:
-    """`page` with `text` between the markers of `part`, which `script` writes."""
+    """`page` with `text` between the markers of `part` of `script`. Raises ValueError if they are missing."""
     begin, end = f"<!-- {part}: written by scripts/{script} -->\n", f"<!-- end of {part} -->"
     if page.count(begin) != 1 or page.count(end) != 1 or page.index(begin) > page.index(end):
         raise ValueError(f"the page has no part {part!r} between its two markers")

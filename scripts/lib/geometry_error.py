@@ -1,4 +1,4 @@
-"""How far a picture is from one of real geometry. Linear premultiplied RGBA, [height x width x 4]."""
+"""Errors of a picture against one of real geometry. Linear premultiplied RGBA, [height x width x 4]."""
 
 from __future__ import annotations
 
@@ -11,12 +11,12 @@ BLOCK = 8  # pixels
 
 class GeometryError(NamedTuple):
     pixels: float  # root mean square of the difference over that of the truth
-    blocks: float  # the same of means over BLOCK x BLOCK pixels: what is left at a distance
+    blocks: float  # likewise for means over BLOCK x BLOCK pixels: the error seen from a distance
     mean: float  # mean radiance over that of the truth
 
 
 def geometry_error(picture: np.ndarray, truth: np.ndarray) -> GeometryError:
-    """Of pixels where either shows the object."""
+    """Errors over the pixels where either picture shows the object."""
     seen = (picture[..., 3] > 0.5) | (truth[..., 3] > 0.5)
     found, expected = (np.where(seen[..., None], p[..., :3], 0).astype(float) for p in (picture, truth))
     return GeometryError(

@@ -1,4 +1,4 @@
-"""Runs a script inside Blender, without a window, with the staged add-on."""
+"""Runs a script inside Blender without a window, with the staged add-on."""
 
 from __future__ import annotations
 
@@ -24,15 +24,15 @@ def run(
     options: list[str] | None = None,
     hear: Callable[[str], None] = lambda line: None,
 ) -> None:
-    """`script` lies in this folder and finds `task` as JSON after "--". `options`: more of Blender's own.
-    `hear` is called with each line that Blender or the script prints."""
+    """`script` is a file of this folder and gets `task` as JSON after "--". `options`: further options for
+    Blender. `hear` is called with each line that Blender or the script prints."""
     blender = shutil.which("blender")
     if not blender:
         raise BlenderError("blender is not installed; run scripts/setup")
-    # The order matters: what stands before --python-exit-code does not know of it.
+    # The order matters: --python-exit-code applies only to the arguments after it.
     command = [blender, "-b", "--factory-startup", "-noaudio", "--python-exit-code", "7", *(options or [])]
     command += ["--python", str(HERE / script), "--", json.dumps(task)]
-    # A distribution's Blender looks for its Python along PATH: not a version manager's, please.
+    # A distribution's Blender looks for its Python along PATH and must not find that of a version manager.
     path = os.pathsep.join((str(Path(blender).resolve().parent), os.environ["PATH"]))
     environment = {**os.environ, "BLENDER_USER_SCRIPTS": str(STAGE), "PATH": path}
     status = _run(command, environment, log, hear)
@@ -42,7 +42,7 @@ def run(
 
 
 def _run(command: list[str], environment: dict[str, str], log: Path, hear: Callable[[str], None]) -> int:
-    """The exit status. Kills Blender on any exception here: Ctrl-C itself ends only its current render."""
+    """Returns the exit status. Kills Blender on any exception: Ctrl-C itself ends only its current render."""
     with (
         open(log, "w") as file,
         subprocess.Popen(

@@ -1,4 +1,4 @@
-"""docs/inputs.md: what becomes of files that other programs write, as the tests of the readers record it."""
+"""Writes docs/inputs.md: how Velour handles files of other programs, as recorded by the reader tests."""
 
 from __future__ import annotations
 
@@ -46,7 +46,7 @@ def main() -> int:
 
 
 def _recorded(program: Path) -> dict[tuple[str, str], str]:
-    """Verdicts by format and variant; raises CalledProcessError where a test failed."""
+    """Verdicts by format and variant. Raises CalledProcessError if a test fails."""
     with tempfile.TemporaryDirectory() as folder:
         report = Path(folder) / "report.xml"
         subprocess.run(

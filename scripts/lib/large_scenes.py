@@ -1,4 +1,4 @@
-"""Runs inside Blender: builds a large scene; both engines render hardly any of it, several times in turn."""
+"""Runs inside Blender: builds a large scene and renders few pixels of it, with both engines in turn."""
 
 import json
 import sys
@@ -8,7 +8,7 @@ import bpy
 
 
 def grid(triangles):
-    """A bumpy plane of one mesh."""
+    """One mesh: a smooth-shaded plane."""
     side = round((triangles / 2) ** 0.5)
     bpy.ops.mesh.primitive_grid_add(x_subdivisions=side, y_subdivisions=side, size=10)
     bpy.ops.object.shade_smooth()
@@ -16,7 +16,7 @@ def grid(triangles):
 
 
 def instances(count):
-    """Of a small sphere, at the vertices of a plane."""
+    """Instances of a small sphere at the vertices of a plane."""
     side = round(count**0.5)
     bpy.ops.mesh.primitive_uv_sphere_add(segments=32, ring_count=16, radius=0.01)
     sphere = bpy.context.object
@@ -27,7 +27,7 @@ def instances(count):
 
 
 def objects(count):
-    """Each with a mesh of its own."""
+    """Cubes, each with its own mesh."""
     bpy.ops.mesh.primitive_cube_add(size=0.05)
     first = bpy.context.object
     side = round(count**0.5)

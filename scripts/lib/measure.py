@@ -1,4 +1,4 @@
-"""Takes the numbers of docs/measurements.md through the command line, as a user would."""
+"""Measures the numbers of docs/measurements.md through the command line, as a user would."""
 
 from __future__ import annotations
 
@@ -73,7 +73,7 @@ def _main_render(scene: list) -> dict:
 
 
 def _image_error_by_lobes(scene: list, measurement: Path) -> dict[int, dict]:
-    """Model against reference mode with the very same light directions: what is left is the model's error."""
+    """Model against reference mode with the same light directions: the difference is the model's error."""
     small = ["--size", "320x240", "--spp", 512]
     rows = {}
     for lobes in LOBES:

@@ -1,4 +1,4 @@
-"""docs/measurements.md from the numbers of scripts/measure."""
+"""The text of docs/measurements.md from the numbers of scripts/measure."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Pictures of the procedural tiles: each repeated 3 x 3 times, in the light of a sun and a grey sky."""
+"""Renders pictures of the procedural tiles, each repeated 3 x 3 times, under a sun and a gray environment."""
 
 from __future__ import annotations
 
@@ -46,7 +46,7 @@ def picture(tile: Tile, spp: int) -> np.ndarray:
 
 
 def repeat(tile: Tile, scene: Scene) -> None:
-    """REPEATS x REPEATS copies around the origin, and more around them: no edge of the cloth is seen."""
+    """REPEATS x REPEATS copies around the origin, and more around them, so that no edge is visible."""
     mesh, materials = tile.add_to(scene)
     period = tile.info()["period"]
     for x in range(-2, REPEATS + 2):
@@ -57,7 +57,7 @@ def repeat(tile: Tile, scene: Scene) -> None:
 
 
 def _look(scene: Scene, width: float) -> None:
-    """Down at 40 degrees from the vertical, so that about 2 repeats fill the picture."""
+    """Looks down at 40 degrees from the vertical, so that about 2 repeats fill the picture."""
     distance = 2 * width / (2 * math.tan(FIELD_OF_VIEW / 2))
     tilt = math.radians(40)
     eye = (0.0, -distance * math.sin(tilt), distance * math.cos(tilt))
@@ -65,7 +65,7 @@ def _look(scene: Scene, width: float) -> None:
 
 
 def _turned(theta: float, phi: float) -> np.ndarray:
-    """A light that shines from polar angle theta, azimuth phi, degrees."""
+    """Transform of a light that shines from polar angle theta and azimuth phi, in degrees."""
     t, p = math.radians(theta), math.radians(phi)
     back = np.array([math.sin(t) * math.cos(p), math.sin(t) * math.sin(p), math.cos(t)])
     side = np.array([-math.sin(p), math.cos(p), 0.0])

@@ -1,7 +1,7 @@
-"""Runs with the Python that has Mitsuba: renders one scene with each of some numbers of samples.
+"""Runs in the Python that has Mitsuba: renders one scene with several numbers of samples.
 
-The task is the JSON text in the first argument; the report goes to the file in the second. A timed picture
-is the second of its kind: its kernels are compiled.
+The first argument is the task as JSON, the second the file for the report. A timed picture is rendered twice:
+the second time, its kernels are already compiled.
 """
 
 from __future__ import annotations
@@ -35,14 +35,14 @@ def _picture(scene, rays: int, seed: int, out: str, timed: bool) -> float:
 def _timed(scene, rays: int, seed: int):
     start = time.perf_counter()
     picture = mi.render(scene, spp=rays, seed=seed)
-    dr.eval(picture)  # until then the work is only recorded
+    dr.eval(picture)  # before this, the work is only recorded
     dr.sync_thread()
     return picture, time.perf_counter() - start
 
 
 def _scene(task: dict) -> dict:
     turn = mi.ScalarTransform4f
-    # Our y-up meshes stand upright in the z-up world: (x, y, z) -> (x, -z, y).
+    # Rotates our y-up meshes into the z-up world: (x, y, z) -> (x, -z, y).
     upright = turn().rotate([1, 0, 0], 90) if task["up"] == "y" else turn()
     # Mitsuba's map has +y at the top and +z in the middle column, ours +z at the top and +x in the middle.
     world = turn([[0, 0, 1, 0], [1, 0, 0, 0], [0, 1, 0, 0], [0, 0, 0, 1]])

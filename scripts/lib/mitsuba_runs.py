@@ -1,4 +1,4 @@
-"""Pictures by Mitsuba 3, made in a process of the Python that has it, and kept as our own are."""
+"""Renders by Mitsuba 3, made by the Python that has it in a separate process, and kept as our own are."""
 
 from __future__ import annotations
 
@@ -18,18 +18,18 @@ _SAMPLER = "multijitter"
 
 
 class MitsubaError(RuntimeError):
-    """Why it cannot be compared with."""
+    """Why Mitsuba cannot be compared."""
 
 
 class Wish(NamedTuple):
-    rays: int  # camera rays a pixel
-    seed: int  # a timed picture uses up the next one too
+    rays: int  # camera rays per pixel
+    seed: int  # a timed picture also uses the next seed
     timed: bool
 
 
 class Mitsuba:
     def __init__(self, renders: Renders, size: tuple[int, int], directions: int):
-        """`directions`: light directions a camera ray, half from the material, half from the world."""
+        """`directions`: light directions per camera ray, half each from the material and the environment."""
         self._renders, self._size, self._directions = renders, size, directions
         self.variant: str | None = None
 
@@ -38,7 +38,7 @@ class Mitsuba:
         return PYTHON.is_file() and subprocess.run(import_it, capture_output=True).returncode == 0
 
     def choose_variant(self, scene: Scene, rays: int) -> None:
-        """The faster one of those that work here: an LLVM too old for the processor ends the process."""
+        """Chooses the fastest variant that works here: an LLVM too old for the processor ends the process."""
         seconds = {}
         for variant in _VARIANTS:
             try:
@@ -51,7 +51,7 @@ class Mitsuba:
         self.variant = min(seconds, key=seconds.get)
 
     def cost(self, wishes: list[Wish]) -> float:
-        """In light directions."""
+        """Cost of the pictures in light directions, for the progress."""
         rays = sum(wish.rays * (2 if wish.timed else 1) for wish in wishes)
         return float(rays * self._directions * self._size[0] * self._size[1])
 

@@ -1,4 +1,4 @@
-"""Fits, comparisons and measured costs behind docs/models.md, kept under a key of all they depend on."""
+"""Fits, comparisons and measured costs for docs/models.md, kept under a hash of everything they depend on."""
 
 from __future__ import annotations
 
@@ -17,20 +17,20 @@ MODELS = table.MODELS
 PEERS = ("ggx", "principled")
 TOLERANCE = 0.02
 _PROGRAM = ROOT / "build/release/native/bench/evaluation_cost"
-_UNBOUND = 1e-6  # a tolerance that no fit meets, so that the bound asked for is what ends it
+_UNBOUND = 1e-6  # a tolerance that no fit meets, so that only the requested bound stops it
 
 
 @dataclass(frozen=True)
 class Row:
     """One model of one material."""
 
-    report: dict  # of the fit, or of the comparison of a peer
+    report: dict  # report of the fit, or of the comparison with a peer
     cost: dict  # nanoseconds
-    info: dict  # of the model file; empty for peers
+    info: dict  # info of the model file; empty for peers
 
     @property
     def bytes(self) -> int:
-        """Of the file; a peer has none, only parameters."""
+        """Size of the file, or of the parameters of a peer, which has no file."""
         return self.report.get("bytes", self.report["parameter_bytes"])
 
 
@@ -39,13 +39,13 @@ class Result:
     """One material."""
 
     name: str
-    bytes: int  # of the measurement
+    bytes: int  # size of the measurement
     noise: Mapping[str, float | None]
-    cost: dict  # of the measurement itself
+    cost: dict  # evaluation cost of the measurement itself
     rows: dict[str, Row]
-    lobes: dict[str, dict[int, dict]]  # model: bound: report of the fit
-    sizes: dict[str, dict[int, dict]]  # the same by bound of bytes; what no model fits into is left out
-    unturned: dict  # report of the scattered fit whose slices are mixed as they are
+    lobes: dict[str, dict[int, dict]]  # model: maximum number of lobes: report of the fit
+    sizes: dict[str, dict[int, dict]]  # model: maximum bytes: report; without bounds that no model meets
+    unturned: dict  # report of the per-view fit that mixes slices without aligning them
 
 
 class ModelRuns:
@@ -79,7 +79,7 @@ class ModelRuns:
         )
 
     def floor(self) -> dict:
-        """What the calls cost without any arithmetic."""
+        """Cost of the calls alone, without arithmetic."""
         return self._cost("nothing", "floor")
 
     def _model(self, name: str, measurement: Path, model: str) -> Row:
@@ -103,7 +103,7 @@ class ModelRuns:
         return self._kept.stem("fit", self._parameters(measurement, model, bounds)).with_suffix(".velour")
 
     def _fit(self, name: str, measurement: Path, model: str, bounds: dict) -> dict:
-        """Its report; {"refused": True} where no model of the measurement is as small as asked for."""
+        """The report of a fit; {"refused": True} if no model of the measurement is that small."""
         parameters = self._parameters(measurement, model, bounds)
         options = {key: value for key, value in parameters.items() if key != "measurement"}
         out = self._path(measurement, model, bounds)
@@ -132,7 +132,7 @@ class ModelRuns:
         return self._keep(f"unturned fit of {name}", "unturned", {"measurement": measurement, **options}, run)
 
     def _cost(self, name: str, file: Path | str, peer: str = "") -> dict:
-        """Nanoseconds; nothing where the program is not built."""
+        """Nanoseconds; empty if the program is not built."""
         if not _PROGRAM.is_file():
             return {}
 

@@ -1,4 +1,4 @@
-"""Every model of every material: error, size, seconds of the fit and nanoseconds of a direction pair."""
+"""Compares all models of all materials: error, size, fit time, and nanoseconds per direction pair."""
 
 from __future__ import annotations
 

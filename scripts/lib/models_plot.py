@@ -1,4 +1,4 @@
-"""Error against lobes and error against bytes, a panel a material."""
+"""Plots error against lobes and error against bytes, with a panel per material."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from pathlib import Path
 import plots
 from model_runs import PEERS, TOLERANCE, Result
 
-# What a renderer evaluates of them: the lobes of the peers beside those of a fit.
+# Number of lobes that a renderer evaluates for each peer, comparable to those of a fit.
 _PEER_LOBES = {"ggx": 1, "principled": 2}
 
 

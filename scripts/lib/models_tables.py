@@ -35,7 +35,7 @@ def costs(results: list[Result]) -> str:
 
 
 def scattered(results: list[Result]) -> str:
-    """Slices turned onto the mirror direction, beside the same slices mixed as they are."""
+    """Per-view models with slices aligned to the mirror direction, beside models with unaligned slices."""
     rows = []
     for result in results:
         row = result.rows["scattered"]
@@ -54,7 +54,7 @@ def ggx(results: list[Result]) -> str:
 
 
 def principled(results: list[Result]) -> str:
-    """Errors, and the values to set."""
+    """The errors, and the fitted parameters."""
     names = list(results[0].rows["principled"].report["principled"])
     rows, values = [], []
     for result in results:

@@ -1,4 +1,4 @@
-"""How small an error is asked for: the target at each view, and how many models meet it."""
+"""The target of the error at each view, and how many views meet it."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ def meets(angle: str, error: float, noise: Mapping[str, float | None]) -> bool:
 
 
 def met(errors: Mapping[str, float | None], noise: Mapping[str, float | None]) -> int:
-    """How many views meet their target."""
+    """Number of views that meet their target."""
     return sum(meets(angle, error, noise) for angle, error in errors.items() if error is not None)
 
 

@@ -1,4 +1,4 @@
-"""docs/models.md, its CSV, and the generated tables of docs/fit.md, docs/ggx.md and docs/principled.md."""
+"""Writes docs/models.md, its CSV, and generated tables of docs/fit.md, docs/ggx.md, docs/principled.md."""
 
 from __future__ import annotations
 
@@ -15,12 +15,12 @@ from table_csv import csv_text
 from velour.core import files
 
 _ANGLES = models_tables.ANGLES
-# What the parametric model is asked for, in the columns of the summary.
+# Targets of the parametric model, in the columns of the summary.
 TARGETS = ["*target*", "", "all", "", "2700", "2.00", "60", "120", "30", "60"]
 
 
 def write(pages: Path, output: Path, results: list[Result], floor: dict, conditions: dict) -> None:
-    """The pages of `pages` with new parts, in `output`."""
+    """Copies the pages of the folder `pages` with new generated parts to `output`, and writes the CSV."""
     parts = {
         "models": _models(results, floor, conditions),
         "fit": f"{provenance.sentence(conditions)}\n\n{models_tables.scattered(results)}",

@@ -1,4 +1,4 @@
-"""The faults of scripts/mutants: a patch each, with a header of lines "Fault:", "Reason:" and "Nearest:"."""
+"""The faults of scripts/mutants: patches, each with a header of lines "Fault:", "Reason:" and "Nearest:"."""
 
 from __future__ import annotations
 
@@ -13,23 +13,23 @@ from mutant_tests import GROUPS, Entry, UnknownTestError, entries, run_of
 
 LEAST_FAULTS = 40
 _KEYS = ("Fault", "Reason", "Nearest")
-_CODE = {"native/src": (".cpp", ".h"), "addon/velour": (".py",)}  # each of their folders needs a fault
+_CODE = {"native/src": (".cpp", ".h"), "addon/velour": (".py",)}  # every folder with such files needs a fault
 _CHANGED = re.compile(r"^\+\+\+ b/(\S+)$", re.MULTILINE)
 
 
 class FaultError(ValueError):
-    """One sentence: what is wrong with the file of a fault."""
+    """Its message says in one sentence what is wrong with the file of a fault."""
 
 
 @dataclass(frozen=True)
 class Fault:
     name: str
-    planted: str  # what is wrong then
-    reason: str  # why a user would suffer
+    planted: str  # description of the fault
+    reason: str  # effect on a user
     nearest: tuple[Entry, ...]  # in the order to try them
     patch: Path
-    files: tuple[str, ...]  # that the patch changes, relative to the root
-    digest: str  # of the patch
+    files: tuple[str, ...]  # files that the patch changes, relative to the root
+    digest: str  # hash of the patch
 
     @property
     def folder(self) -> str:
@@ -37,7 +37,7 @@ class Fault:
 
     @property
     def groups(self) -> tuple[str, ...]:
-        """Those of GROUPS that may see it."""
+        """The GROUPS that may detect it."""
         return GROUPS if self.files[0].startswith("native/") else GROUPS[1:]
 
 
@@ -74,7 +74,7 @@ def read_all(folder: Path) -> list[Fault]:
 
 
 def problems(root: Path, folder: Path) -> Iterator[str]:
-    """Why scripts/mutants could not plant its faults, or not judge them: a sentence each."""
+    """A sentence for each reason why scripts/mutants could not plant or judge its faults."""
     faults = []
     for path in sorted(folder.glob("*.patch")):
         try:

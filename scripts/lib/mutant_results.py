@@ -1,4 +1,4 @@
-"""What a campaign of scripts/mutants has found so far: build/mutants/results.json."""
+"""Results of a campaign of scripts/mutants so far: build/mutants/results.json."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from mutant_tests import GROUPS, LONG_SUITE, Outcome
 
 SEEN = "seen"
 UNSEEN = "not seen by the nearest tests"
-SHORT_MISSED = "not seen by the short suite"  # the long one is still to come
+SHORT_MISSED = "not seen by the short suite"  # the long suite has yet to run
 LONG = "only the long suite"
 MISSED = "missed"
 BROKEN = "does not build"
@@ -21,7 +21,7 @@ UNPLANTED = "does not apply"
 
 
 class Results:
-    """Kept by the commit, and each fault by its patch, too. Whatever is of another one does not count."""
+    """Results count only for their commit, and those of a fault only for its patch."""
 
     def __init__(self, path: Path, commit: str):
         self._path, self.commit = path, commit
@@ -40,7 +40,7 @@ class Results:
         return found["state"] if found else None
 
     def keep(self, fault: Fault, state: str, seconds: float, by: str = "", case: str = "") -> None:
-        """`by`: the tests that saw it, `case`: the first of them that failed."""
+        """`by`: the tests that detected it, `case`: the first of them that failed."""
         before = self.of(fault) or {"seconds": 0.0}
         self.faults[fault.name] = {
             "digest": fault.digest,
@@ -53,21 +53,21 @@ class Results:
         self._write()
 
     def keep_clean(self, tests: str, found: Outcome) -> None:
-        """What `tests` found without a fault."""
+        """Keeps the outcome of `tests` without a fault."""
         self.clean[tests] = {"passed": found.passed, "failed": list(found.failed)}
         self._write()
 
     def is_usable(self, tests: str) -> bool:
-        """Whether a failure proves anything: a file has to pass without a fault, a group only in part."""
+        """Whether a failure is evidence: without a fault, a file must pass, and a group must pass in part."""
         found = self.clean[tests]
         return found["passed"] > 0 and (not found["failed"] or tests in (*GROUPS, LONG_SUITE))
 
     def new_failures(self, tests: str, found: Outcome) -> list[str]:
-        """The cases that fail with a fault, and not without it."""
+        """The cases that fail with a fault and pass without it."""
         return [case for case in found.failed if case not in self.clean[tests]["failed"]]
 
     def unusable(self) -> list[str]:
-        """A line about all tests that prove nothing."""
+        """A line for each of the tests that prove nothing."""
         return [
             f"not usable: {tests}: {', '.join(found['failed']) or 'no case'} "
             f"{'fails without a fault, too' if found['failed'] else 'runs here'}"
@@ -76,7 +76,7 @@ class Results:
         ]
 
     def counts(self, faults: list[Fault]) -> str:
-        """The line that a campaign ends with."""
+        """The last line of a campaign."""
         states = Counter(self.state(fault) or "not tried" for fault in faults)
         return ", ".join(f"{count} {state}" for state, count in states.most_common())
 
@@ -89,7 +89,7 @@ class Results:
 
 
 def _read(path: Path) -> dict:
-    """Nothing where no campaign has begun, or where the file is damaged."""
+    """The kept results; empty if no campaign has begun or the file is damaged."""
     try:
         return json.loads(path.read_text(encoding="utf-8"))
     except (OSError, ValueError):
@@ -97,7 +97,7 @@ def _read(path: Path) -> dict:
 
 
 def table(results: Results, faults: list[Fault]) -> str:
-    """Markdown: a row a fault, those of an older commit too, and which commits they are of."""
+    """Markdown: a row per fault, including results of older commits, and a list of the commits."""
     rows = [_row(fault, results.faults.get(fault.name)) for fault in faults]
     commits = sorted({found["commit"][:8] for found in results.faults.values()})
     header = ["Fault", "Folder", "What is wrong then", "Seen by", "Seconds"]

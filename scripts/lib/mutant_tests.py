@@ -1,7 +1,7 @@
-"""How the tests that a fault names are run, and which of them failed.
+"""Runs the tests that a fault names, and finds which of them failed.
 
-KINDS is the one place that knows how a test is run. A native test is named by its source file, so that
-programs may be split and merged without a change to any fault.
+Only KINDS knows how a test is run. A native test is named by its source file, so that programs may be split
+and merged without a change to any fault.
 """
 
 from __future__ import annotations
@@ -14,26 +14,26 @@ from typing import NamedTuple
 from checks import cases
 
 PRESET = "release"
-GROUPS = ("native", "python", "blender", "scenes")  # of scripts/test
+GROUPS = ("native", "python", "blender", "scenes")  # groups of scripts/test
 LONG_SUITE = "--all"  # an option of scripts/test
 
 _BUILD = f"build/{PRESET}"
-_REPORT = "build/report.xml"  # of the last single run
+_REPORT = "build/report.xml"  # report of the last single run
 _GROUP_REPORTS = f"{_BUILD}/tests"
-_SECONDS, _GROUP_SECONDS, _LONG_SECONDS = 600, 7200, 6 * 3600  # only a test that hangs takes longer
+_SECONDS, _GROUP_SECONDS, _LONG_SECONDS = 600, 7200, 6 * 3600  # only hanging tests take longer
 _PROGRAM = re.compile(r"velour_test\(\s*(\w+)\s+FILES\s+(.*?)\s(?:LINK|LABEL)\b", re.DOTALL)
 _SUITE = re.compile(r"^\s*(?:TYPED_)?TEST(?:_[FP])?\(\s*(\w+)\s*,", re.MULTILINE)
-_BEGUN = re.compile(r"^\[ RUN      \] (\S+)", re.MULTILINE)  # by GoogleTest
+_BEGUN = re.compile(r"^\[ RUN      \] (\S+)", re.MULTILINE)  # GoogleTest's start of a case
 
 
 class UnknownTestError(ValueError):
-    """One sentence: which test is not there."""
+    """Its message says in one sentence which test does not exist."""
 
 
 class Entry(NamedTuple):
-    """A test that a fault names: all cases of a file or of a scene."""
+    """A test that a fault names: all cases of a file or scene."""
 
-    kind: str  # of KINDS
+    kind: str  # a key of KINDS
     what: str
 
     def __str__(self) -> str:
@@ -43,11 +43,11 @@ class Entry(NamedTuple):
 class Run(NamedTuple):
     """How tests are run in a tree; paths are relative to it."""
 
-    targets: tuple[str, ...]  # to be built before; none: the command builds
+    targets: tuple[str, ...]  # targets to build first; empty: the command builds
     command: tuple[str, ...]
     report: str  # a JUnit report or a folder of them
-    seconds: float  # at most
-    is_judged_by_status: bool = True  # where no case failed and the command did
+    seconds: float  # time limit
+    is_judged_by_status: bool = True  # counts a failed command without a failed case as a failure
 
 
 class Outcome(NamedTuple):
@@ -56,7 +56,7 @@ class Outcome(NamedTuple):
 
 
 def entries(line: str) -> list[Entry]:
-    """Entries of "KIND:WHAT,WHAT"; raises UnknownTestError."""
+    """Parses "KIND:WHAT,WHAT". Raises UnknownTestError."""
     kind, _, names = line.strip().partition(":")
     if kind not in KINDS:
         raise UnknownTestError(f"{line}: there are no tests of the kind {kind!r}, only {', '.join(KINDS)}")
@@ -64,12 +64,12 @@ def entries(line: str) -> list[Entry]:
 
 
 def run_of(root: Path, entry: Entry) -> Run:
-    """How an entry is run; raises UnknownTestError where `root` has no such test."""
+    """How an entry is run. Raises UnknownTestError if `root` has no such test."""
     return KINDS[entry.kind](root, entry.what)
 
 
 def run_of_group(group: str) -> Run:
-    """How one of GROUPS, or LONG_SUITE, is run. The latter also fails for the style of a fault."""
+    """How one of GROUPS, or LONG_SUITE, is run. The latter also fails because of a fault's code style."""
     is_long = group == LONG_SUITE
     seconds = _LONG_SECONDS if is_long else _GROUP_SECONDS
     return Run((), ("scripts/test", group), _GROUP_REPORTS, seconds, is_judged_by_status=not is_long)
@@ -105,7 +105,7 @@ def _program_of(root: Path, source: Path) -> tuple[str, Path]:
 
 
 def _filter_of(source: Path) -> str:
-    """All cases of a file; typed suites are called SUITE/0, suites with parameters PREFIX/SUITE."""
+    """The filter for all cases of a file; typed suites are named SUITE/0, parameterized ones PREFIX/SUITE."""
     suites = dict.fromkeys(_SUITE.findall(source.read_text(encoding="utf-8")))
     if not suites:
         raise UnknownTestError(f"native: {source.name} has no tests")
@@ -146,7 +146,7 @@ KINDS: dict[str, Callable[[Path, str], Run]] = {
 
 
 def outcome(root: Path, run: Run, status: int | None, log: Path) -> Outcome:
-    """What a run found. `status`: None where it did not end in time."""
+    """Outcome of a run. `status`: None if it did not end in time."""
     report = root / run.report
     paths = sorted(report.rglob("*.xml")) if report.is_dir() else [report]
     found = [case for path in paths for case in cases.of_report(path)]
@@ -158,6 +158,6 @@ def outcome(root: Path, run: Run, status: int | None, log: Path) -> Outcome:
 
 
 def _culprit(said: str) -> str:
-    """The case that ran last where a program died before it could report."""
+    """The case that ran last, for a program that died before it could report."""
     begun = _BEGUN.findall(said)
     return begun[-1] if begun else "the run as a whole"

@@ -1,4 +1,4 @@
-"""A copy of a commit with a build folder of its own, in which one fault at a time is planted."""
+"""A copy of a commit with its own build folder, in which one fault at a time is planted."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ _PATIENCE_SECONDS = 20
 
 
 class TreeError(RuntimeError):
-    """One sentence: why the copy cannot be used."""
+    """Its message says in one sentence why the copy cannot be used."""
 
 
 class BuildError(RuntimeError):
@@ -27,13 +27,13 @@ class BuildError(RuntimeError):
 
 
 class Tree:
-    """`root`: the repository; `folder`: where its copy lies."""
+    """`root`: the repository; `folder`: its copy."""
 
     def __init__(self, root: Path, folder: Path):
         self.root, self.folder = root, folder
 
     def prepare(self, commit: str) -> None:
-        """Brings the copy to `commit`. It reads the objects of the repository, and adds nothing to it."""
+        """Checks out `commit` in the copy, which shares the repository's objects and adds nothing to it."""
         if not (self.folder / ".git").is_dir():
             shutil.rmtree(self.folder, ignore_errors=True)
             _git(self.root, "clone", "--quiet", "--shared", "--no-checkout", str(self.root), str(self.folder))
@@ -42,7 +42,7 @@ class Tree:
         self._share_tools()
 
     def _share_tools(self) -> None:
-        """What scripts/setup has from PyPI is not downloaded once more."""
+        """Links the tools that scripts/setup installed from PyPI, so that they are not downloaded again."""
         tools, shared = self.folder / "build/tools", self.root / "build/tools"
         tools.parent.mkdir(exist_ok=True)
         if shared.is_dir() and not tools.exists():
@@ -55,7 +55,7 @@ class Tree:
 
     @contextlib.contextmanager
     def planted(self, patch: Path) -> Iterator[None]:
-        """Meanwhile the copy has the fault."""
+        """Within this context, the copy has the fault."""
         try:
             _git(self.folder, "apply", str(patch))
             yield
@@ -63,7 +63,7 @@ class Tree:
             self.restore()
 
     def restore(self) -> None:
-        """Takes back whatever is planted."""
+        """Reverts the planted fault. Raises TreeError if the copy is not clean then."""
         _git(self.folder, "checkout", "--quiet", "--", ".")
         left = _git(self.folder, "status", "--porcelain")
         if left:
@@ -76,11 +76,11 @@ class Tree:
             raise BuildError(f"{' '.join(command)} failed; {log} has what it said.")
 
     def run(self, run: Run, log: Path, fault: str = "") -> Outcome:
-        """Builds what the run needs and runs it; all output is added to `log`. Raises BuildError."""
+        """Builds the targets of the run and runs it; appends all output to `log`. Raises BuildError."""
         if run.targets:
             self.build(run.targets, log)
         report, own_log = self.folder / run.report, log.with_suffix(".last")
-        _remove(report)  # of a run before
+        _remove(report)  # report of an earlier run
         report.parent.mkdir(parents=True, exist_ok=True)
         own_log.unlink(missing_ok=True)
         status = _execute(run.command, self.folder, self._environment(fault), own_log, run.seconds)
@@ -94,7 +94,7 @@ class Tree:
         found = {**os.environ, "VELOUR_STAGE": str(self.folder / f"build/{PRESET}/blender")}
         data = self.root.parent / "shared/data"
         if "VELOUR_DATA" not in found and data.is_dir():
-            found["VELOUR_DATA"] = str(data)  # beside the repository, and not beside its copy
+            found["VELOUR_DATA"] = str(data)  # is beside the repository, but not beside its copy
         return {**found, PLANTED: fault} if fault else found
 
 
@@ -119,7 +119,7 @@ def _remove(path: Path) -> None:
 def _execute(
     command: tuple[str, ...], folder: Path, variables: dict[str, str], log: Path, seconds: float
 ) -> int | None:
-    """The exit status; None after `seconds`. Nothing that was started outlives this call."""
+    """Returns the exit status, or None after `seconds`. No started process outlives this call."""
     log.parent.mkdir(parents=True, exist_ok=True)
     with log.open("ab") as output:
         process = subprocess.Popen(
@@ -140,11 +140,11 @@ def _execute(
 
 
 def _end(process: subprocess.Popen) -> None:
-    """blend-tests/run ends its Blenders at Ctrl-C, and could not if it were killed at once."""
+    """Interrupts, then kills: blend-tests/run ends its Blenders at Ctrl-C, but cannot if killed at once."""
     with contextlib.suppress(ProcessLookupError, subprocess.TimeoutExpired):
         if process.poll() is None:
             os.killpg(process.pid, signal.SIGINT)
             process.wait(_PATIENCE_SECONDS)
     with contextlib.suppress(ProcessLookupError):
-        os.killpg(process.pid, signal.SIGKILL)  # whatever of its children is left
+        os.killpg(process.pid, signal.SIGKILL)  # its remaining children
     process.wait()

@@ -1,4 +1,4 @@
-"""scripts/mutants: plants faults, and says which tests see them."""
+"""scripts/mutants: plants faults, and reports which tests detect them."""
 
 from __future__ import annotations
 
@@ -32,23 +32,23 @@ DONE, FAILED, UNFINISHED, INTERRUPTED = 0, 1, 3, 130  # exit statuses
 
 
 class TimeOverError(Exception):
-    """Nothing further is to be started."""
+    """The time is over: no further fault is started."""
 
 
 class MutantsError(RuntimeError):
-    """One sentence: why nothing can be done."""
+    """Its message says in one sentence why nothing can be done."""
 
 
 class Pass(NamedTuple):
-    """Tests that faults meet, each fault those of its own."""
+    """One stage of the tests; each fault has its own."""
 
-    runs: Callable[[Fault], dict[str, Run]]  # in the order to try, by what they are called
-    seen: str  # the state of a fault that they see
+    runs: Callable[[Fault], dict[str, Run]]  # by name, in the order to try
+    seen: str  # state of a fault that they detect
     unseen: str
 
 
 class Campaign:
-    """All faults meet their nearest tests first. Those that pass meet the groups, then the long suite."""
+    """Tests all faults with their nearest tests, those not detected with the groups, then the long suite."""
 
     def __init__(self, tree: Tree, results: Results, faults: list[Fault], minutes: float):
         self._tree, self._results, self._faults = tree, results, faults
@@ -68,7 +68,7 @@ class Campaign:
         return {str(entry): mutant_tests.run_of(self._tree.folder, entry) for entry in fault.nearest}
 
     def _pass(self, state: str | None, tests: Pass) -> None:
-        """All faults in that state; None: those that are new."""
+        """Runs a stage for all faults in `state`; None: new faults."""
         faults = [fault for fault in self._faults if self._results.state(fault) == state]
         runs = {name: run for fault in faults for name, run in tests.runs(fault).items()}
         self._know_clean({name: run for name, run in runs.items() if name not in self._results.clean})
@@ -80,7 +80,7 @@ class Campaign:
             self._say(f"fault {number} of {len(faults)}: {words}; about {left / 60:.0f} min left")
 
     def _know_clean(self, runs: dict[str, Run]) -> None:
-        """Has these tests run without a fault: one that fails then is no evidence."""
+        """Runs these tests without a fault: a test that fails then is no evidence."""
         for number, (name, run) in enumerate(runs.items(), 1):
             self._check_time()
             found = self._tree.run(run, self._logs / "clean.txt")
@@ -89,7 +89,7 @@ class Campaign:
             self._say(f"without a fault, {number} of {len(runs)}: {name}: {words}")
 
     def _judge(self, fault: Fault, tests: Pass) -> str:
-        """Plants a fault, keeps what became of it, and says so."""
+        """Plants a fault, keeps its outcome, and returns a message."""
         self._check_time()
         begin = time.monotonic()
         state, by, case = self._met(fault, tests)
@@ -98,7 +98,7 @@ class Campaign:
         return f"{fault.name}: {state}{f' by {by}: {case}' if by else ''}, {seconds:.0f} s"
 
     def _met(self, fault: Fault, tests: Pass) -> tuple[str, str, str]:
-        """The state of the fault, the tests that saw it, and the case of theirs that did."""
+        """The state of the fault, and the tests and the case that detected it."""
         log = self._logs / f"{fault.name}.txt"
         if not self._tree.takes(fault.patch):
             return mutant_results.UNPLANTED, "", ""
@@ -184,7 +184,7 @@ def _check() -> int:
 
 
 def _chosen(names: list[str]) -> list[Fault]:
-    """Those of these names; all where there is none."""
+    """The faults with these names; all if there are none."""
     faults = {fault.name: fault for fault in mutant_faults.read_all(FAULTS)}
     for name in names:
         if name not in faults:
@@ -194,7 +194,7 @@ def _chosen(names: list[str]) -> list[Fault]:
 
 @contextlib.contextmanager
 def _alone() -> Iterator[None]:
-    """Two campaigns would plant their faults in one tree."""
+    """Excludes other campaigns, which would plant their faults in the same tree."""
     WORK.mkdir(parents=True, exist_ok=True)
     with (WORK / "lock").open("w") as lock:
         try:

@@ -1,4 +1,4 @@
-"""scripts/normal_maps: approximations in Cycles, with and without normal maps, beside Velour's pictures."""
+"""scripts/normal_maps: approximations in Cycles, with and without normal maps, against Velour's renders."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from velour_cli import ROOT, velour_to_file
 FOLDER = ROOT / "build/normal_maps"
 DATA = ROOT / "blend-tests/scenes/data"
 BTFS = ("weave", "gravel", "net")
-# Of one BRDF and an outline: the tile, and whose surface it has.
+# Shells with one BRDF and a VOTF: the tile, and the model of its surface.
 SHELLS = {
     "weave of paint": ("weave", "paint"),
     "net of paint": ("net", "paint"),
@@ -75,7 +75,7 @@ def _row(name: str, model: Path) -> list:
 
 
 def _pair(errors: list[float]) -> str:
-    """Without a map, and with one."""
+    """The errors without and with a map."""
     return f"{errors[0]:.2f}, {errors[1]:.2f}" if max(errors) > 0 else "-"
 
 

@@ -1,4 +1,4 @@
-"""Runs inside Blender: one model's approximation in Cycles, without and with normal map, beside Velour's."""
+"""Runs inside Blender: a model's approximation in Cycles, without and with normal map, against Velour."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ from velour.native import Model
 from velour.operators import approximation_group
 
 _SIZE, _SAMPLES = 192, 16
-_ANGLES, _AZIMUTHS = (30, 60, 75), (0.4, 2.5)  # of the sun: degrees from the normal; radians
+_ANGLES, _AZIMUTHS = (30, 60, 75), (0.4, 2.5)  # sun: degrees from the normal; radians
 
 
 def main(task: dict) -> None:
@@ -34,7 +34,7 @@ def main(task: dict) -> None:
 
 
 def _scene(model: str):
-    """Two by two tiles, which fill the picture, under a sun alone."""
+    """Two by two tiles, which fill the picture, lit only by a sun."""
     bpy.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)
     scenes.use_engine(samples=_SAMPLES, size=_SIZE)
     scenes.set_world(strength=0.0)
@@ -52,7 +52,7 @@ def _scene(model: str):
 
 
 def _approximate(material, path: str) -> dict:
-    """Puts a normal map in any case; what its own judges say of it, and how long it took."""
+    """Creates the approximation, always with a normal map. Returns its own error estimates and seconds."""
     decided, normal_map._LEAST_GAIN = normal_map._LEAST_GAIN, -math.inf
     steps = Steps(Model.load(path), approximation_group.has_layers())
     seconds = []
@@ -72,7 +72,7 @@ def _approximate(material, path: str) -> dict:
 
 
 def _unlinked(group) -> list:
-    """The sockets that normals go to, and where they come from."""
+    """Unlinks the normal maps; returns pairs of their output sockets and the inputs they were linked to."""
     links = [link for link in group.links if link.from_node.bl_idname == "ShaderNodeNormalMap"]
     sockets = [(link.from_socket, link.to_socket) for link in links]
     for link in links:
@@ -81,7 +81,7 @@ def _unlinked(group) -> list:
 
 
 def _errors(material, sun, sockets: list, angle: float, folder: Path) -> list[float]:
-    """Relative root mean square, without and with."""
+    """Relative root mean square errors without and with the normal map."""
     group, squares = approximation_node(material).node_tree, np.zeros(3)
     for azimuth in _AZIMUTHS:
         sun.rotation_euler = 0, angle, azimuth

@@ -1,4 +1,4 @@
-"""scripts/package, once the library is staged: its libraries, their licences, and the zip of all."""
+"""scripts/package, after staging: bundles the libraries with their licenses, and makes the zip."""
 
 from __future__ import annotations
 
@@ -15,8 +15,8 @@ from velour.native import library as native
 
 ROOT = Path(__file__).resolve().parents[2]
 BUILT = ROOT / "build/release"
-STAGED = ROOT / "build/package/blender/addons/velour"  # as BLENDER_USER_SCRIPTS, too
-# Libraries that the system provides, in the versions below or newer (docs/engine/packaging.md).
+STAGED = ROOT / "build/package/blender/addons/velour"  # build/package/blender serves as BLENDER_USER_SCRIPTS
+# Provided by the system that runs Blender, in the version we link or newer (docs/engine/packaging.md).
 _OF_THE_SYSTEM = (
     "ld-linux",
     "libc.so",
@@ -28,7 +28,7 @@ _OF_THE_SYSTEM = (
     "libgcc_s.so",
 )
 _DOS_FOLDER = 0x10
-_OLDEST_DATE = (1980, 1, 1, 0, 0, 0)  # zips know none before; the same sources make the same bytes
+_OLDEST_DATE = (1980, 1, 1, 0, 0, 0)  # the earliest date of zips, for all files: builds are reproducible
 
 
 def main() -> int:
@@ -56,7 +56,7 @@ def main() -> int:
 
 
 def bundled(library: Path) -> list[Path]:
-    """Files of all libraries that `library` needs, directly or not, and that no system is sure to have."""
+    """Files of all libraries that `library` needs, directly or not, and that a system may lack."""
     known = _system_libraries()
     embree = Path(native.system()["embree"]["path"])  # opened at run time, so no header names it
     found: dict[str, Path] = {embree.name: embree}
@@ -86,7 +86,7 @@ def _system_libraries() -> dict[str, Path]:
 
 
 def oldest(file: Path) -> dict[str, tuple[int, ...]]:
-    """The newest version of each kind of symbols that the file asks of the system."""
+    """The newest version of each kind of symbol that the file requires of the system."""
     text = subprocess.run(["readelf", "-V", file], check=True, capture_output=True, text=True).stdout
     found: dict[str, tuple[int, ...]] = {"GLIBC": (0,), "GLIBCXX": (0,)}
     for kind, version in re.findall(r"Name: (GLIBC|GLIBCXX)_([\d.]+)", text):
@@ -99,7 +99,7 @@ def _dotted(version: tuple[int, ...]) -> str:
 
 
 def _write_licences(sources: list[Path], to: Path) -> None:
-    """What the Debian packages of the libraries say of their copyright."""
+    """Writes the copyright notices of the libraries' Debian packages."""
     packages: dict[str, list[str]] = {}
     for source in sources:
         answer = subprocess.run(["dpkg", "-S", source.resolve()], capture_output=True, text=True).stdout
@@ -113,10 +113,10 @@ def _write_licences(sources: list[Path], to: Path) -> None:
 
 
 def write_zip(path: Path, folder: Path) -> None:
-    """One folder in the zip, as add-ons of all versions of Blender have it.
+    """Writes a zip with one top-level folder, as all versions of Blender expect of add-ons.
 
-    It is an entry, too: without one Blender's *Install* writes over the files of an older Velour in place of
-    removing them, which breaks the library under the Blender that has it mapped.
+    The folder has its own entry: without it, Blender's *Install* overwrites the files of an older Velour
+    instead of removing them, which breaks the library in a Blender that has mapped it.
     """
     partial = path.with_suffix(".partial")
     with zipfile.ZipFile(partial, "w", zipfile.ZIP_DEFLATED, compresslevel=9) as out:

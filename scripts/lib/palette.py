@@ -1,4 +1,4 @@
-"""Sheets of renders as small files: noise is most of them, and needs few colours."""
+"""Saves sheets of renders as small files: most of their content is noise, which needs few colors."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ def save(figure, path: Path) -> None:
 
 
 def shrink(path: Path) -> None:
-    """With 256 colours, a third of the bytes. Not dithered: that would be noise of its own."""
+    """Reduces a picture to 256 colors, a third of the bytes, without dithering, which would add noise."""
     with Image.open(path) as drawn:
         picture = drawn.convert("RGB")
     picture.quantize(256, kmeans=1, dither=Image.Dither.NONE).save(path, optimize=True)

@@ -1,4 +1,4 @@
-"""Cycles with the closest Principled material: how many camera rays a second it gets through."""
+"""Throughput of Cycles with the closest Principled material, in camera rays per second."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from scenes import BUNNY_CAMERA
 
 @dataclass(frozen=True)
 class Throughput:
-    """Camera rays a second, each with one direction of the material and one of the light."""
+    """Camera rays per second, each with one direction of the material and one of the light."""
 
     version: str
     cycles: float
@@ -22,7 +22,7 @@ class Throughput:
 
 
 def throughput(scene: ChartScene, renders: Renders, extent) -> Throughput | str:
-    """On the bunny; or a sentence that says why there is none."""
+    """Measures the throughput on the bunny; returns a sentence if that is impossible."""
     framed = replace(scene.scene, camera=BUNNY_CAMERA)
     fewer, more = extent.cycles_rays
     try:
@@ -31,7 +31,7 @@ def throughput(scene: ChartScene, renders: Renders, extent) -> Throughput | str:
         return f"Cycles is left out: {error}"
     ours = renders.render(framed, 2 * more, split=2, strategy="mis").report
     width, height = renders.settings.size
-    # The difference of two renders leaves out what each of them does before its first sample.
+    # The difference of two renders excludes the work of each before its first sample.
     seconds = report["seconds"][1] - report["seconds"][0]
     if seconds <= 0:
         return (

@@ -1,4 +1,4 @@
-"""Mitsuba 3 and its `measured` material against ours: the same mesh, camera, environment and measurement."""
+"""Compares Mitsuba 3's `measured` material with ours: the same mesh, camera, environment and measurement."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from scenes import BUNNY_CAMERA, Scene
 
 MATERIALS = ("satin_rosaline_rgb", "paper_white_rgb", "cc_iris_purple_gem_rgb")
 STRATEGIES = ("mis", "product")
-DIRECTIONS = 8  # light directions a camera ray, on both sides
+DIRECTIONS = 8  # light directions per camera ray, in both programs
 WORLD = "venice_sunset"
 _REFERENCES = 4
 _CAMERAS = {"bunny": BUNNY_CAMERA, "sphere": "0,-4,0,0,0,0,40"}
@@ -27,11 +27,11 @@ _CAMERAS = {"bunny": BUNNY_CAMERA, "sphere": "0,-4,0,0,0,0,40"}
 
 @dataclass(frozen=True)
 class Difference:
-    """Of both programs' converged pictures of the sphere, in pixels that show it."""
+    """Difference of both programs' converged pictures of the sphere, over the pixels that show it."""
 
-    means: float  # quotient, Mitsuba's over ours
-    relative: float  # sum of the absolute differences over the sum
-    noise: float  # what that would be if only the noise of both differed
+    means: float  # ratio of the means, Mitsuba's over ours
+    relative: float  # sum of the absolute differences over the sum of our picture
+    noise: float  # the value of `relative` that the noise of both alone would cause
 
 
 @dataclass(frozen=True)
@@ -39,7 +39,7 @@ class Comparison:
     material: str
     version: str
     variant: str
-    points: dict[str, list[Point]]  # "mitsuba" and our strategies
+    points: dict[str, list[Point]]  # for "mitsuba" and our strategies
     sphere: Difference
 
     @property
@@ -61,7 +61,7 @@ class Comparison:
 
 
 def compare(data: Path, renders: Renders, extent) -> list[Comparison] | str:
-    """One comparison a material, or a sentence that says why there is none."""
+    """One comparison per material, or a sentence if that is impossible."""
     mitsuba = Mitsuba(renders, extent.peer_size, DIRECTIONS)
     if not mitsuba.installed():
         return "Mitsuba is left out: it is not installed and could not be had from PyPI (build/peers.log)."
@@ -93,7 +93,7 @@ def _converged(extent) -> list[Wish]:
 
 
 def _scene(name: str, data: Path, material: str, renders: Renders) -> Scene:
-    """Ours in reference mode: the raw measurement is evaluated."""
+    """The scene in reference mode: Velour evaluates the raw measurement."""
     measurement = data / f"brdf/{material}.bsdf"
     model, _ = renders.fit(measurement)
     mesh, up = data_files.mesh(data, "bunny"), "y"
@@ -140,7 +140,7 @@ def _their_reference(scene: Scene, mitsuba: Mitsuba, extent) -> Batches:
 
 def _difference(ours: Batches, theirs: Batches, where: np.ndarray) -> Difference:
     a, b = (batches.mean()[where].astype(np.float64) for batches in (ours, theirs))
-    # The mean of |x| of a normal x is sqrt(2 / pi) of its standard deviation.
+    # For a normal x, the mean of |x| is sqrt(2 / pi) times its standard deviation.
     deviation = np.hypot(ours.standard_error(), theirs.standard_error())[where]
     noise = np.sqrt(2 / np.pi) * deviation.sum() / a.sum()
     return Difference(float(b.sum() / a.sum()), float(np.abs(a - b).sum() / a.sum()), float(noise))

@@ -1,4 +1,4 @@
-"""What a tolerance of the fit looks like: FLIP of pictures of models against those of their measurements."""
+"""What a tolerance of the fit looks like: FLIP between renders of models and of their measurements."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Pictures of models at several tolerances beside those of their measurements: how different they look."""
+"""Renders models at several tolerances and their measurements, and measures how different they look."""
 
 from __future__ import annotations
 
@@ -15,14 +15,14 @@ from renders import Renders
 from scenes import Scene
 
 STRATEGY = {"strategy": "product"}
-# What the mean and the 99th percentile are to stay below, as differences of CIELAB on even grey: 1 is what
-# observers do not notice [MT11], 2.3 a just noticeable difference [MVO94].
+# Bounds of the mean and of the 99th percentile, as CIELAB differences on uniform gray: observers do not
+# notice 1 [MT11]; 2.3 is a just noticeable difference [MVO94].
 THRESHOLDS = (1.0, 2.3)
 
 
 @dataclass(frozen=True)
 class Order:
-    """What a fit is asked for."""
+    """Options of a fit."""
 
     tolerance: float
     lobes: int = 16  # at most
@@ -40,7 +40,7 @@ class Extent:
 
     size: tuple[int, int] = (200, 150)
     spp: int = 96
-    # A fit with a loose tolerance is often far better than that; few lobes show what large errors look like.
+    # Fits with a loose tolerance are often far better than that; few lobes show what large errors look like.
     orders: tuple[Order, ...] = (
         *(Order(t) for t in (0.005, 0.01, 0.02, 0.04, 0.08, 0.16)),
         Order(0.02, lobes=2),
@@ -73,8 +73,8 @@ class Row:
     scene: str
     order: Order
     fit: dict  # its report
-    model: Seen  # against the measurement, both with the model's draws
-    noise: Seen | None  # of the measurement against itself with another seed; at the default order
+    model: Seen  # model against measurement, both with directions sampled from the model
+    noise: Seen | None  # measurement against itself with another seed; only for the default order
 
 
 class Study:
@@ -116,7 +116,7 @@ class Study:
         return self._renders.render(scene, self._extent.spp, seed=seed, **STRATEGY).pixels
 
     def _where(self, mesh: str, scene: Scene) -> np.ndarray:
-        """Whether a pixel shows the object depends on nothing but the mesh."""
+        """The pixels that show the object; they depend only on the mesh."""
         if mesh not in self._silhouettes:
             self._silhouettes[mesh] = silhouette.of(scene, self._renders, self._extent.size)
         return self._silhouettes[mesh]

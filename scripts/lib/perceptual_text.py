@@ -1,4 +1,4 @@
-"""docs/perceptual.md, its csv and its chart from the numbers of scripts/perceptual."""
+"""Writes docs/perceptual.md, its CSV and its chart from the numbers of scripts/perceptual."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Takes the numbers of docs/performance.md: renders through the command line, kernels by the benchmarks."""
+"""Measures the numbers of docs/performance.md: renders by the command line, kernels by the benchmarks."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ REPEATS = 3
 
 @dataclass(frozen=True)
 class Sizes:
-    """Of the pictures of the targets, by lobes, and under the profile: size and directions a pixel."""
+    """Size and light directions per pixel of the target pictures, the renders by lobes, and the profile."""
 
     picture: tuple[str, int]
     by_lobes: tuple[str, int]
@@ -68,7 +68,7 @@ def main() -> int:
         "kernels": _bench("bench_lobe_mixture", "eval_neighbors|eval_on|sample_lobe"),
         "gathering": _bench("bench_material", "prepare_neighbors"),
     }
-    # A small version is for trying out; it must not replace the numbers of the whole one.
+    # A small version only tries the script; it must not replace the numbers of a full run.
     document = WORK / "quick.md" if quick else ROOT / "docs/performance.md"
     files.write_text(document, performance_text.page(results))
     print(document)
@@ -98,7 +98,7 @@ def _asked(size: tuple[str, int]) -> list:
 
 
 def _best(options: list) -> dict:
-    """Of a few runs the fastest: nothing but other programs makes one slower."""
+    """The report of the fastest of a few runs: only other programs make a run slower."""
     reports = [velour("render", *options) for _ in range(REPEATS)]
     return min(reports, key=lambda report: report["seconds"])
 

@@ -1,4 +1,4 @@
-"""docs/performance.md from the numbers of scripts/performance."""
+"""The text of docs/performance.md from the numbers of scripts/performance."""
 
 from __future__ import annotations
 

@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 from velour.core import files
 
-# One colour a strategy or model in all plots, distinguishable for the colour-blind (Okabe and Ito's palette).
+# Color of each strategy or model in all plots, distinguishable for the color-blind (Okabe and Ito's palette).
 COLORS = {
     "uniform": "#999999",
     "cosine": "#56b4e9",
@@ -39,7 +39,7 @@ COLORS = {
 def error_against_time(
     path: str | os.PathLike, curves: Mapping[str, Sequence[tuple[float, float]]], title: str
 ) -> None:
-    """One curve a strategy: (seconds of tracing and shading, relmse), both axes logarithmic."""
+    """One curve per strategy: (seconds of tracing and shading, relmse), both axes logarithmic."""
     errors_against_time(path, {"relmse": curves}, title)
 
 
@@ -49,7 +49,7 @@ def errors_against_time(
     title: str,
     levels: Mapping[str, float] | None = None,
 ) -> None:
-    """The same for each of some errors, side by side. `levels`: errors marked by a dotted line."""
+    """error_against_time() for several errors, side by side. `levels`: errors marked by a dotted line."""
     figure, axes = _figure(len(curves))
     for cell, (error, own) in zip(axes, curves.items(), strict=True):
         for name, points in own.items():
@@ -60,7 +60,7 @@ def errors_against_time(
         if levels and error in levels:
             cell.axhline(levels[error], color="black", linewidth=0.8, linestyle=":")
         cell.set(xlabel="seconds", ylabel=f"{error} against the reference")
-    # Beside the axes: inside them it would hide points.
+    # Beside the axes, where the legend hides no points.
     axes[-1].legend(loc="upper left", bbox_to_anchor=(1.0, 1.0), fontsize="small")
     figure.suptitle(title, fontsize="medium")
     save(figure, path)
@@ -69,7 +69,7 @@ def errors_against_time(
 def error_by_view_angle(
     path: str | os.PathLike, curves: Mapping[str, Mapping[str, float | None]], tolerance: float
 ) -> None:
-    """One curve a material: relative L2 at the held-out views; views that are not covered are left out."""
+    """One curve per material: relative L2 at the held-out views; omits views that are not covered."""
     figure, (axes,) = _figure()
     for name, errors in curves.items():
         points = [(int(angle), error) for angle, error in errors.items() if error is not None]
@@ -88,7 +88,7 @@ def errors_by_size(
     size: str,
     tolerance: float,
 ) -> None:
-    """A panel a material; a curve a model: (size, relative L2)."""
+    """One panel per material, one curve per model: (size, relative L2)."""
     curves_by_panel(path, panels, (size, "relative L2"), [tolerance])
 
 
@@ -98,7 +98,7 @@ def curves_by_panel(
     axes_names: tuple[str, str],
     levels: Sequence[float],
 ) -> None:
-    """Panels, four in a row, both axes logarithmic. `levels`: dotted lines across all of them."""
+    """Panels, four per row, both axes logarithmic. `levels`: dotted lines across all panels."""
     columns = min(4, len(panels))
     rows = -(-len(panels) // columns)
     figure, axes = _pyplot().subplots(
@@ -131,8 +131,7 @@ def grid(
     panels: Mapping[tuple[str, str], Mapping[str, Sequence[tuple[float, float]]]],
     x_name: str,
 ) -> None:
-    """Panels by (what is drawn, of what): a row for each of the first, a column for each of the second.
-    x is logarithmic."""
+    """Panels by (row, column) name: rows are the plotted values, columns their subjects. x is logarithmic."""
     rows = list(dict.fromkeys(row for row, _ in panels))
     columns = list(dict.fromkeys(column for _, column in panels))
     figure, axes = _pyplot().subplots(
@@ -164,7 +163,7 @@ def grid(
 
 
 def sheet(rows: int, columns: int, size: tuple[float, float]):
-    """A figure of `size` inches and its rows x columns of axes, for pictures: without frames and ticks."""
+    """A figure of `size` inches and its rows x columns of axes for pictures, without frames and ticks."""
     figure, axes = _pyplot().subplots(rows, columns, figsize=size, squeeze=False, layout="constrained")
     for cell in axes.flat:
         cell.set_axis_off()
@@ -172,7 +171,7 @@ def sheet(rows: int, columns: int, size: tuple[float, float]):
 
 
 def save(figure, path: str | os.PathLike, dpi: int = 120) -> None:
-    # Without the date the same data gives the same file.
+    # Without this metadata, the same data gives the same file.
     files.write_atomic(Path(path), lambda name: figure.savefig(name, dpi=dpi, metadata={"Software": None}))
     _pyplot().close(figure)
 
@@ -187,7 +186,7 @@ def _figure(columns: int = 1):
 
 
 def _label_errors(axis) -> None:
-    """1, 2 and 5 of each decade: powers of ten alone may be a single label."""
+    """Labels 1, 2 and 5 of each decade: powers of ten alone may give a single label."""
     from matplotlib import ticker
 
     axis.set_major_locator(ticker.LogLocator(subs=(1, 2, 5)))

@@ -1,4 +1,4 @@
-"""Models of presets: a goniometer's measurement and its fit, each kept by what it was made from."""
+"""Builds the models of presets: a virtual measurement and its fit, each kept under a hash of its inputs."""
 
 from __future__ import annotations
 
@@ -15,18 +15,18 @@ from tile_btf import model_of_tile
 from velour.core import files
 from velour.native import Measurement, Model, Scene, Tile, fit_job, library, microsurface_job, votf_job
 
-_RECIPE = 2  # counts up with each change, here or in the library, that changes models
+_RECIPE = 2  # incremented with each change, here or in the library, that changes models
 _UNMOVED = ((1, 0, 0, 0), (0, 1, 0, 0), (0, 0, 1, 0))
 
 
 class Sizes(NamedTuple):
-    """What measurements take; all of them change models."""
+    """Sizes of the measurements; all of them affect the models."""
 
-    rays: int = 4_000_000  # of a microsurface that is shown itself
-    yarn_rays: int = 2_000_000  # of one that yarns are made of
+    rays: int = 4_000_000  # for a microsurface that is a preset itself
+    yarn_rays: int = 2_000_000  # for a microsurface of yarns
     texels: int = 64
-    directions: int = 81  # of views, and of lights
-    samples: int = 8  # a texel and view
+    directions: int = 81  # number of views, and of lights
+    samples: int = 8  # per texel and view
     outline_texels: int = 96
 
 
@@ -34,10 +34,10 @@ QUICK = Sizes(100_000, 100_000, 8, 81, 1, 32)
 
 
 class Workshop:
-    """Builds into `work`, where models are files named by the hash of what they depend on.
+    """Builds into `work`, where models are files named by a hash of what they depend on.
 
-    That is the preset's own numbers, the sizes, the release of the library and _RECIPE: not the library's
-    bytes, or each build of it would begin anew.
+    That is the preset's own numbers, the sizes, the release of the library and _RECIPE. It is not the
+    library's bytes, because each build of the library would then rebuild all models.
     """
 
     def __init__(self, work: Path, sizes: Sizes, threads: int, fresh: bool = False):
@@ -53,7 +53,7 @@ class Workshop:
         return self._is_kept(self.model_path(preset))
 
     def build(self, preset: Preset) -> Path:
-        """Its model's file; what is known of it lies beside it as JSON."""
+        """Returns the file of the model; its report lies beside it as JSON."""
         made_of = preset.made_of
         return (
             self._of_weave(made_of)
@@ -62,7 +62,7 @@ class Workshop:
         )
 
     def report_of(self, preset: Preset) -> dict | None:
-        """None: it was not built."""
+        """The report of a preset; None if it was not built."""
         report = self.model_path(preset).with_suffix(".json")
         return json.loads(report.read_text(encoding="utf-8")) if report.is_file() else None
 
@@ -73,7 +73,7 @@ class Workshop:
         return self.work / f"{type(made_of).__name__.lower()}-{key}.velour"
 
     def _is_kept(self, model: Path) -> bool:
-        # The report is written last.
+        # The report is written last, so it implies a complete model.
         return model.with_suffix(".json").is_file() and (not self._fresh or model in self._made)
 
     def _keep(self, path: Path, model: Model, report: dict) -> Path:
@@ -118,7 +118,7 @@ class Workshop:
             return self._with_outline(path, scene, tile, opened.enter_context(look), seconds)
 
     def _look(self, scene: Scene, tile: Tile) -> tuple[Model, float]:
-        """What the repeated tile looks like, and the seconds that it took."""
+        """The model of the repeated tile's BTF, and the seconds that it took."""
         sizes = self._sizes
         with tempfile.TemporaryDirectory(prefix="capture-", dir=self.work) as folder:
             return model_of_tile(
@@ -156,7 +156,7 @@ class Workshop:
 
 
 def _add(tile: Tile, yarns: list[Model], scene: Scene) -> None:
-    """The tile's mesh, of the yarns' models, which follow its texture coordinates: these run along yarns."""
+    """Adds the tile's mesh with the yarns' models, oriented by texture coordinates that run along yarns."""
     mesh, _dropped = scene.add_mesh(**tile.mesh()._asdict())
     materials = [scene.add_model_material(yarn) for yarn in yarns]
     scene.add_instance(mesh, _UNMOVED, materials)

@@ -1,4 +1,4 @@
-"""The picture of a preset in the asset browser: a ball in a studio, by Velour's own renderer."""
+"""The preview of a preset in the asset browser: a ball in a studio, rendered by Velour."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ SIDE = 256  # pixels
 
 
 def picture(preset: Preset, model_path: Path, spp: int) -> np.ndarray:
-    """[SIDE x SIDE x 4] float32, sRGB as shown, opaque; row 0 at the bottom, as Blender has previews."""
+    """[SIDE x SIDE x 4] float32, sRGB as displayed, opaque; row 0 at the bottom, as in Blender's previews."""
     made_of = preset.made_of
     rows = made_of.repeats // 2 if isinstance(made_of, Weave) else ROWS
     with (

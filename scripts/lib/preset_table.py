@@ -1,9 +1,9 @@
-"""The materials of the preset library: what surfaces they are, in numbers that a laboratory would measure.
+"""The materials of the preset library, described by physical quantities that a laboratory could measure.
 
-Each is built by the virtual goniometer (docs/engine/capture.md) or from a tile
-(docs/engine/mesostructures.md), and a fit; nothing here is a parameter of a model. Colors are albedos,
-linear Rec. 709. Refractive indices: acrylic and alkyd binders 1.49 to 1.52, polypropylene 1.49, ABS 1.54,
-cellulose 1.47, cotton 1.53 to 1.56, silk 1.54 to 1.59, wool 1.55, polyamide 1.53.
+Each is built by the virtual goniometer (docs/engine/capture.md#micro-surface-goniometer,
+docs/engine/mesostructures.md) and a fit; nothing here is a parameter of a model. Colors are albedos, linear
+Rec. 709. Refractive indices: acrylic and alkyd binders 1.49 to 1.52, polypropylene 1.49, ABS 1.54, cellulose
+1.47, cotton 1.53 to 1.56, silk 1.54 to 1.59, wool 1.55, polyamide 1.53.
 """
 
 from __future__ import annotations
@@ -12,7 +12,7 @@ from dataclasses import dataclass, field
 
 METALS, PAINTS, PLAIN, CLOTHS = "Metals", "Paints", "Plastics and Papers", "Cloths"
 
-# Catalogs of Blender's asset browser. These numbers are in users' files: a catalog keeps its own.
+# Catalogs of Blender's asset browser. Users' files contain these ids: never change one.
 CATALOGS = {
     METALS: "6f3f5b36-31cf-4d4e-9a8b-6a1c0f5ad101",
     PAINTS: "0c6f1b0e-6a35-4a4e-8a3c-3f0c1f6c7b02",
@@ -35,23 +35,23 @@ class Surface:
 
 
 def coat(albedo, roughness, ior=1.5) -> Surface:
-    """Pigment below a clear surface."""
+    """Pigment below a clear coat."""
     return Surface(roughness, base_albedo=albedo, base_share=1.0, ior=ior)
 
 
 def flakes(metal, share, flake_roughness, albedo) -> Surface:
-    """A car's paint: metal flakes over a share of the pigment, below a clear coat as it is sprayed."""
+    """Car paint: metal flakes over a share of the pigment, below a sprayed clear coat."""
     return Surface(0.04, metal, 1.0, albedo, 1.0 - share, 1.5, flake_roughness)
 
 
 @dataclass(frozen=True)
 class Weave:
-    """A tile of velour.native.Tile and what its yarns are made of, one Surface a material slot."""
+    """A tile of velour.native.Tile and the surfaces of its yarns, one per material slot."""
 
     kind: str
     yarns: tuple[Surface, ...]
-    shape: dict = field(default_factory=dict)  # of Tile.create
-    repeats: int = 24  # of the tile around the preview's ball, and over a unit of texture coordinates
+    shape: dict = field(default_factory=dict)  # further arguments of Tile.create
+    repeats: int = 24  # tiles around the preview's ball, and per unit of texture coordinates
 
 
 @dataclass(frozen=True, eq=False)
@@ -156,7 +156,7 @@ def _yarn(albedo, roughness=0.5, ior=1.54) -> Surface:
     return coat(albedo, roughness, ior)
 
 
-_SILK = 0.25  # the roughness of its filaments
+_SILK = 0.25  # roughness of silk filaments
 
 PRESETS += (
     Preset(

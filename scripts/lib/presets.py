@@ -1,4 +1,4 @@
-"""scripts/presets, once the library is staged: models, previews and the .blend of the presets."""
+"""scripts/presets, after staging: models, previews and the .blend of the presets."""
 
 from __future__ import annotations
 
@@ -24,8 +24,8 @@ from velour_cli import ROOT
 
 _BUILT = ROOT / "build/presets"
 _PICTURE = ROOT / "docs/images/presets.png"
-_COST = {True: 10, False: 1}  # of a cloth and of another, in proportion: for the time that is left
-_COLUMNS = 6  # of the sheet of all previews
+_COST = {True: 10, False: 1}  # relative time of a cloth and of other presets, for the progress
+_COLUMNS = 6  # columns of the sheet of all previews
 _LICENCE = """The materials of this folder are in the public domain: CC0-1.0,
 https://creativecommons.org/publicdomain/zero/1.0/
 """
@@ -89,7 +89,7 @@ def _build(workshop: Workshop, chosen: list[Preset]) -> None:
 
 
 def _preview(workshop: Workshop, preset: Preset, spp: int, fresh: bool) -> Path:
-    """Kept with the model that it shows."""
+    """Returns the preview's file, kept beside the model that it shows."""
     model = workshop.model_path(preset)
     path = model.with_suffix(".npy")
     if fresh or not path.is_file() or path.stat().st_mtime < model.stat().st_mtime:
@@ -99,7 +99,7 @@ def _preview(workshop: Workshop, preset: Preset, spp: int, fresh: bool) -> Path:
 
 
 def _sheet(previews: list[Path]) -> np.ndarray:
-    """All of them, row by row from the top, in the order of the table: linear RGB, row 0 at the bottom."""
+    """All previews, row by row from the top, in the order of the table: linear RGB, row 0 at the bottom."""
     side = preset_preview.SIDE
     rows = -(-len(previews) // _COLUMNS)
     sheet = np.zeros((rows * side, _COLUMNS * side, 3), np.float32)
@@ -115,7 +115,7 @@ def _linear(encoded: np.ndarray) -> np.ndarray:
 
 
 def write_library(folder: Path, workshop: Workshop, previews: dict[Preset, Path]) -> None:
-    """The .blend of `previews`, its catalogs and licence."""
+    """Writes the .blend of the presets in `previews`, its catalogs and license."""
     presets = [
         {
             "name": preset.name,

@@ -1,4 +1,4 @@
-"""Runs inside Blender: a .blend of materials with models packed, marked as assets."""
+"""Runs inside Blender: writes a .blend of materials with packed models, marked as assets."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ def add(preset: dict) -> None:
     node.image.name = f"{preset['name']}.velour"
     if preset["repeats"]:
         node.velour.placement.repeats = (preset["repeats"],) * 2
-        bpy.ops.velour.approximate(material=material.name)  # whose picture lies as the tiles do
+        bpy.ops.velour.approximate(material=material.name)  # its image is placed like the tiles
     describe(material, preset)
 
 
@@ -48,7 +48,7 @@ def describe(material: bpy.types.Material, preset: dict) -> None:
     asset.catalog_id = preset["catalog"]
     asset.author = AUTHOR
     asset.description = f"{preset['description']} ({_PLAIN_TEXT})"
-    if hasattr(asset, "license"):  # not in Blender 3.4, where the description says it
+    if hasattr(asset, "license"):  # not in Blender 3.4; the description names the license as well
         asset.license = LICENCE
     for tag in preset["tags"]:
         asset.tags.new(tag, skip_if_exists=True)

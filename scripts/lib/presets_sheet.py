@@ -1,4 +1,4 @@
-"""The picture of all presets in the documents: their previews, with their names."""
+"""The picture of all presets in the documents: their previews with names."""
 
 from __future__ import annotations
 
@@ -9,12 +9,12 @@ import numpy as np
 import plots
 
 _COLUMNS = 6
-_CELL = 1.35  # inches of a preview, at 100 dots an inch
-_NAME = 0.2  # inches
+_CELL = 1.35  # width of a preview in inches, at 100 dots per inch
+_NAME = 0.2  # height of a name in inches
 
 
 def draw(path: Path, pictures: Mapping[str, np.ndarray]) -> None:
-    """`pictures`: of each name, in the order of the table; sRGB, row 0 at the bottom."""
+    """`pictures`: previews by name, in the order of the table; sRGB, row 0 at the bottom."""
     rows = -(-len(pictures) // _COLUMNS)
     figure, axes = plots.sheet(rows, _COLUMNS, (_COLUMNS * _CELL, rows * (_CELL + _NAME)))
     for cell, (name, pixels) in zip(axes.flat, pictures.items(), strict=False):

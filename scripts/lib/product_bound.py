@@ -1,4 +1,4 @@
-"""What exact product sampling would save: a program that tabulates f cos times radiance at some hits."""
+"""What exact product sampling would save, by a program that tabulates f cos times radiance at some hits."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ _PROGRAM = ROOT / "build/release/native/bench/product_bound"
 
 
 def of(scene: Scene, renders: Renders, hits: int) -> dict | None:
-    """Variances of one direction by `mis`, `product` and `exact`; None where the program is not built."""
+    """Variances of one direction by `mis`, `product` and `exact`; None if the program is not built."""
     if not _PROGRAM.is_file():
         return None
     size = "{}x{}".format(*renders.settings.size)

@@ -1,7 +1,7 @@
 """Prints how much of a script's work is done, how long it took, and about how long the rest will take.
 
 Finished work gets a line of its own. Work in progress gets a line every ten seconds, or on a terminal one
-line that changes every second, as with_progress in common.sh prints it.
+line that is updated every second, like with_progress in common.sh.
 """
 
 from __future__ import annotations
@@ -16,9 +16,9 @@ _CLEAR_LINE = "\r\x1b[K"
 
 
 class Progress:
-    """Work is announced with a cost in any unit; the time left follows from what the finished work took.
+    """Work is announced with a cost in any unit; finished work determines the estimate of the remaining time.
 
-    `rate`: first estimate of the seconds that a unit of cost takes.
+    `rate`: first estimate of the seconds per unit of cost.
     """
 
     def __init__(self, rate: float | None = None):
@@ -31,7 +31,7 @@ class Progress:
         self._cost_left += cost * count
 
     def skip(self, label: str, cost: float, count: int = 1) -> None:
-        """Counts work that an earlier run has done. `cost` is that of all `count` items."""
+        """Counts work that an earlier run has done. `cost`: of all `count` items together."""
         self._finish(cost, count)
         self._say(f"{label}: kept")
 
@@ -72,7 +72,7 @@ class Progress:
         self._cost_left = max(self._cost_left - cost, 0.0)
 
     def _left(self, seconds: float = 0.0) -> str:
-        """`seconds`: time that the current work has taken so far."""
+        """Text for the remaining time. `seconds`: time that the current work has taken so far."""
         if self._rate is None:
             return ""
         left = self._cost_left * self._rate - seconds

@@ -1,4 +1,4 @@
-"""What numbers were taken on, and from what: a number without that says little."""
+"""The machine, commit and settings that numbers were measured with."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ def sentence(c: dict) -> str:
 
 
 def busy_threads() -> float:
-    """How many processors other programs keep busy, over two seconds."""
+    """Number of processors that other programs keep busy, measured over two seconds."""
 
     def spent() -> tuple[int, int, int]:
         lines = Path("/proc/stat").read_text(encoding="ascii").splitlines()

@@ -1,4 +1,4 @@
-"""Objects of real geometry beside the same objects with its BTF: pictures, errors, seconds, megabytes."""
+"""Objects with real geometry beside the same objects with its BTF: pictures, errors, seconds, megabytes."""
 
 from __future__ import annotations
 
@@ -29,14 +29,14 @@ SHOTS = {
     "plane": "plane, sun and sky",
     "cylinder": "cylinder, sun and sky",
 }
-_CELL = 2.0  # inches a picture, at 100 dots an inch
-_WORST = 0.5  # difference over the mean of the geometry's picture that is drawn fully red or blue
+_CELL = 2.0  # width of a picture in inches, at 100 dots per inch
+_WORST = 0.5  # difference, relative to the mean of the geometry's picture, at which the colors saturate
 
 
 def main() -> int:
     args = _arguments()
     try:
-        shutil.rmtree(args.work, ignore_errors=True)  # a capture goes over nothing
+        shutil.rmtree(args.work, ignore_errors=True)  # a capture overwrites nothing
         args.work.mkdir(parents=True)
         task = {**(QUICK if args.quick else TASK), "shots": list(SHOTS), "folder": str(args.work.resolve())}
         headless_blender.run("real_geometry_scene.py", task, args.work / "blender.log")
@@ -62,7 +62,7 @@ def _arguments() -> argparse.Namespace:
 
 
 def _draw(path: Path, folder: Path, report: dict) -> dict[str, dict[str, GeometryError]]:
-    """A row a shot: three pictures and two differences. Returns the errors."""
+    """Draws a row per shot: three pictures and two differences. Returns the errors."""
     sheet, axes = plots.sheet(len(SHOTS), 5, (5 * _CELL, len(SHOTS) * (_CELL + 0.4)))
     errors = {}
     for row, (name, title) in zip(axes, SHOTS.items(), strict=True):
@@ -86,7 +86,7 @@ def _show(axes, picture: np.ndarray, title: str) -> None:
 
 
 def _show_difference(axes, picture: np.ndarray, truth: np.ndarray, title: str) -> None:
-    """Signed, of the channels' mean."""
+    """Shows the signed difference of the channels' mean."""
     difference = (picture - truth)[..., :3].mean(axis=-1) / truth[..., :3][truth[..., 3] > 0.5].mean()
     axes.imshow(difference[::-1], cmap="RdBu_r", vmin=-_WORST, vmax=_WORST, interpolation="none")
     axes.set_title(f"{title}\nred: too bright; full at {_WORST:.0%}", fontsize=8)

@@ -1,5 +1,5 @@
-"""Runs inside Blender: a tile is captured and compressed; objects with its geometry all over them are
-rendered, and the same objects with its BTF and with the model of it. The task is the JSON text after "--"."""
+"""Runs inside Blender: captures and compresses a tile; renders objects covered with its geometry, and the
+same objects with its BTF and with the model of the BTF. The task is the JSON text after "--"."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ from tiled_objects import Cylinder, Plane, add_smooth, add_tiles
 PERIOD = 1.0
 SUN, SKY = 2.5, 0.25  # irradiance on a facing surface, radiance
 # Views and lights: degrees from the normal of the plane (of the cylinder's topmost line), and around it.
-# Those of the first are directions of the sets of 81 and 105, so that nothing lies between directions.
+# Those of "captured" belong to the sets of 81 and of 105 directions, so that nothing is interpolated.
 SHOTS = {
     "captured": {"shape": "plane", "view": (45, 40), "sun": (30, 60), "sky": 0.0, "tiles": 2.5},
     "plane": {"shape": "plane", "view": (52, 250), "sun": (50, 10), "sky": SKY, "tiles": 3.0},
@@ -47,14 +47,14 @@ def main(task: dict) -> None:
 
 
 def _reference_height(tile: bpy.types.Object, folder: str) -> float:
-    """Of the plane that texels lie on, over z = 0 of the tile."""
+    """Height of the texels' reference plane above z = 0 of the tile."""
     with open(os.path.join(folder, f"{NAME}.btf", "btf.json")) as file:
         above_lowest = json.load(file)["shell"]["reference_height"]
     return min(vertex.co.z for vertex in tile.data.vertices) + above_lowest
 
 
 def _take(scene, tile, shape, name: str, folder: str) -> dict:
-    """Pictures NAME-geometry, -btf and -model; the render's seconds of each."""
+    """Renders NAME-geometry, NAME-btf and NAME-model; returns the seconds of each render."""
     _remove_all_but(tile)
     shot = SHOTS[name]
     _aim(scene, shot, shape.middle)
@@ -84,7 +84,7 @@ def _direction(angles: tuple[float, float]) -> Vector:
 
 
 def _aim(scene, shot: dict, target: Vector) -> None:
-    """An orthographic camera, so that a plane is seen from one direction."""
+    """Adds an orthographic camera, so that a plane is seen from a single direction."""
     camera = bpy.data.objects.new("Camera", bpy.data.cameras.new("Camera"))
     camera.data.type, camera.data.ortho_scale = "ORTHO", shot["tiles"] * PERIOD
     toward = _direction(shot["view"])

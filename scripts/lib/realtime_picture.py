@@ -1,4 +1,4 @@
-"""For scripts/realtime, once scenes are drawn: the ray tracer's picture, real time's, the difference."""
+"""For scripts/realtime, after the drawing: the ray-traced picture, the real-time one, the difference."""
 
 import sys
 from pathlib import Path
@@ -7,9 +7,9 @@ import numpy as np
 import plots
 from display import display
 
-_TIMES, _GREY = 10, 0.214  # the difference, about the middle of what a screen shows
-_SHOWN = 0.82  # share of the height: above it is the hem, which has no sides in real time
-_CELL = 2.9  # inches of a picture's width, at 100 dots an inch
+_TIMES, _GREY = 10, 0.214  # factor of the difference, around middle gray (linear)
+_SHOWN = 0.82  # share of the height: above it is the shell's hem, which has no sides in real time
+_CELL = 2.9  # width of a picture in inches, at 100 dots per inch
 _TITLES = ("ray traced", "real time", f"{_TIMES} times the difference")
 
 
@@ -22,7 +22,7 @@ def main() -> int:
 
 
 def draw(path: Path, pictures: tuple[np.ndarray, ...]) -> None:
-    """Linear, row 0 at the bottom."""
+    """`pictures`: linear, row 0 at the bottom."""
     rows, width = round(_SHOWN * pictures[0].shape[0]), pictures[0].shape[1]
     figure, (axes,) = plots.sheet(1, len(pictures), (len(pictures) * _CELL, _CELL * rows / width + 0.25))
     for cell, title, pixels in zip(axes, _TITLES, pictures, strict=True):

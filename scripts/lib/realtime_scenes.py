@@ -1,4 +1,4 @@
-"""For scripts/realtime, in a window of Blender: scenes of blend-tests beside the ray tracer, and how fast."""
+"""For scripts/realtime, in a window of Blender: scenes of blend-tests in real time, and their frame rates."""
 
 import math
 import time
@@ -11,16 +11,16 @@ from window_realtime import _ball
 from window_realtime_outline import _plane_of_its_btf
 
 _DATA = Path(scenes.__file__).parents[1] / "scenes/data"
-_SECONDS = 3  # of measuring
+_SECONDS = 3  # duration of a measurement
 
 
 def start(folder):
-    """Called by the harness once the window is there."""
+    """Called by the harness when the window exists."""
     window.run(folder, (net, paint), seconds=math.inf, viewport=True)
 
 
 def net(folder):
-    """Its picture, too."""
+    """A net; also saves its ray-traced and real-time pictures."""
     realtime.sky(folder)
     _plane_of_its_btf(folder, "NET")
     yield from _shown("a net of its BTF")
@@ -45,7 +45,7 @@ def _shown(what):
 
 
 def _frames_a_second():
-    """Of pictures that are drawn as while the view moves: one each, and read, so that they are there."""
+    """Frames per second and frame size, drawn as while the view moves. Reads back each complete frame."""
     shown = viewport.real_time()
     with viewport.override():
         frame = viewport.addon("export.viewport").viewport_frame(

@@ -1,4 +1,4 @@
-"""A converged picture as the mean of independent renders, whose spread says how converged it is."""
+"""A converged picture as the mean of independent renders, whose spread gives its error."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from renders import Picture, Renders
 from scenes import Scene
 from velour.native import images
 
-# Seeds of references, far from those of the pictures that are judged by them.
+# First seed of references, far from the seeds of the pictures that are compared with them.
 FIRST_SEED = 1000
 
 
@@ -20,18 +20,18 @@ class Batches:
         self.pictures = pictures
 
     def stack(self) -> np.ndarray:
-        """[batch, row, column, channel], float64"""
+        """[batch, row, column, channel], float64."""
         return np.array([picture.pixels for picture in self.pictures], np.float64)
 
     def mean(self) -> np.ndarray:
         return self.stack().mean(axis=0).astype(np.float32)
 
     def standard_error(self) -> np.ndarray:
-        """Of each pixel and channel of the mean."""
+        """Standard error of each pixel and channel of the mean."""
         return (self.stack().std(axis=0, ddof=1) / len(self.pictures) ** 0.5).astype(np.float32)
 
     def noise(self) -> tuple[float, float]:
-        """rmse and relmse of the mean itself: those of a picture that is one standard error off."""
+        """rmse and relmse of the mean itself: those of a picture that deviates by one standard error."""
         mean = self.mean()
         return images.compare(mean + self.standard_error(), mean)
 
@@ -41,7 +41,7 @@ class Batches:
 
 
 class Reference(Batches):
-    """Of one of our scenes; more renders can be added."""
+    """A reference of one of our scenes, to which renders can be added."""
 
     def __init__(self, renders: Renders, scene: Scene, spp: int, first_seed: int = FIRST_SEED, **options):
         super().__init__([])

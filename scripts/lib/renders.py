@@ -1,6 +1,6 @@
-"""Renders and fits through the command line, each kept under a key of all it depends on.
+"""Renders and fits through the command line, each kept under a hash of everything it depends on.
 
-What is there is not made again, so a run that was stopped goes on where it was.
+Kept results are not made again, so an interrupted run continues.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ from velour.native import images
 from velour_cli import velour_to_file
 
 _LIBRARY = Path(velour.__file__).with_name("lib") / "libvelour.so"
-# What a process costs besides its samples, in samples: start-up, reading the mesh, building the BVH.
+# Cost of a process besides its samples, in samples: startup, reading the mesh, building the BVH.
 _START = 10_000_000
 
 
@@ -37,13 +37,13 @@ class Picture:
         return read_rgb(self.path)
 
     def errors(self, reference: np.ndarray) -> tuple[float, float]:
-        """rmse, relmse"""
+        """rmse and relmse."""
         return images.compare(self.pixels, reference)
 
 
 @dataclass(frozen=True)
 class Settings:
-    """What all renders of a run share."""
+    """Settings that all renders of a run share."""
 
     folder: Path
     size: tuple[int, int]
@@ -71,7 +71,7 @@ class Renders:
         size: tuple[int, int] | None = None,
         **options,
     ) -> Picture:
-        """`options` are those of the command line."""
+        """`options`: command line options of `velour render`."""
         size = size or self.settings.size
         parameters = {**scene.options, "size": "{}x{}".format(*size), "spp": spp, **options}
         parameters |= {
@@ -102,7 +102,7 @@ class Renders:
         return out, self.keep(label, "fit", parameters, run)
 
     def ggx(self, measurement: Path) -> dict:
-        """How well the best GGX lobe fits."""
+        """The report of the comparison with the best GGX lobe."""
 
         def run(report: Path) -> dict:
             return velour_to_file(report, "compare", measurement, "--ggx")
@@ -117,7 +117,7 @@ class Renders:
         run: Callable[[Path], dict],
         cost: float = _START,
     ) -> dict:
-        """The report that is there, or the one that `run` writes, after all else, to the path it is given."""
+        """Returns the kept report, or calls `run`, which must write the report to the given path, last."""
         report = self.stem(name, parameters).with_suffix(".json")
         if report.is_file():
             self.progress.skip(label, cost)
@@ -126,7 +126,7 @@ class Renders:
             return run(report)
 
     def stem(self, name: str, parameters: dict) -> Path:
-        """Where what depends on the parameters is kept, without an ending."""
+        """Path of the files that depend on the parameters, without suffix."""
         return self.settings.folder / f"{name}-{key(parameters)}"
 
     @staticmethod
@@ -139,14 +139,14 @@ def read_rgb(path: Path) -> np.ndarray:
 
 
 def key(parameters: dict) -> str:
-    """Of the parameters, of what files hold rather than how they are called, of library and machine."""
+    """Hash of the parameters (files by content, not by name), the library and the machine."""
     known = {name: _identity(value) for name, value in parameters.items()}
     text = json.dumps([known, _hash(_LIBRARY), machine()], sort_keys=True)
     return hashlib.sha256(text.encode()).hexdigest()[:16]
 
 
 def flags(parameters: dict) -> list[str]:
-    # In one word: a value may begin with a minus.
+    # One word per option: a value may begin with a minus.
     return [f"--{name}={value}" for name, value in parameters.items()]
 
 

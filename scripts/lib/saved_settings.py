@@ -1,4 +1,4 @@
-"""scripts/saved_settings: the table of what this version saves, by the real Blender."""
+"""scripts/saved_settings: writes the table of settings that this version saves, in the real Blender."""
 
 from __future__ import annotations
 

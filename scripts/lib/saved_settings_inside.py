@@ -1,4 +1,4 @@
-"""Runs inside Blender: writes the table of what the add-on saves."""
+"""Runs inside Blender: writes the table of settings that the add-on saves."""
 
 from __future__ import annotations
 

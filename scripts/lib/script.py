@@ -1,4 +1,4 @@
-"""What the measuring scripts share: options, the folder of kept results, how they end."""
+"""Shared by the measuring scripts: options, the folder of kept results, handling of errors."""
 
 from __future__ import annotations
 
@@ -31,8 +31,8 @@ def arguments(
     part: str = "",
     **switches: str,
 ) -> argparse.Namespace:
-    """`switches`: what the script knows besides, with a help text each; `more`: adds options with values.
-    `part`: of the script, whose results are kept for themselves."""
+    """`switches`: the script's own switches, by name with a help text; `more`: adds options with values.
+    `part`: a part of the script, whose results are kept separately."""
     parser = argparse.ArgumentParser(prog=name)
     parser.add_argument("--quick", action="store_true")
     parser.add_argument("--fresh", action="store_true")
@@ -44,7 +44,7 @@ def arguments(
         parser.add_argument(f"--{switch}", action="store_true", help=text)
     more(parser)
     args = parser.parse_args()
-    # A small version is for trying out; it must not replace the numbers of the whole one.
+    # A small version only tries the script; it must not replace the numbers of a full run.
     args.work = args.work or ROOT / "build" / name / part / ("quick" if args.quick else "full")
     args.output = args.output or (args.work / "documents" if args.quick else documents)
     return args

@@ -1,4 +1,4 @@
-"""Which pixels show the object."""
+"""Finds the pixels that show the object."""
 
 from __future__ import annotations
 
@@ -8,6 +8,6 @@ from scenes import Scene
 
 
 def of(scene: Scene, renders: Renders, size: tuple[int, int]) -> np.ndarray:
-    """[row, column]; others show the world alone: there strategies that share camera rays do not differ."""
+    """[row, column]. Pixels of the environment alone are equal for strategies that share camera rays."""
     a, b = (renders.render(scene, 64, strategy=name, size=size).pixels for name in ("uniform", "cosine"))
     return (a != b).any(axis=-1)

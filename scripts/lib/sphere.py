@@ -22,7 +22,7 @@ def write(path: Path) -> Path:
 
 
 def _triangles():
-    """Counter-clockwise from outside; those at the poles that have no area are left out."""
+    """Counter-clockwise seen from outside; omits triangles without area at the poles."""
     for ring in range(_RINGS):
         for sector in range(_SECTORS):
             a, b = (ring * _SECTORS + (sector + step) % _SECTORS + 1 for step in (0, 1))

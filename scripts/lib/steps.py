@@ -1,4 +1,4 @@
-"""Progress of work in steps. Each step is announced when it begins: by a call or by a printed line."""
+"""Progress of work in steps. Each step is announced when it begins, by a call or by a printed line."""
 
 from __future__ import annotations
 

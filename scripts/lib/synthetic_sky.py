@@ -1,4 +1,4 @@
-"""A clear sky with a small sun: what a mixture of lobes loses most easily."""
+"""A clear sky with a small sun, which a mixture of lobes loses most easily."""
 
 from __future__ import annotations
 
@@ -10,34 +10,34 @@ import numpy as np
 from velour.native import images
 
 SUN_DIAMETER = np.radians(0.5)
-SUN_SHARE = 0.9  # of the energy
+SUN_SHARE = 0.9  # share of the sky's energy
 SUN_ELEVATION, SUN_AZIMUTH = (
     np.radians(40.0),
     np.radians(-60.0),
 )  # azimuth from +x, counter-clockwise from above
 SUN_COLOR = np.array([1.05, 1.0, 0.85])
 _HEIGHT = 1024  # rows; the sun is three texels across
-_SUBSAMPLES = 32  # of a texel's sides, where the sun is
+_SUBSAMPLES = 32  # per side of a texel near the sun
 _LUMINANCE = np.array([0.2126, 0.7152, 0.0722])
 
 
 @dataclass(frozen=True)
 class SunLobes:
-    """What a mixture keeps of the sun: lobes within a diameter of its centre, and no wider than two."""
+    """Lobes of a mixture that keep the sun: within a diameter of its center, at most two diameters wide."""
 
     count: int
-    energy: float  # share of the mixture's
-    diameter: float  # degrees, mean by energy: of the disc whose mean cosine a lobe has
+    energy: float  # share of the mixture's energy
+    diameter: float  # degrees: of the disk with the same mean cosine as a lobe; mean weighted by energy
 
 
 def sun_direction() -> np.ndarray:
-    """Unit, z up."""
+    """Unit vector, z up."""
     across = np.cos(SUN_ELEVATION)
     return np.array([across * np.cos(SUN_AZIMUTH), across * np.sin(SUN_AZIMUTH), np.sin(SUN_ELEVATION)])
 
 
 def write(path: Path) -> Path:
-    """Equirectangular, row 0 at the bottom, the middle column towards +x, azimuth growing to the left."""
+    """Equirectangular, row 0 at the bottom, the middle column toward +x, azimuth increasing to the left."""
     centers = np.arange(_HEIGHT) + 0.5, np.arange(2 * _HEIGHT) + 0.5
     elevation = _elevation(centers[0])[:, None]
     sky = np.broadcast_to(_gradient(elevation), (_HEIGHT, 2 * _HEIGHT, 3))
@@ -61,7 +61,7 @@ def _gradient(elevation: np.ndarray) -> np.ndarray:
 
 
 def _coverage(rows: np.ndarray, columns: np.ndarray) -> np.ndarray:
-    """Share of each texel that the disc covers."""
+    """Share of each texel that the sun's disk covers."""
     covered = np.zeros((len(rows), len(columns)))
     inner = (np.arange(_SUBSAMPLES) + 0.5) / _SUBSAMPLES - 0.5
     near = _cosine_to_sun(rows[:, None], columns[None, :]) > np.cos(2 * SUN_DIAMETER)
@@ -78,7 +78,7 @@ def _cosine_to_sun(row: np.ndarray, column: np.ndarray) -> np.ndarray:
 
 
 def sun_lobes(mixture: Path) -> SunLobes:
-    """Of a mixture that `velour render --cache` kept."""
+    """`mixture`: a file that `velour render --cache` wrote."""
     center, color = (
         _part(mixture, "lobes.center").reshape(-1, 3),
         _part(mixture, "lobes.coefficient").reshape(-1, 3),
@@ -86,7 +86,7 @@ def sun_lobes(mixture: Path) -> SunLobes:
     bandwidth = _part(mixture, "lobes.bandwidth").ravel()
     # The integral of exp(lambda (t - 1)) over the sphere.
     energy = color @ _LUMINANCE * 2 * np.pi * -np.expm1(-2 * bandwidth) / bandwidth
-    # A disc of radius a has the mean cosine 1 - a^2 / 4, a lobe 1 - 1 / lambda.
+    # The mean cosine of a disk of radius a is 1 - a^2 / 4, that of a lobe 1 - 1 / lambda.
     diameter = 4 / np.sqrt(bandwidth)
     near = center @ sun_direction() > np.cos(SUN_DIAMETER)
     kept = near & (diameter <= 2 * SUN_DIAMETER)

@@ -1,4 +1,4 @@
-"""Rows as CSV text."""
+"""Formats rows as CSV."""
 
 from __future__ import annotations
 

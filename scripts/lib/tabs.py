@@ -1,4 +1,4 @@
-"""For scripts/tabs, in a window of Blender: tabs of the Properties editor with Velour, and with Cycles."""
+"""For scripts/tabs, in a window of Blender: pictures of the Properties editor with Velour and with Cycles."""
 
 import math
 
@@ -12,18 +12,18 @@ _ENGINES = ("VELOUR", "CYCLES")
 _ADDONS = ("velour", "cycles")
 _TABS = ("RENDER", "OUTPUT", "VIEW_LAYER", "SCENE", "WORLD", "OBJECT", "MATERIAL")
 _LAMPS = ("POINT", "SUN", "SPOT", "AREA")
-_RIM = 20  # rows
+_RIM = 20  # rows of the editor's lower rim
 
 
 def start(folder):
-    """Called by the harness once the window is there."""
+    """Called by the harness when the window exists."""
     window.run(folder, (tabs,), seconds=math.inf)
 
 
 def tabs(folder):
     _open_all_panels()
     yield from window.show_properties("RENDER")
-    window.first().cursor_warp(0, 0)  # out of the pictures
+    window.first().cursor_warp(0, 0)  # outside the pictures
     _activate("Cube")
     for tab in _TABS:
         yield from _picture(folder, tab, tab.lower())
@@ -41,9 +41,10 @@ def _activate(name):
 
 
 def _open_all_panels():
-    """None is registered as closed before it is first drawn: what Blender remembers later no script reaches.
+    """Registers all panels as open before they are first drawn: no script can change the state that Blender
+    remembers after that.
 
-    Previews stay closed: one that is being made while the engine changes can hold Blender for ever.
+    Previews stay closed: one that is being rendered while the engine changes can block Blender forever.
     """
     for addon in _ADDONS:
         addon_utils.disable(addon)
@@ -70,6 +71,6 @@ def _picture(folder, tab, name):
 
 
 def _without_empty_rows(picture):
-    """The lowest row is the first. Above the rim of the editor empty ones are like each other."""
+    """Crops the empty rows above the editor's lower rim, which are all equal. The first row is the lowest."""
     filled = np.flatnonzero((picture[_RIM:] != picture[_RIM]).any(axis=(1, 2)))
     return picture[filled[0] :]

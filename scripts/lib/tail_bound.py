@@ -1,12 +1,13 @@
-"""How far may the mean of samples lie from what it estimates, when few of the samples bring most of it?
+"""Bounds on the deviation of a mean of samples from its expectation, if few samples contribute most of it.
 
-An error bar assumes a normal distribution; what rare events add to a mean is nearer to Poisson's. The bounds
-here hold for independent samples X of any distribution in [0, b] with the moments given. For any real s
+An error bar assumes a normal distribution; contributions of rare events are closer to a Poisson distribution.
+These bounds hold for independent samples X of any distribution in [0, b] with the given moments. For real s
 
     E exp(s X) <= 1 + s E X + s^2 / 2 E X^2 + psi(s b) / b^3 E X^3,   psi(u) = exp(u) - 1 - u - u^2 / 2,
 
-because psi(u) / u^3 grows with u: Bennett's inequality [Ben62] taken one moment further. Of the sum S of all
-Chernoff's bound then is P(S - E S >= t) <= exp(-s t) E exp(s (S - E S)), s > 0; its mirror image below.
+because psi(u) / u^3 increases with u: Bennett's inequality [Ben62] extended by one moment. For the sum S of
+all samples, Chernoff's bound is then P(S - E S >= t) <= exp(-s t) E exp(s (S - E S)), s > 0, and likewise for
+the lower tail.
 """
 
 from __future__ import annotations
@@ -16,13 +17,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
-# Values of s that are tried, relative to the best of a normal distribution: a heavier tail wants a smaller.
+# Values of s to try, relative to the optimum of a normal distribution; heavier tails need smaller values.
 _TILTS = 2.0 ** -np.arange(0, 10, 0.125)
 
 
 @dataclass(frozen=True)
 class Moments:
-    """Of one sample, for each of some pixels."""
+    """Moments of one sample, for each of several pixels."""
 
     mean: np.ndarray
     second: np.ndarray
@@ -40,8 +41,8 @@ class Moments:
 def log_p_of_pixels(
     difference: np.ndarray, moments: Moments, samples: int, variance: np.ndarray
 ) -> np.ndarray:
-    """Bounds of the logarithm of the probability that means of `samples` samples in each pixel differ as much
-    from estimates of their expectation, whose own error is normal and has this variance."""
+    """Bounds on the log probability that means of `samples` samples in each pixel differ by `difference` from
+    estimates of their expectation, whose own error is normal with `variance`."""
 
     def cumulant(s: np.ndarray) -> np.ndarray:
         return _cumulant(moments, s) + 0.5 * samples * s**2 * variance
@@ -52,7 +53,7 @@ def log_p_of_pixels(
 def log_p_of_sum(
     difference: float, weights: np.ndarray, moments: Moments, samples: int, variance: np.ndarray
 ) -> float:
-    """The same of the sum of all pixels' differences, each times its weight."""
+    """log_p_of_pixels() for the weighted sum of all pixels' differences."""
     w = weights * len(weights)  # the sum is the mean of w times a sample, over all samples of all pixels
     count = samples * len(weights)
 
@@ -64,7 +65,7 @@ def log_p_of_sum(
 
 
 def _log_p(difference, count: int, variance_of_one, cumulant: Callable):
-    """Of a mean of `count` samples. `cumulant`: bound of log E exp(s (X - E X)) of one of them."""
+    """The bound for a mean of `count` samples. `cumulant`: bound on log E exp(s (X - E X)) of one sample."""
     normal = difference / variance_of_one
     bounds = [count * (cumulant(tilt * normal) - tilt * normal * difference) for tilt in _TILTS]
     return np.minimum(np.log(2) + np.min(bounds, axis=0), 0.0)

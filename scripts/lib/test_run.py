@@ -1,4 +1,4 @@
-"""scripts/test: sets up, builds, runs the groups of tests, and counts."""
+"""scripts/test: sets up, builds, runs the groups of tests, and counts the results."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ OTHER_BLENDERS = ("4.3", "5.2", "4.5")
 
 
 class Clock:
-    """Seconds since it was made, and those of the processor that child processes took."""
+    """Seconds since its creation, and the processor seconds of child processes."""
 
     def __init__(self) -> None:
         self._start, self._processor = time.monotonic(), self._children()
@@ -37,7 +37,7 @@ class Clock:
 
 
 class Total:
-    """All cases so far, and how they are told. Times are kept for scripts/test_times."""
+    """Collects and prints all cases so far. Times are kept for scripts/test_times."""
 
     def __init__(self, file: Path) -> None:
         self._file = file
@@ -102,7 +102,7 @@ def main() -> int:
 
 
 def _name_denoiser() -> None:
-    """What the set-up may just have installed, as common.sh names it for scripts that begin later."""
+    """Sets VELOUR_OIDN to the denoiser that the setup may just have installed, as common.sh does."""
     for file in (ROOT / "build/tools/lib").glob(
         "python3*/site-packages/pyoidn/oidn/lib/libOpenImageDenoise.so.2"
     ):

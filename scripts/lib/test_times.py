@@ -1,4 +1,4 @@
-"""The table of times in docs/testing.md, from what scripts/test kept of its last run."""
+"""The table of times in docs/testing.md, from the times that the last run of scripts/test kept."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from velour_cli import ROOT
 
 _PAGE = ROOT / "docs/testing.md"
 _TIMES = ROOT / "build/release/tests/times.json"
-_SHOWN = 10  # slowest tests of a group
+_SHOWN = 10  # number of slowest tests shown per group
 
 
 def main() -> int:
@@ -33,7 +33,7 @@ def main() -> int:
 
 
 def text(groups: dict[str, dict]) -> str:
-    """`groups`: what scripts/test keeps of each, by name."""
+    """`groups`: results that scripts/test keeps, by name of the group."""
     conditions = provenance.sentence(provenance.conditions(seed=0, threads=threads()))
     rows = [
         [name, str(group["tests"]), f"{group['seconds']:.0f}", f"{group['processor']:.0f}"]

@@ -1,4 +1,4 @@
-"""What a tile looks like once it is repeated without end: the model of its BTF."""
+"""The model of the BTF of a tile that repeats infinitely."""
 
 from __future__ import annotations
 
@@ -10,11 +10,10 @@ from velour.native import Btf, Model, Scene, capture_job, compress_job, directio
 def model_of_tile(
     scene: Scene, tile: dict, data: Path, around: int, seed: int = 0, threads: int = 0, **capture
 ) -> tuple[Model, float]:
-    """Captures a committed scene that holds the tile into `data`, from below too where one sees through, and
-    compresses that.
+    """Captures a committed scene that holds the tile into `data`, also from below if one can see through it,
+    and compresses the capture. Returns the model and the seconds.
 
-    `tile`: its info(); `around`: of so many views and lights; `capture`: further options of capture_job().
-    Also gives the seconds.
+    `tile`: its info(); `around`: number of views and of lights; `capture`: further options of capture_job().
     """
     angles = directions(str(around))
     with capture_job(

@@ -1,7 +1,7 @@
-"""Runs inside Blender: one tile of geometry all over a plane or a cylinder, and the same objects smooth.
+"""Runs inside Blender: a plane or a cylinder covered with tiles of geometry, and the same objects smooth.
 
-The reference plane of the tile's BTF lies `height` over z = 0 of the tile; the smooth objects are made of it.
-Under the tiles lies a black sheet: what falls through is lost, as it is to a BTF of one side.
+The reference plane of the tile's BTF is `height` above z = 0 of the tile; the smooth objects are made of it.
+A black sheet under the tiles absorbs light that falls through, which a BTF of one side loses as well.
 """
 
 from __future__ import annotations
@@ -13,8 +13,8 @@ import bpy
 import numpy as np
 from mathutils import Matrix, Vector
 
-_REACH = 6  # tiles to each side of the middle
-_STEPS = 8  # facets of the smooth cylinder a tile
+_REACH = 6  # tiles on each side of the center
+_STEPS = 8  # facets of the smooth cylinder per tile
 
 
 class Plane(NamedTuple):
@@ -35,7 +35,7 @@ class Plane(NamedTuple):
 
 
 class Cylinder(NamedTuple):
-    """About an axis along y, `around` tiles; its topmost line goes through the origin."""
+    """A cylinder of `around` tiles about an axis along y; its topmost line goes through the origin."""
 
     period: float
     height: float
@@ -65,7 +65,7 @@ class Cylinder(NamedTuple):
 
 
 def add_tiles(tile: bpy.types.Object, shape: Plane | Cylinder) -> list[bpy.types.Object]:
-    """Copies of the tile that share one mesh, bent once; and the black sheet."""
+    """Adds copies of the tile, which share one bent mesh, and the black sheet."""
     mesh = tile.data.copy()
     points = np.empty(3 * len(mesh.vertices), np.float32)
     mesh.vertices.foreach_get("co", points)
@@ -84,7 +84,7 @@ def add_tiles(tile: bpy.types.Object, shape: Plane | Cylinder) -> list[bpy.types
 
 
 def _black_sheet(shape: Plane | Cylinder, thickness: float) -> bpy.types.Object:
-    """The smooth object, sunk under all of the tile."""
+    """The smooth object, lowered below the whole tile."""
     sheet = _smooth(shape, depth=shape.height + thickness)
     material = bpy.data.materials.new("Black")
     material.use_nodes = True
@@ -96,14 +96,14 @@ def _black_sheet(shape: Plane | Cylinder, thickness: float) -> bpy.types.Object:
 
 
 def add_smooth(shape: Plane | Cylinder) -> bpy.types.Object:
-    """The object of the reference plane; its texture coordinates count tiles."""
+    """Adds the reference plane as a smooth object; its texture coordinates count tiles."""
     obj = _smooth(shape, depth=0)
     bpy.context.scene.collection.objects.link(obj)
     return obj
 
 
 def _smooth(shape: Plane | Cylinder, depth: float) -> bpy.types.Object:
-    """A grid `depth` under the reference plane, bent as the tiles are."""
+    """A grid at `depth` below the reference plane, bent like the tiles."""
     columns = np.arange(shape.columns.start * _STEPS, shape.columns.stop * _STEPS + 1) / _STEPS
     u, v = np.meshgrid(columns, [-_REACH, _REACH])
     flat = np.stack([u, v, np.full_like(u, (shape.height - depth) / shape.period)], axis=-1).reshape(-1, 3)

@@ -1,8 +1,8 @@
-"""Is a picture of uniform samples what their true moments allow?
+"""Checks whether a picture of uniform samples is consistent with their true moments.
 
-Error bars from the spread of some renders are too short where one sample of many thousands brings most of a
-pixel: renders that missed it do not know of it. Here they come from the moments of a sample
-(uniform_moments), and how likely a difference is from a bound for any distribution with those (tail_bound).
+Error bars from the spread of some renders are too short where one of many thousands of samples contributes
+most of a pixel: renders that missed it do not know about it. Here, error bars come from the moments of a
+sample (uniform_moments), and probabilities from a bound for any distribution with these moments (tail_bound).
 """
 
 from __future__ import annotations
@@ -13,21 +13,21 @@ import numpy as np
 from agreement import LEVEL, LUMINANCE, two_sided_z
 from tail_bound import Moments, log_p_of_pixels, log_p_of_sum
 
-SEEN = 2.326  # standard errors beyond what is refused: a bias that large is seen in 99 of 100 cases
+SEEN = 2.326  # standard errors above the refused difference: such a bias is detected in 99 of 100 cases
 _BISECTIONS = 50
 
 
 @dataclass(frozen=True)
 class UniformAgreement:
-    """Tests: every pixel, their mean, and the mean with the weights that see a common factor best."""
+    """Tests: every pixel, their mean, and the mean with the weights that detect a common factor best."""
 
     tests: int
-    largest_z: float  # with true error bars
+    largest_z: float  # computed with true error bars
     spread_of_z: float  # standard deviation over the pixels; 1 where the error bars are right
-    p_value: float  # of the least likely difference among so many (Sidak)
-    ratio: float  # of the means of both
-    factor_seen: float  # what relative bias of all pixels alike is refused in 99 of 100 cases
-    pixel_bias_seen: float  # the same of one pixel alone; median over the pixels
+    p_value: float  # probability of the least likely difference among that many tests (Sidak)
+    ratio: float  # mean of the uniform samples over that of the other renders
+    factor_seen: float  # relative bias of all pixels alike that is refused in 99 of 100 cases
+    pixel_bias_seen: float  # likewise for one pixel alone; median over the pixels
 
     @property
     def holds(self) -> bool:
@@ -41,9 +41,9 @@ class UniformAgreement:
 def uniform_agreement(
     uniform: np.ndarray, other: np.ndarray, where: np.ndarray, moments: Moments, samples: int
 ) -> UniformAgreement:
-    """`uniform`: the mean of `samples` independent samples a pixel, [row, column, channel]. `other`: renders
-    of what it is held against, [batch, row, column, channel]; the error of their mean counts as normal."""
-    where = where & (moments.variance > 0)  # others are black, or of one colour
+    """`uniform`: mean of `samples` independent samples per pixel, [row, column, channel]. `other`: renders to
+    compare with, [batch, row, column, channel]; the error of their mean is treated as normal."""
+    where = where & (moments.variance > 0)  # other pixels are black, or constant
     u, others = uniform[where] @ LUMINANCE, other[:, where] @ LUMINANCE
     pixels = _Pixels(moments.at(where), samples, others.var(axis=0, ddof=1) / len(others))
     d, sums = u - others.mean(axis=0), [np.full(len(u), 1 / len(u)), pixels.factor_weights()]
@@ -65,7 +65,7 @@ def uniform_agreement(
 class _Pixels:
     moments: Moments
     samples: int
-    variance: np.ndarray  # of what the samples' means are held against
+    variance: np.ndarray  # variance of the estimates that the samples' means are compared with
 
     @property
     def error(self) -> np.ndarray:
@@ -75,8 +75,8 @@ class _Pixels:
         return float(np.sqrt((weights**2 * self.error**2).sum()))
 
     def factor_weights(self) -> np.ndarray:
-        """Of the sum of uniform samples whose error is smallest beside what one factor on all pixels changes:
-        from the moments alone, so that they depend on no render."""
+        """Weights of the sum of uniform samples that is most sensitive to a common factor on all pixels,
+        relative to its error. Computed from the moments alone, so that they do not depend on a render."""
         weights = self.moments.mean / self.moments.variance
         return weights / weights.sum()
 
@@ -97,7 +97,7 @@ class _Pixels:
 
 
 def _least_refused(log_p, error, level: float):
-    """The positive difference whose bound is `level`: by bisection between 0 and 2^10 standard errors."""
+    """The positive difference whose bound is `level`, by bisection between 0 and 2^10 standard errors."""
     low, high = np.zeros_like(error), 1024 * error
     for _ in range(_BISECTIONS):
         middle = 0.5 * (low + high)

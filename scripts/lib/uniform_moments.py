@@ -1,4 +1,4 @@
-"""What one uniform sample of each pixel brings: a program that finds it by importance sampling."""
+"""Moments of one uniform sample of each pixel, by a program that estimates them with importance sampling."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ _PROGRAM = ROOT / "build/release/native/bench/uniform_moments"
 
 @dataclass(frozen=True)
 class Found:
-    moments: Moments  # of the luminance; means of independent runs, and the largest of all
+    moments: Moments  # of the luminance: means over independent runs, and the largest sample of all runs
     error: np.ndarray  # relative standard error of the second moments, from the spread of the runs
 
 
@@ -27,7 +27,7 @@ def built() -> bool:
 
 
 def of(scene: Scene, renders: Renders, size: tuple[int, int], rays: int, seeds: range) -> Found:
-    """By `rays` camera rays a pixel in a run for each of `seeds`. `scene` has the default camera."""
+    """One run per seed, with `rays` camera rays per pixel. `scene` must have the default camera."""
     runs = np.array([_run(scene, renders, size, rays, seed) for seed in seeds], np.float64)
     mean, second, third = (runs[..., k].mean(axis=0) for k in range(3))
     error = runs[..., 1].std(axis=0, ddof=1) / len(runs) ** 0.5 / np.maximum(second, 1e-300)

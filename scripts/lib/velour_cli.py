@@ -1,4 +1,4 @@
-"""Runs the command line of Velour as a user would, and says what it said."""
+"""Runs the command line of Velour as a user would, and returns its reports."""
 
 from __future__ import annotations
 
@@ -10,12 +10,12 @@ ROOT = Path(__file__).resolve().parents[2]
 
 
 def velour(*arguments) -> dict:
-    """The report of one call; its message goes through to the terminal, its failure ends the run."""
+    """Returns the report of a call. Messages go to the terminal. Raises CalledProcessError on failure."""
     return json.loads(_run(*arguments, "--json", stdout=subprocess.PIPE).stdout)
 
 
 def velour_to_file(json_file: Path, *arguments) -> dict:
-    """The same; the report also lies in `json_file`, which appears when everything else is written."""
+    """Like velour(), but also leaves the report in `json_file`, which appears after all other output."""
     _run(*arguments, "--json-file", json_file, "--quiet")
     return json.loads(json_file.read_text(encoding="utf-8"))
 

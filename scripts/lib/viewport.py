@@ -1,4 +1,4 @@
-"""docs/viewport.md's measured part: how long the rendered viewport takes to show what has changed."""
+"""Measures for docs/viewport.md how long the rendered viewport takes to show a change."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ SCENES = {
     "objects": "5 million triangles in 500 objects, each with a mesh of its own",
     "instances": "100,000 instances of a sphere of 992 triangles",
 }
-SEEN, EXPORT, HELD = 0.2, 3.0, 0.05  # seconds: the targets
+SEEN, EXPORT, HELD = 0.2, 3.0, 0.05  # targets in seconds
 SCREEN = (1400, 1000)
 SECONDS = 3600
 HEADER = ["change", "seen after, s", "of it export, s", "Blender held up by a redraw, ms"]
@@ -60,7 +60,7 @@ def main() -> int:
 
 
 def _run(scene: str, arguments: argparse.Namespace) -> str:
-    """Why it failed, or nothing."""
+    """Returns why it failed, or ""."""
     folder = FILES / scene
     shutil.rmtree(folder, ignore_errors=True)
     folder.mkdir(parents=True)

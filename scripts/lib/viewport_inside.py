@@ -1,7 +1,7 @@
-"""Runs inside Blender's window: seconds until the rendered viewport shows a change.
+"""Runs inside Blender's window: measures the seconds until the rendered viewport shows a change.
 
-`--python viewport_inside.py -- FOLDER`. FOLDER/task.json names the scene, and how often it is switched off
-and on; FOLDER/result.json is what was found.
+`--python viewport_inside.py -- FOLDER`. FOLDER/task.json names the scene, and how often the viewport is
+switched off and on; the results go to FOLDER/result.json.
 """
 
 import json
@@ -19,15 +19,15 @@ import viewport_scenes
 from support import blender, viewport, window
 
 SAMPLES = 8
-PICTURE = (1280, 720)  # in real time
-REPEATS = 5  # of each change; the median counts
-DRAG = 5.0  # seconds of a change that goes on and on
+PICTURE = (1280, 720)  # size in real time
+REPEATS = 5  # repetitions of each change; the median counts
+DRAG = 5.0  # seconds of a continuous change
 _TURN = 0.005
 _PATIENCE = 120
 
 
 class Stopwatch:
-    """What the add-on's viewport does, and when: wraps the two calls that Blender makes."""
+    """Times the add-on's viewport by wrapping the two methods that Blender calls."""
 
     def __init__(self):
         engine_viewport = viewport.addon("engine.viewport").Viewport
@@ -54,7 +54,7 @@ class Stopwatch:
         self._is_drawn |= shown._job.picture.shown_at >= begin
 
     def until_seen(self):
-        """Until the window with a picture is on the screen: Blender's next turn comes after that."""
+        """Waits until the window with a picture is on the screen: Blender's next turn comes after that."""
         while not self._is_drawn:
             if time.monotonic() > self.begin + _PATIENCE:
                 raise TimeoutError("the viewport shows nothing")
@@ -68,7 +68,7 @@ class Stopwatch:
 def main():
     folder = Path(sys.argv[sys.argv.index("--") + 1])
     task = json.loads((folder / "task.json").read_text())
-    bpy.app.timers.register(lambda: _start(folder, task), first_interval=1.0)  # once the window is there
+    bpy.app.timers.register(lambda: _start(folder, task), first_interval=1.0)  # once the window exists
 
 
 def _start(folder, task):
@@ -114,7 +114,7 @@ def _repeated(watch, change):
 
 
 def _dragged(change):
-    """Pictures a second while something changes in every turn of Blender's."""
+    """Pictures per second while something changes in every turn of Blender's event loop."""
     shown, times, begin = viewport.shown_picture(), set(), time.monotonic()
     while time.monotonic() < begin + DRAG:
         change(len(times))
@@ -126,7 +126,7 @@ def _dragged(change):
 
 
 def _restarted(watch, count):
-    """MiB after each tenth of them."""
+    """Switches the viewport off and on `count` times; memory in MiB after each tenth of them."""
     shading, memory = viewport.space().shading, []
     for i in range(count):
         shading.type = "SOLID"
@@ -140,7 +140,7 @@ def _restarted(watch, count):
 
 
 def _real_time():
-    """Seconds of a picture in real time: drawn anew and read back, so that all of it has ended."""
+    """Seconds per real-time picture: redrawn and read back, so that drawing has completed."""
     bpy.context.scene.velour.viewport_mode = "REAL_TIME"
     yield from viewport.real_time_finished()
     shown, (width, height) = viewport.real_time(), PICTURE

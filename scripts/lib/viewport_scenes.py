@@ -1,4 +1,4 @@
-"""Runs inside Blender: scenes that a viewport shows, and what is changed in them, again and again."""
+"""Runs inside Blender: scenes for the viewport, and repeatable changes to them."""
 
 import math
 from pathlib import Path
@@ -14,7 +14,7 @@ INSTANCES = 100_000
 
 
 def monkey():
-    """One smooth object of a measured paint under a picture of a sky; a lamp."""
+    """One smooth object in a measured paint under an environment map and a light."""
     guide_scene.add_world()
     with _viewport():
         subject = guide_scene.add_monkey()
@@ -36,7 +36,7 @@ def objects():
 
 
 def instances():
-    """100,000 of a sphere of 992 triangles, at the vertices of a plane."""
+    """100,000 instances of a sphere of 992 triangles, at the vertices of a plane."""
     side = round(math.sqrt(INSTANCES))
     with _viewport():
         bpy.ops.mesh.primitive_uv_sphere_add(segments=32, ring_count=16, radius=0.01)
@@ -52,7 +52,7 @@ SCENES = {"monkey": monkey, "objects": objects, "instances": instances}
 
 
 def start(name):
-    """The scene, in a file as Blender starts with, its cube gone."""
+    """Builds the scene in Blender's startup file, without its cube."""
     bpy.data.objects.remove(bpy.data.objects["Cube"])
     SCENES[name]()
     view = _area().spaces.active.region_3d
@@ -74,7 +74,7 @@ def change_world(time):
 
 
 def change_material(time):
-    """Its colour, or how the measured one lies."""
+    """Changes the color, or the placement of a measured material."""
     material = bpy.data.objects["Subject"].active_material
     if material.name == "Grey":
         node = next(node for node in material.node_tree.nodes if node.type == "BSDF_DIFFUSE")

@@ -1,4 +1,4 @@
-"""Shells beside real geometry: outline, alpha, light, seconds, megabytes."""
+"""Compares shells with real geometry: silhouette, alpha, light, seconds, megabytes."""
 
 from __future__ import annotations
 
@@ -22,8 +22,8 @@ from votf_looks import Look, brdf, looks
 from votf_pictures import Shot, of_geometry, of_model
 from votf_shapes import Cloth, Cylinder, Sphere, Surface
 
-_HEIGHT = 0.06  # of the shell, of the sphere's radius
-_MOST_SIDE = 2048  # pixels
+_HEIGHT = 0.06  # height of the shell over the sphere's radius
+_MOST_SIDE = 2048  # maximum side of a picture, in pixels
 
 
 @dataclasses.dataclass(frozen=True)
@@ -32,8 +32,8 @@ class Extent:
     tile_pixels: tuple[int, ...] = (64, 16, 4)
     side: int = 512
     samples: int = 16
-    rays: int = 40_000_000  # of the goniometer
-    texels: int = 64  # of the BTFs
+    rays: int = 40_000_000  # rays of the goniometer
+    texels: int = 64  # texels per side of the BTFs
 
 
 QUICK = Extent(tiles=("net",), tile_pixels=(16,), side=128, samples=4, rays=4_000_000, texels=16)
@@ -97,7 +97,7 @@ def _surfaces(tile: Tile) -> dict[str, Surface]:
 
 
 def _compared(tile, surface: Surface, pixels: int, look: Look, extent: Extent) -> tuple:
-    # Large enough for all of the surface.
+    # Large enough for the whole surface.
     side = math.ceil(2.6 * surface.radius / surface.period * pixels)
     shot = Shot(surface, pixels, min(_MOST_SIDE, max(extent.side, side)), extent.samples)
     pictures = (

@@ -1,4 +1,4 @@
-"""How far the outline, the holes and the light of a picture are from those of real geometry."""
+"""Errors of the silhouette, the holes and the light of a picture against real geometry."""
 
 from __future__ import annotations
 
@@ -9,9 +9,9 @@ from scipy import ndimage
 
 
 class ShellErrors(NamedTuple):
-    outline: float  # soft intersection over union of alpha, holes filled
-    alpha: float  # the same with holes
-    light: float  # root mean square of the difference where both show the object, over that of the truth
+    outline: float  # soft intersection over union of alpha, with holes filled
+    alpha: float  # likewise, with holes
+    light: float  # root mean square of the difference over that of the truth, where both show the object
 
 
 def soft_iou(a: np.ndarray, b: np.ndarray) -> float:
@@ -20,7 +20,7 @@ def soft_iou(a: np.ndarray, b: np.ndarray) -> float:
 
 
 def filled(alpha: np.ndarray) -> np.ndarray:
-    """Holes, which no way from the border leads into at less than half alpha, become solid."""
+    """Makes holes solid: regions of alpha below 0.5 that are not connected to the border."""
     solid = ndimage.binary_fill_holes(alpha >= 0.5)
     inside = ndimage.binary_erosion(solid)
     return np.where(inside, 1.0, np.where(solid, np.maximum(alpha, 0.5), alpha))

@@ -1,4 +1,4 @@
-"""What surfaces of scripts/votf look like: one BRDF, or the tile's BTF; each smooth and with its shell."""
+"""Materials of scripts/votf: one BRDF, or the tile's BTF, each smooth and with its shell."""
 
 from __future__ import annotations
 
@@ -12,18 +12,18 @@ from tile_btf import model_of_tile
 from velour.native import Measurement, Model, Scene, Tile, fit_job, microsurface_job, votf_job
 
 _UNMOVED = ((1, 0, 0, 0), (0, 1, 0, 0), (0, 0, 1, 0))
-_DIRECTIONS = 81  # Bonn's, of views and of lights
+_DIRECTIONS = 81  # views and lights each, the directions of the Bonn BTFs
 
 
 class Look(NamedTuple):
     name: str
     smooth: Model
     shell: Model
-    of_geometry: Model | None  # none: the tile's own materials
+    of_geometry: Model | None  # None: the tile's own materials
 
 
 def brdf(folder: Path, rays: int) -> Model:
-    """Of a rough metal over a diffuse base, from the virtual goniometer."""
+    """A rough metal over a diffuse base, from the virtual goniometer."""
     table, model = folder / "metal.exr", folder / f"metal-{rays}.velour"
     if not model.exists():
         options = {"metal": "copper", "roughness": 0.4, "base_albedo": (0.5, 0.4, 0.3), "base_share": 0.6}
@@ -40,7 +40,7 @@ def brdf(folder: Path, rays: int) -> Model:
 def looks(
     tile: Tile, plain: Model, folder: Path, texels: int, progress: Progress
 ) -> Iterator[tuple[Look, Look]]:
-    """The BRDF first."""
+    """The look of the BRDF, then that of the BTF."""
     info = tile.info()
     with contextlib.ExitStack() as handles, Scene() as scene:
         mesh, materials = tile.add_to(scene)

@@ -1,4 +1,4 @@
-"""Pictures of a surface with a tile's geometry, with its BTF alone, and with its shell."""
+"""Renders a surface with a tile's geometry, with its BTF alone, and with its shell."""
 
 from __future__ import annotations
 
@@ -16,12 +16,12 @@ _FIELD = np.radians(20)
 class Picture:
     pixels: np.ndarray  # RGBA, premultiplied
     seconds: float
-    bytes: int  # of the scene
+    bytes: int  # memory of the scene
 
 
 @dataclasses.dataclass(frozen=True)
 class Shot:
-    """A surface whose tiles are so many pixels wide in a picture of so many."""
+    """A surface in a square picture of `side` pixels in which a tile is `tile_pixels` wide."""
 
     surface: Surface
     tile_pixels: float
@@ -31,7 +31,7 @@ class Shot:
     def picture(self, scene: Scene, strategy: str = "mis") -> Picture:
         scene.add_light("sun", (3, 3, 3), _sun(0.6, 0.5), angle=0.02)
         scene.set_world_color((0.5, 0.5, 0.5))
-        # Pixels a metre at the surface's middle.
+        # A tile spans `tile_pixels` at the distance of the surface's center.
         distance = self.side * self.surface.period / self.tile_pixels / (2 * np.tan(_FIELD / 2))
         up = 0.75 if isinstance(self.surface, Cloth) else 0.15
         eye = distance * np.array([0, -np.cos(up), np.sin(up)])
@@ -55,7 +55,7 @@ def of_geometry(shot: Shot, tile: Tile, material: Model | None) -> Picture:
 
 
 def of_model(shot: Shot, model: Model) -> Picture:
-    """The smooth surface."""
+    """A picture of the smooth surface with `model`."""
     with Scene() as scene:
         number, _ = scene.add_mesh(**smooth_mesh(shot.surface))
         material = scene.add_model_material(model)
@@ -73,7 +73,7 @@ def _own(scene: Scene, tile: Tile) -> list[int]:
 
 
 def _sun(elevation: float, azimuth: float) -> tuple:
-    """Its rays go along -z of the map."""
+    """Transform of a sun; its rays go along -z of the transform."""
     z = np.array(
         [np.cos(elevation) * np.sin(azimuth), -np.cos(elevation) * np.cos(azimuth), np.sin(elevation)]
     )

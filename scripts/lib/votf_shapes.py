@@ -1,6 +1,6 @@
-"""Surfaces that carry structure: smooth, for a shell, and with a tile's geometry all over them.
+"""Surfaces that carry mesostructure: smooth, for a shell, and covered with a tile's geometry.
 
-Surfaces count tiles: a point of one is (u, v) in periods of the tile, its height in metres.
+A point of a surface is (u, v) in periods of the tile; heights are in meters.
 """
 
 from __future__ import annotations
@@ -9,11 +9,11 @@ from typing import NamedTuple
 
 import numpy as np
 
-_FACETS = 8  # of the smooth mesh, a tile
+_FACETS = 8  # facets of the smooth mesh per side of a tile
 
 
 class Sphere(NamedTuple):
-    """Longitude and latitude, the axis along z; `rows` tiles from pole to pole."""
+    """A sphere parameterized by longitude and latitude, its axis along z; `rows` tiles from pole to pole."""
 
     rows: int
     period: float
@@ -36,7 +36,7 @@ class Sphere(NamedTuple):
 
 
 class Cylinder(NamedTuple):
-    """About z, `columns` tiles around and `rows` along."""
+    """A cylinder about z, `columns` tiles around and `rows` tiles along."""
 
     columns: int
     rows: int
@@ -54,7 +54,7 @@ class Cylinder(NamedTuple):
 
 
 class Cloth(NamedTuple):
-    """A square that hangs over a round table's edge: flat in the middle, folds around."""
+    """A square cloth that hangs over the edge of a round table: flat in the middle, with folds around."""
 
     rows: int
     period: float
@@ -88,7 +88,7 @@ Surface = Sphere | Cylinder | Cloth
 
 
 def smooth_mesh(surface: Surface) -> dict:
-    """The keywords of Scene.add_mesh; texture coordinates count tiles."""
+    """Arguments of Scene.add_mesh; texture coordinates count tiles."""
     nu, nv = surface.columns * _FACETS, surface.rows * _FACETS
     u, v = np.meshgrid(np.arange(nu + 1) / _FACETS, np.arange(nv + 1) / _FACETS)
     uv = np.stack([u, v], axis=-1)
@@ -112,7 +112,7 @@ def smooth_mesh(surface: Surface) -> dict:
 
 
 def structured_mesh(surface: Surface, tile: dict, period: float) -> dict:
-    """Copies of the tile's `positions` and `triangles` all over the surface: p + height n."""
+    """Covers the surface with copies of the tile's `positions` and `triangles`: p + height n."""
     points = tile["positions"].astype(float)
     count, triangles, placed = len(points), [], []
     for row in range(surface.rows):

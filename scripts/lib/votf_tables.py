@@ -1,4 +1,4 @@
-"""Ways to keep the view-dependent occlusion of tiles: what each gets wrong, and what it costs."""
+"""Compares ways to store the view-dependent occlusion of tiles: their errors and costs."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ _PROGRAM = ROOT / "build/release/native/bench/occlusion_tables"
 
 @dataclasses.dataclass(frozen=True)
 class Case:
-    """The net as it comes repeats itself in its tile, which suits tables; the irregular one does not."""
+    """The default net is periodic within its tile, which favors tables; the irregular one is not."""
 
     tile: str
     irregularity: float

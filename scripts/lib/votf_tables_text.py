@@ -1,4 +1,4 @@
-"""docs/votf_tables.md and its csv."""
+"""Writes docs/votf_tables.md and its CSV."""
 
 from __future__ import annotations
 
@@ -103,7 +103,7 @@ def _percent(share: float) -> str:
 
 
 def _verdict(result: dict) -> str:
-    """Ours, as fine as the texels, against the targets."""
+    """Our distances, at the resolution of the texels, against the targets."""
     ours, linear = result["candidates"][-1], result["candidates"][0]
     wrong, border = ours["stored"]["wrong"], ours["stored"]["border"]
     share = ours["unseen"]["wrong"] / max(linear["unseen"]["wrong"], 1e-12)

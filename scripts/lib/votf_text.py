@@ -1,4 +1,4 @@
-"""docs/votf_numbers.md and its pictures."""
+"""Writes docs/votf_numbers.md and its pictures."""
 
 from __future__ import annotations
 
@@ -11,13 +11,13 @@ import provenance
 from display import display
 from markdown_table import table
 
-_BEHIND = 0.25  # radiance
-_CELL = 3.0  # inches, at 100 dots an inch
+_BEHIND = 0.25  # background radiance
+_CELL = 3.0  # width of a picture in inches, at 100 dots per inch
 _TITLES = ("geometry", "smooth", "shell")
 
 
 def draw(path: Path, sheet: list) -> None:
-    """A row a surface: its three pictures, and a part of each, magnified."""
+    """Draws two rows per surface: its three pictures, and a magnified part of each."""
     figure, axes = plots.sheet(2 * len(sheet), 3, (3 * _CELL, 2 * len(sheet) * (_CELL + 0.25)))
     cells = np.reshape(axes, (2 * len(sheet), 3))
     for row, (surface, pictures) in enumerate(sheet):
@@ -29,7 +29,7 @@ def draw(path: Path, sheet: list) -> None:
 
 
 def _edge(picture: np.ndarray, alpha: np.ndarray) -> np.ndarray:
-    """About the rightmost place of the object."""
+    """Crops a picture around the rightmost point of the object."""
     side = picture.shape[0] // 5
     column = int(np.flatnonzero(alpha.max(axis=0) > 0.5)[-1])
     row = int(np.median(np.flatnonzero(alpha[:, column] > 0.5)))
@@ -86,7 +86,7 @@ One BRDF serves all three: what differs is the shape alone. {_ratios(rows, "BRDF
 
 
 def _ratios(rows: list, look: str) -> str:
-    """How much longer the shell takes than the smooth surface, for each size of tiles."""
+    """Ratio of the render times of the shell and the smooth surface, for each size of tiles."""
     parts = []
     for pixels in dict.fromkeys(row.tile_pixels for row in rows):
         ratios = [r.seconds[2] / r.seconds[1] for r in rows if (r.look, r.tile_pixels) == (look, pixels)]

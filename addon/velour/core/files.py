@@ -1,4 +1,4 @@
-"""Files that are either the old one or the new one, never a part."""
+"""Atomic writes (a file is the old one or the new one, never a part), reads that can be cancelled, hashes."""
 
 from __future__ import annotations
 
@@ -15,11 +15,11 @@ from pathlib import Path
 from .read_job import check
 
 _ATTEMPTS = 16
-_BLOCK = 1 << 20  # bytes between two looks whether they are still wanted
+_BLOCK = 1 << 20  # bytes between two checks for a cancel
 
 
 def write_atomic(path: str | os.PathLike, write: Callable[[Path], object]) -> None:
-    """Calls `write(temporary)` with a name beside `path`, then renames it; leaves no trace of a failure."""
+    """Calls `write(temporary)` with a path beside `path`, then renames it; a failure leaves no trace."""
     path = Path(path)
     temporary = _new_beside(path)
     try:
@@ -31,9 +31,9 @@ def write_atomic(path: str | os.PathLike, write: Callable[[Path], object]) -> No
 
 
 def _new_beside(path: Path) -> Path:
-    """A new, empty file with a random name: no other machine that writes to the same folder has it.
+    """A new, empty file with a random name that no other machine uses in the same folder.
 
-    As the umask has it, which mkstemp() does not ask: its files are for secrets.
+    Its permissions follow the umask, unlike those of mkstemp(), whose files are private.
     """
     for _ in range(_ATTEMPTS):
         temporary = path.with_name(f".{path.stem}-{secrets.token_hex(8)}{path.suffix}")
@@ -52,12 +52,12 @@ def write_json(path: str | os.PathLike, report: dict) -> None:
 
 
 def json_text(report: dict) -> str:
-    """Standard JSON: a number that is not finite is an error, not the word NaN."""
+    """Standard JSON. Raises ValueError for a number that is not finite, instead of writing NaN."""
     return json.dumps(report, indent=2, ensure_ascii=False, allow_nan=False)
 
 
 def sha256(path: str | os.PathLike) -> str:
-    """Of the file's bytes, in hexadecimal digits. On the thread of a ReadJob a cancel ends it."""
+    """SHA-256 of the file in hexadecimal digits. Can be cancelled on the thread of a ReadJob."""
     digest = hashlib.sha256()
     for block in _blocks(path):
         digest.update(block)
@@ -65,7 +65,7 @@ def sha256(path: str | os.PathLike) -> str:
 
 
 def sha256_of(data: bytes) -> str:
-    """As sha256(), of bytes."""
+    """Like sha256(), for bytes in memory."""
     digest, view = hashlib.sha256(), memoryview(data)
     for begin in range(0, len(view), _BLOCK):
         check()
@@ -74,18 +74,18 @@ def sha256_of(data: bytes) -> str:
 
 
 def read_bytes(path: str | os.PathLike) -> bytes:
-    """All of the file. On the thread of a ReadJob a cancel ends it."""
+    """The whole file. Can be cancelled on the thread of a ReadJob."""
     return b"".join(_blocks(path))
 
 
 def _blocks(path: str | os.PathLike) -> Iterator[bytes]:
     """Raises OSError unless it is a regular file: pipes wait for a writer, devices may never end."""
-    # Opening does not wait either.
+    # O_NONBLOCK: opening does not wait either.
     with open(
         path, "rb", opener=lambda name, flags: os.open(name, flags | getattr(os, "O_NONBLOCK", 0))
     ) as file:
         if not stat.S_ISREG(os.fstat(file.fileno()).st_mode):
-            raise OSError(errno.EINVAL, "it is no regular file", str(path))
+            raise OSError(errno.EINVAL, "not a regular file", str(path))
         while block := file.read(_BLOCK):
             check()
             yield block

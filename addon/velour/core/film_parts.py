@@ -1,8 +1,8 @@
-"""Samples of a frame as files: what several machines render of it, or an ended run leaves to the next.
+"""Files with samples of a frame, rendered by several machines or left by an interrupted run for the next.
 
 Each file has a range [begin, end) of the light directions of every pixel. It is an OpenEXR picture whose
-first four channels are the picture so far; the others are Job.read_sums(), so that all passes go on and add
-up. Its header says what it is a part of, as picture_parts.py has it.
+first four channels are the picture so far; the others are Job.read_sums(), from which all passes can be
+continued and added up. Its header says what it is a part of (picture_parts.py).
 """
 
 from __future__ import annotations
@@ -23,11 +23,11 @@ from . import picture_parts
 from .picture_parts import Part, Range
 
 _COLOURS = 4
-_LONGEST_NAME = 200  # of the 255 bytes that most file systems have
+_LONGEST_NAME = 200  # bytes; a suffix follows, and most file systems allow 255
 
 
 class FilmParts:
-    """Those of one frame's view layer within a range of samples."""
+    """The files of one view layer of a frame within a range of samples."""
 
     def __init__(
         self,
@@ -38,9 +38,9 @@ class FilmParts:
         asked: Range | None = None,
         stay: bool = False,
     ):
-        """`name`: what its files' names begin with; `made`: all that the frame depends on, spp and split
-        among it; `asked`: all samples unless given; `stay`: who asks for the frame removes the files.
-        Raises a sentence where a file is of another frame."""
+        """`name`: prefix of the file names; `made`: everything that the frame depends on, including spp and
+        split; `asked`: requested range, by default all samples; `stay`: the user removes the files.
+        Raises VelourError if a file belongs to another frame."""
         self._folder, self._name, self.stay = folder, _file_name(name), stay
         self._made, self._size = json.loads(json.dumps(made)), size
         self.asked = asked or (0, made["spp"])
@@ -54,22 +54,22 @@ class FilmParts:
 
     @property
     def gaps(self) -> list[Range]:
-        """What is asked for and not there."""
+        """Requested ranges that no file has."""
         ends = [self.asked[0], *(end for part in self._kept for end in part.ranges[0]), self.asked[1]]
         return [(begin, end) for begin, end in list(pairwise(ends))[::2] if begin < end]
 
     @property
     def files(self) -> list[Path]:
-        """All there are of what is asked for, also such that others have made superfluous."""
+        """All files within the requested range, including redundant ones."""
         return [Path(part.name) for part in self._all]
 
     def begin(self, job: Job, gap: Range) -> None:
-        """Hands all samples before `gap` to `job`, which is to render it. Gaps are rendered in order."""
+        """Adds all samples before `gap` to `job`, which will render the gap. Gaps are rendered in order."""
         for part in self._before(gap):
             job.add_sums(_sums(part, job))
 
     def keep(self, job: Job, gap: Range, end: int) -> Path:
-        """Writes what begin() handed on and `job` has added up to `end`; the former files go."""
+        """Writes the samples that begin() added and `job` rendered, up to `end`; removes the files before."""
         before = self._before(gap)
         written = self._write(job, (self.asked[0], end))
         self._remove(before)
@@ -78,14 +78,14 @@ class FilmParts:
         return written
 
     def complete(self, job: Job, gap: Range | None) -> None:
-        """Adds all that `job` does not have yet, which has rendered the last gap, or nothing."""
+        """Adds all samples that `job` lacks, which has rendered the last gap or nothing."""
         before = self._before(gap) if gap else []
         for part in self._kept:
             if part not in before:
                 job.add_sums(_sums(part, job))
 
     def keep_all(self, job: Job) -> Path:
-        """Writes what is asked for, once complete() made it; it takes the place of all other files."""
+        """Writes the requested range after complete(); the file replaces all others."""
         written = self._write(job, self.asked)
         self._remove([part for part in self._all if Path(part.name) != written])
         return written
@@ -106,7 +106,7 @@ class FilmParts:
         return Part(name, self._made, (span,), Frame(*self._size), *self._size, simd, None)
 
     def _found(self) -> list[Part]:
-        """Sorted; longer ones before others that begin at the same sample."""
+        """Parts within the requested range, sorted by first sample, then longest first."""
         wanted = self._part("this render", self.asked)
         found = []
         for path in self._folder.glob(f"{glob.escape(self._name)}.*-*.exr"):
@@ -115,7 +115,7 @@ class FilmParts:
                 continue
             if difference := picture_parts.difference(part, wanted):
                 raise refuse(
-                    f"{path} is not of this render: {difference}; remove it, or name another folder."
+                    f"{path} belongs to another render, as {difference}; remove it, or choose another folder."
                 )
             begin, end = part.ranges[0][0], part.ranges[-1][1]
             if len(part.ranges) == 1 and self.asked[0] <= begin and end <= self.asked[1]:
@@ -135,15 +135,17 @@ class FilmParts:
 
     def _check_asked(self) -> None:
         (begin, end), spp, split = self.asked, self._made["spp"], self._made["split"]
-        text = f"The samples {begin}:{end}"
+        text = f"Samples {begin}:{end}"
         if end > spp:
-            raise refuse(f"{text} go beyond {spp}, those of the scene; raise them there, or ask for fewer.")
+            raise refuse(f"{text} exceed the {spp} samples of the scene; raise Samples, or request fewer.")
         if any(at % split and at != spp for at in (begin, end)):
-            raise refuse(f"{text} must begin and end at multiples of {split}, which share a camera ray.")
+            raise refuse(
+                f"{text} must begin and end at multiples of {split}, the samples per camera ray (Split)."
+            )
 
 
 def _file_name(name: str) -> str:
-    """Quoted, and no longer than file systems allow together with what follows it."""
+    """The name quoted, and shortened to leave room for the suffix of the file name."""
     quoted = quote(name, safe="")
     if len(quoted) <= _LONGEST_NAME:
         return quoted
@@ -151,7 +153,7 @@ def _file_name(name: str) -> str:
 
 
 def _opened(path: Path) -> Part | None:
-    """None: another run of the same frame has just put a longer one in its place."""
+    """None: another run of the same frame has just replaced the file by a longer one."""
     try:
         return picture_parts.part_of(path, images.header(path))
     except VelourError:
@@ -163,5 +165,5 @@ def _opened(path: Path) -> Part | None:
 def _sums(part: Part, job: Job) -> np.ndarray:
     width, height, channels = images.size(part.name)
     if (width, height) != job.size or channels != _COLOURS + job.sums_per_pixel():
-        raise refuse(f"{part.name} has other pixels or passes than this render; remove it.")
+        raise refuse(f"{part.name} differs from this render in its pixels or passes; remove it.")
     return images.read(part.name)[..., _COLOURS:]

@@ -1,7 +1,7 @@
-"""How long the fit of a BTF will take: by those that were made on this machine.
+"""Estimates the time of a BTF fit from fits that were made on this machine.
 
-A smaller fit, made to find out, would mislead: it looks at fewer places, and tries other shapes. What fits of
-all sizes took is known, and grows with texels and with pairs to powers that were measured (docs/blender.md).
+A small trial fit would mislead: it looks at fewer places and tries other shapes. Recorded times are scaled
+with texels and pairs to powers that were measured (docs/reference/panels.md).
 """
 
 from __future__ import annotations
@@ -19,32 +19,32 @@ from ..native.version import VERSION
 from . import files
 from .capture_size import duration
 
-_FOLDER = "fits-2"  # another form has another name
+_FOLDER = "fits-2"  # changes with the format
 _KEPT = 64
 _NEAREST = 3
-_POWERS = {"srbf": (0.65, 0.85), "kcta": (1.1, 0.75)}  # of texels, of pairs, that the seconds grow with
+_POWERS = {"srbf": (0.65, 0.85), "kcta": (1.1, 0.75)}  # powers of texels and of pairs in the time
 _USUAL_POWERS = 0.9, 0.8
-_MISS, _USUAL_MISS = {"srbf": 1.5}, 2.0  # times too long or too short
-_FAR = 16.0  # times as large or small, what comes nearest: the miss is squared
-# Processor seconds of a weave of so many texels under so many pairs, for who has made none.
+_MISS, _USUAL_MISS = {"srbf": 1.5}, 2.0  # factor by which an estimate may be off
+_FAR = 16.0  # if the nearest fit is this many times larger or smaller, the miss is squared
+# Processor seconds for a weave of this many texels and pairs, used until there are fits.
 _WEAVE_SIZE = 32 * 32, 81 * 81
 _WEAVE = {"srbf": 21.0, "kcta": 58.0}
 
 
 class Fit(NamedTuple):
-    """What its time follows from."""
+    """The parameters that the time of a fit depends on."""
 
     method: str
     texels: int
     pairs: int
-    searched: bool  # for a largest error: several fits
-    sized: bool  # whether a size was asked for
-    shaped: bool  # whether clusters are, of tensors; else many are tried
+    searched: bool  # a largest error was requested, which takes several fits
+    sized: bool  # a size was requested
+    shaped: bool  # the clusters of tensors were given; otherwise many are tried
     threads: int
 
 
 def fit_of(info: dict, asked: dict, threads: int) -> Fit:
-    """`info`: of the BTF; `asked`: options of compress_job()."""
+    """`info`: the BTF's info; `asked`: options of compress_job()."""
     return Fit(
         asked["method"],
         math.prod(info["texels"]),
@@ -62,28 +62,28 @@ class _Made(NamedTuple):
 
 
 def remember(folder: Path, fit: Fit, seconds: float) -> None:
-    """Adds one that was made, from its beginning to its end. Does without where nothing can be written.
+    """Records a fit that was made from beginning to end. Does nothing if the folder is not writable.
 
-    Each is a file of its own, which is never changed: others that end at the same time, on other machines as
-    well, lose nothing by it, and nobody waits.
+    Each fit is a file of its own that never changes, so that fits that end at the same time, also on other
+    machines, neither overwrite each other nor wait.
     """
     kept = folder / _FOLDER
     entry = {"release": list(VERSION), "fit": list(fit), "seconds": seconds}
     with contextlib.suppress(OSError):
         kept.mkdir(parents=True, exist_ok=True)
-        # By time, to which a random number is added: clocks may agree.
+        # Named by the time and a random number, as clocks may agree.
         files.write_json(kept / f"{time.time_ns():020}-{secrets.token_hex(4)}.json", entry)
         for old in _entries(kept)[:-_KEPT]:
             old.unlink(missing_ok=True)
 
 
 def _entries(kept: Path) -> list[Path]:
-    """The oldest first, without what is being written."""
+    """The oldest first, without files that are being written."""
     return sorted(path for path in kept.glob("*.json") if not path.name.startswith("."))
 
 
 def _known(folder: Path) -> list[_Made]:
-    """Those of this release, the oldest first, without damaged ones."""
+    """Fits made with this release, the oldest first, without damaged entries."""
     try:
         read = [_made(path) for path in _entries(folder / _FOLDER)]
     except OSError:
@@ -98,21 +98,21 @@ def _made(path: Path) -> _Made | None:
         usable = (
             entry["release"] == list(VERSION) and made.seconds > 0 and made.fit.texels * made.fit.pairs > 0
         )
-    except (OSError, ValueError, TypeError, KeyError):  # another has just taken it away, or it is damaged
+    except (OSError, ValueError, TypeError, KeyError):  # just removed by another process, or damaged
         return None
     return made if usable else None
 
 
 class Range(NamedTuple):
-    """Seconds."""
+    """Range of times, in seconds."""
 
     least: float
     most: float
-    made: int  # fits that it is from
+    made: int  # number of fits it is based on
 
 
 def expected(folder: Path, fit: Fit) -> Range | None:
-    """By the fits of this kind that come nearest in size; None: there are none."""
+    """Estimate from the fits of the same kind that are nearest in size; None: there are none."""
     alike = [
         m for m in _known(folder) if m.fit._replace(texels=0, pairs=0) == fit._replace(texels=0, pairs=0)
     ]
@@ -136,16 +136,19 @@ def _scaled(seconds: float, fit: Fit, texels: int, pairs: int) -> float:
 
 
 def time_text(folder: Path, fit: Fit) -> str:
-    """What artists are told."""
+    """Text for the artist."""
     found = expected(folder, fit)
     if found is not None:
         fits = "one fit" if found.made == 1 else f"{found.made} fits"
-        return f"{_range_text(found)}, by {fits} made here"
+        return f"{_range_text(found)}, estimated from {fits} on this computer"
     known = _WEAVE.get(fit.method)
     if known is None or fit.searched or fit.sized or fit.shaped:
-        return "no such fit was made here yet, so nothing tells how long it will take"
+        return "time unknown, as no similar fit was made on this computer yet"
     seconds = duration(_scaled(known, fit, *_WEAVE_SIZE))
-    return f"no such fit was made here yet; of a weave it took about {seconds} of one processor elsewhere"
+    return (
+        "time unknown, as no similar fit was made on this computer yet; on another computer a weave of this"
+        f" size took about {seconds} of processor time"
+    )
 
 
 def _range_text(found: Range) -> str:

@@ -1,4 +1,4 @@
-"""The measurements and models of a folder, found by their names: no file is opened."""
+"""Finds the measurements and models of a folder by name, without opening a file."""
 
 from __future__ import annotations
 
@@ -7,38 +7,38 @@ import re
 from collections.abc import Callable
 from typing import NamedTuple
 
-# Never .exr and .xml: those are pictures and anything to everyone else.
+# Without .exr and .xml, which are mostly other pictures and data.
 MODELS = (".velour",)
 MEASUREMENTS = (".binary", ".bsdf", ".brdf", ".btf")
 SUFFIXES = (*MODELS, *MEASUREMENTS)
 _OFTEN_OTHERS = (".exr", ".xml")  # tables, and BSDFs of Radiance and WINDOW
-INDICES = ("btf.json", "btf.csv")  # each makes its folder one BTF; the first that is there counts
-MOST_ENTRIES = 100_000  # looked at: a folder may be the root of a file server
+INDICES = ("btf.json", "btf.csv")  # each makes its folder one BTF; the first one present counts
+MOST_ENTRIES = 100_000  # entries visited at most: a folder may be the root of a file server
 _MOST_DEPTH = 8
 
 
 def file_filter(without: str = "") -> str:
-    """For a file browser: all that a material can be made of, but for a suffix."""
+    """Filter of a file browser for everything that a material can be made of, except the suffix `without`."""
     suffixes = (suffix for suffix in (*SUFFIXES, *_OFTEN_OTHERS) if suffix != without)
     return ";".join((*(f"*{suffix}" for suffix in suffixes), *INDICES))
 
 
 class MeasurementFile(NamedTuple):
-    """Changes whenever the file has; pictures that the index of a BTF names may change without it."""
+    """Identifies the state of a file, but not of the pictures that the index of a BTF names."""
 
     path: str
-    name: str  # from the folder that was searched, without the suffix
-    bytes: int  # of a BTF that is a folder: of its index
+    name: str  # relative to the folder that was searched, without the suffix
+    bytes: int  # for a BTF folder: size of its index
     modified: int  # nanoseconds
 
 
 class Found(NamedTuple):
-    files: tuple[MeasurementFile, ...]  # as people sort them: 2 before 10
-    problems: tuple[str, ...]  # a sentence each
+    files: tuple[MeasurementFile, ...]  # in natural order: 2 before 10
+    problems: tuple[str, ...]  # one sentence each
 
 
 def find_measurements(folder: str | os.PathLike, stopped: Callable[[], bool] = lambda: False) -> Found:
-    """Of the folder and those below it. `stopped` ends the search, with what was found by then."""
+    """Searches the folder and its subfolders. Ends with what was found so far if `stopped` returns True."""
     search = _Search(os.path.abspath(folder), stopped)
     search.run()
     return Found(tuple(sorted(search.files, key=_order)), tuple(search.problems))
@@ -62,20 +62,20 @@ class _Search:
                 below = self._look_into(folder)
             except OSError as error:
                 self.problems.append(
-                    f"{folder}: cannot be read ({error.strerror}); check its name and its permissions."
+                    f"{folder} cannot be read ({error.strerror}); check its name and permissions."
                 )
                 continue
             if self._looked_at >= MOST_ENTRIES:
                 self.problems.append(
-                    f"{self._folder}: only the first {MOST_ENTRIES:,} files were looked at; choose a folder"
-                    " further down."
+                    f"{self._folder}: only the first {MOST_ENTRIES:,} entries were searched; choose a"
+                    " subfolder."
                 )
                 return
             if depth < _MOST_DEPTH:
                 waiting.extend((each, depth + 1) for each in below)
 
     def _look_into(self, folder: str) -> list[str]:
-        """The folders in it that are to be searched as well."""
+        """Adds the files in a folder. Returns the subfolders to search."""
         below, found, indices = [], [], {}
         with os.scandir(folder) as entries:
             for entry in entries:
@@ -99,7 +99,7 @@ class _Search:
             if not entry.is_file():
                 return
             state = entry.stat()
-        except OSError:  # gone meanwhile
+        except OSError:  # removed meanwhile
             return
         named = os.path.dirname(entry.path) if entry.name in INDICES else os.path.splitext(entry.path)[0]
         name = os.path.basename(named) if named == self._folder else os.path.relpath(named, self._folder)

@@ -1,7 +1,7 @@
-"""What a render of the command line will take, told from its files before they are read.
+"""Estimates the memory of a command-line render from its files, before they are read.
 
-The factors are those of measured peaks. They err to the safe side: what is freed before the next part comes
-is counted as if it stayed.
+The factors come from measured peaks. They are conservative: memory that is freed before the next part is
+allocated is counted as if it stayed.
 """
 
 from __future__ import annotations
@@ -17,23 +17,23 @@ from .sizes import limit_size
 
 MIB = 1 << 20
 
-_STARTING = 16 * MIB  # whatever the scene
+_STARTING = 16 * MIB  # for any scene
 _THREAD = 2 * MIB
-_MODEL = 4  # a byte of a model: halves become floats, tables over the view
-_BTF_MODEL = 10  # of a BTF's, which are packed; up to 7 measured, of singular values
-_MEASUREMENT = 3  # a byte of a table: the table, its proposal
-_WORLD_PIXEL = 22  # texels and their sums
-_WORLD_VALUE = 8  # while it is read
-_PIXEL = 96  # sums of a pixel, and the picture that is written
-_MERGED_PIXEL = 112  # beside what a side file has
+_MODEL = 4  # bytes per byte of a model: halves become floats, plus tables over the view
+_BTF_MODEL = 10  # per byte of a BTF model, which is packed; up to 7 measured, for SVD
+_MEASUREMENT = 3  # per byte of a table: the table and its proposal
+_WORLD_PIXEL = 22  # per pixel: texels and their sums
+_WORLD_VALUE = 8  # per channel of a pixel, while it is read
+_PIXEL = 96  # per pixel: its sums, and the picture that is written
+_MERGED_PIXEL = 112  # more per pixel if a side file is merged in
 
 
 @dataclass(frozen=True)
 class Estimate:
-    """Bytes at the peak, of the whole process."""
+    """Peak memory of the whole process, in bytes."""
 
     parts: dict[str, int]
-    remedies: dict[str, str]  # of each part, where it is the largest
+    remedies: dict[str, str]  # advice by part, for the largest one
 
     @property
     def total(self) -> int:
@@ -44,16 +44,16 @@ class Estimate:
 
     @property
     def remedy(self) -> str:
-        """What helps most."""
+        """Advice for the largest part."""
         return self.remedies[max(self.parts, key=self.parts.get)]
 
     def within(self, limit: Limit | None, what: str) -> str:
-        """A line that states it. Raises VelourError where `what` would take more than the limit."""
+        """A line that states the estimate. Raises VelourError if `what` would exceed the limit."""
         size = limit_size(self.total)
         if limit and self.total > limit.size:
             raise VelourError(
                 Status.OUT_OF_MEMORY,
-                f"{what} would take about {size} of memory ({self}), above its limit of"
+                f"{what} needs about {size} of memory ({self}), more than the limit of"
                 f" {limit_size(limit.size)} ({limit.of}); {self.remedy}.",
             )
         at_most = f" of {limit_size(limit.size)} ({limit.of})" if limit else ""
@@ -61,11 +61,11 @@ class Estimate:
 
 
 _REMEDIES = {
-    "program": "give it more",
-    "mesh": "take a mesh of fewer faces, or give it more",
-    "material": "fit a model and render that, or give it more",
-    "world": "take a picture of fewer pixels for the world, or give it more",
-    "picture": "render parts of it (--crop) and merge them, or give it more",
+    "program": "raise the limit",
+    "mesh": "use a mesh with fewer faces, or raise the limit",
+    "material": "fit a model and render it instead, or raise the limit",
+    "world": "use an environment image with fewer pixels, or raise the limit",
+    "picture": "render parts of the image (--crop) and merge them, or raise the limit",
 }
 
 
@@ -78,8 +78,8 @@ def estimate(
     goes_on: bool,
     threads: int,
 ) -> Estimate:
-    """`window`: pixels that are rendered, across and up; `goes_on`: beside those of a side file."""
-    of_material = _material(material)  # opens the library, which is a part of the program
+    """`window`: width and height of the rendered pixels; `goes_on`: they are merged with a side file."""
+    of_material = _material(material)  # first, as it opens the library, which counts as program
     width, height, channels = images.size(world)
     parts = {
         "program": resident() + _STARTING + _THREAD * threads,
@@ -94,7 +94,7 @@ def estimate(
 def _material(path: str) -> int:
     info = library.file_info(path)
     if info["kind"] == "btf":
-        return info["raw_bytes"] * 4 // 3  # with coarser levels
+        return info["raw_bytes"] * 4 // 3  # with its mip levels
     if info["kind"] != "model":
         return os.path.getsize(path) * _MEASUREMENT
     tables = sum(side.get("table_bytes") or 0 for side in info.get("sides", ()))
@@ -102,12 +102,12 @@ def _material(path: str) -> int:
 
 
 def resident() -> int:
-    """Bytes of this process that are in memory now; 0 where the system does not tell."""
+    """Resident memory of this process in bytes; 0 if the system does not report it."""
     return _status("VmRSS")
 
 
 def peak() -> int:
-    """The most that there ever were."""
+    """Peak of resident(), in bytes."""
     return _status("VmHWM")
 
 

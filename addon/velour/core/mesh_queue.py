@@ -1,4 +1,4 @@
-"""Meshes on their way to the library's scene: small ones are handed on together."""
+"""Queues meshes for the library's scene and adds small ones together."""
 
 from __future__ import annotations
 
@@ -7,26 +7,26 @@ import numpy as np
 from ..native.mesh_descs import MESH_ARRAYS
 from .mesh_arrays import MeshArrays
 
-_ROOM = 1 << 18  # numbers in a pool
+_ROOM = 1 << 18  # capacity of a pool, in numbers
 
 
 class _Pool:
-    """Memory for one array each of many meshes, one behind the other without a gap."""
+    """Memory for one array each of many meshes, stored back to back."""
 
     def __init__(self, dtype):
         self._memory = np.empty(_ROOM, dtype)
         self._held = 0
         self._lent_at = 0
-        self._meshes, self._sizes = [], []  # which of those that wait hold how many numbers
+        self._meshes, self._sizes = [], []  # queue index of each mesh held, and its count of numbers
 
     def lend(self, count):
-        """Memory behind what is held, until another asks or hold() makes it last; else memory of its own."""
+        """Memory after the arrays held, valid until the next lend() unless held; a new array if too large."""
         self._lent_at = self._held
         end = self._held + count
         return self._memory[self._held : end] if end <= _ROOM else np.empty(count, self._memory.dtype)
 
     def hold(self, mesh, array):
-        """Puts it there, if it was not read into what was lent last; False: there is no room."""
+        """Keeps `array`; copies it unless it was read into the memory lent last. False: there is no room."""
         end = self._held + array.size
         if end > _ROOM:
             return False
@@ -38,10 +38,10 @@ class _Pool:
         return True
 
     def take(self, meshes):
-        """What that many hold, which stays until another array is read, and how much of it each."""
+        """The numbers of the first `meshes` meshes and their counts, valid until another array is read."""
         sizes = np.zeros(meshes + 1, np.int64)
         sizes[self._meshes] = self._sizes
-        sizes = sizes[:meshes]  # the one beyond had no room in another pool
+        sizes = sizes[:meshes]  # the mesh after them had no room in another pool
         self._held, self._meshes, self._sizes = 0, [], []
         return self._memory[: sizes.sum()], sizes
 
@@ -51,19 +51,19 @@ class MeshQueue:
         self._scene = scene
         self._notes = notes
         self._pools = {name: _Pool(MESH_ARRAYS[name][0]) for name in MeshArrays._fields}
-        self._owners = []  # of those that wait: an object's name
-        self._triangles = []  # of those, how many
-        self._numbers = []  # in the scene, of all before; None: there is nothing to see
+        self._owners = []  # per queued mesh: name of an object that shows it
+        self._triangles = []  # per queued mesh: number of triangles
+        self._numbers = []  # scene ids of the meshes added so far; None: no valid triangles
 
     def empty(self, name, count, _dtype):
         """[count] Memory for the field `name` of the MeshArrays that are added next.
 
-        What is not added leaves nothing behind: the next mesh is given the same memory.
+        If they are not added, the next mesh gets the same memory.
         """
         return self._pools[name].lend(count)
 
     def add(self, arrays, owner):
-        """Its place; `owner`: the name of an object that shows it."""
+        """Queues a mesh and returns its queue index. `owner`: name of an object that shows it."""
         waiting = len(self._owners)
         for pool, array in zip(self._pools.values(), arrays, strict=True):
             if array is not None and not pool.hold(waiting, array):
@@ -79,7 +79,7 @@ class MeshQueue:
         return len(self._numbers) - 1
 
     def numbers(self):
-        """By place: in the scene, where all are by now; None of what has no triangle with an area."""
+        """Adds all queued meshes. Scene mesh ids by queue index; None for meshes without valid triangles."""
         self._hand_on()
         return self._numbers
 
@@ -92,7 +92,9 @@ class MeshQueue:
         self._owners, self._triangles = [], []
 
     def _seen(self, number, dropped, triangles, owner):
-        """The number of a mesh; None where nothing of it is left."""
+        """Scene id of a mesh; None if all of its triangles were dropped."""
         if dropped:
-            self._notes.add(f"Object '{owner}': {dropped} triangles without area or with NaN are left out.")
+            self._notes.add(
+                f"Object '{owner}': {dropped} triangles have NaN coordinates or no area and are left out."
+            )
         return None if dropped == triangles else int(number)

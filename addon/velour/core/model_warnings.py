@@ -1,4 +1,4 @@
-"""What a panel says of a model's weaknesses: a sentence each, with what to do."""
+"""Sentences for panels on a model's weaknesses, each with what to do."""
 
 from __future__ import annotations
 
@@ -7,19 +7,19 @@ import re
 
 from .plain_words import plain
 
-# A line a view, and a list of all fitted views: beside a table of errors they say it twice.
+# Warnings per view, and one that lists all fitted views, which are redundant beside a table of errors.
 _MISSED = re.compile(r"view (\d+) degrees: relative L2 |fitted views that miss the tolerance")
 _UNSEEN = re.compile(r"view (\d+) degrees: the measurement does not cover it")
-_LOOKS = (  # the largest tolerance of each
-    (0.014, "most pictures look like the measurement, as at 0.02 already"),
-    (0.05, "most pictures look like the measurement"),
-    (0.2, "differences show side by side, hardly in the distance"),
-    (math.inf, "differences show"),
+_LOOKS = (  # (largest tolerance, what the errors look like)
+    (0.014, "most images look like the measurement, as they already do at 0.02"),
+    (0.05, "most images look like the measurement"),
+    (0.2, "differences are visible side by side, but hardly from a distance"),
+    (math.inf, "differences are visible"),
 )
 
 
 def panel_warnings(info: dict) -> list[str]:
-    """Of a model's info as the library gives it."""
+    """`info`: a model's info from the library."""
     missed, unseen, others = [], [], []
     for warning in info["warnings"]:
         if match := _MISSED.match(warning):
@@ -29,12 +29,12 @@ def panel_warnings(info: dict) -> list[str]:
         else:
             others.append(plain(warning))
     if unseen:
-        guess = f"The measurement has no view at {_angles(unseen)}: what the model shows there is a guess."
-        others.insert(0, f"{guess} Take a more complete measurement, or show other angles.")
+        guess = f"The measurement has no view at {_angles(unseen)}, so the model is a guess there."
+        others.insert(0, f"{guess} Use a more complete measurement, or avoid these angles.")
     if missed:
         where = f"at {_angles(missed)}" if any(missed) else "between the reported views"
-        remedy = "Raise Max Lobes and fit again; the plot Size shows what more would bring."
-        others.insert(0, f"The tolerance of {info['tolerance']:g} is missed {where}. {remedy}")
+        remedy = "Raise Max Lobes and fit again; the Size plot shows the error of larger models."
+        others.insert(0, f"The model exceeds Max Error ({info['tolerance']:g}) {where}. {remedy}")
     return others
 
 
@@ -43,23 +43,23 @@ def _angles(degrees: list[str | None]) -> str:
 
 
 def gain_warning(albedo_max: float | None, gain: tuple[float, float, float]) -> str | None:
-    """Where a tint makes a model reflect more light than falls on it. None of `albedo_max`: not known."""
+    """Warns if a tint makes a model reflect more light than falls on it. `albedo_max` None: not known."""
     brightest = max(gain) * (albedo_max or 0.0)
     if max(gain) <= 1.0 or brightest <= 1.0:
         return None
-    return f"Reflects up to {brightest:.2g} times the light that falls on it; lower Tint or Exposure."
+    return f"The material reflects up to {brightest:.2g} times the light it receives. Lower Tint or Exposure."
 
 
 def tolerance_words(tolerance: float) -> str:
-    """What a tolerance looks like; docs/perceptual.md has what was looked at."""
+    """Describes how visible errors within a tolerance are; docs/perceptual.md has the measurements."""
     seen = next(words for most, words in _LOOKS if tolerance <= most)
-    return f"At most {100 * tolerance:.3g} % off up to 75\N{DEGREE SIGN}, twice that beyond: {seen}."
+    return f"Error of at most {100 * tolerance:.3g} % up to 75\N{DEGREE SIGN}, twice that beyond: {seen}."
 
 
 def roughness_reason(info: dict, use_reference: bool) -> str | None:
-    """Why a material cannot be made rougher, and what helps. `info`: of its model; empty: there is none."""
+    """Why a material cannot be made rougher, and what helps. `info`: its model's; empty without a model."""
     if use_reference:
-        return "Roughness Offset is for models; to use it, switch off Render from Measurement."
+        return "Roughness Offset has no effect on a measurement. Disable Render from Measurement to use it."
     if "texels" in info:
-        return "Roughness Offset is for models of BRDFs; this one, of a BTF, is rendered as it was measured."
+        return "Roughness Offset has no effect on the model of a BTF, which is rendered as measured."
     return None

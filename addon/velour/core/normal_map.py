@@ -1,4 +1,4 @@
-"""The normal map of a model's approximation: found from pictures of its tile, kept if it betters them."""
+"""The normal map of a model's approximation, from pictures of its tile; kept if it reduces the error."""
 
 from __future__ import annotations
 
@@ -13,19 +13,19 @@ from .approximation_map import show_tile, tile_job
 from .photometric_stereo import normals_of, root_mean_square_slope
 from .read_job import ReadJob, check
 
-_MOST_TEXELS = 1024  # along a side: all pictures are held at once
-_SAMPLES = 1  # suns without extent: others would be the same
-_RINGS, _AZIMUTHS = (15, 35, 55, 75), 6  # a level texel keeps the third ring whole, and so stays level
+_MOST_TEXELS = 1024  # along a side; limited because all pictures are held at once
+_SAMPLES = 1  # the suns have no extent: further samples would be the same
+_RINGS, _AZIMUTHS = (15, 35, 55, 75), 6  # a flat texel keeps all of the third ring, and so stays flat
 _JUDGES, _JUDGE_AZIMUTHS = (30, 60, 75), 3
-_LEAST_SLOPE = 0.02  # root mean square: about five steps of eight bits
-_LEAST_GAIN = 0.1  # of the error that a map has to take away
+_LEAST_SLOPE = 0.02  # root mean square; about five steps of an 8-bit map
+_LEAST_GAIN = 0.1  # share of the error that a map must remove
 _LUMINANCE = np.array([0.2126, 0.7152, 0.0722], np.float32)
 
 
 class NormalMap(NamedTuple):
-    """Errors are those of the approximation's pictures under the judges: relative, root mean square."""
+    """The errors are relative RMS errors of the approximation's pictures under the validation lights."""
 
-    normals: np.ndarray | None  # [rows x columns x 3], row 0 at the bottom; None: they are not worth it
+    normals: np.ndarray | None  # [rows x columns x 3], row 0 at the bottom; None: not worth it
     error_without: float = 0.0
     error_with: float = 0.0
 
@@ -33,7 +33,7 @@ class NormalMap(NamedTuple):
 class NormalMapJob(ReadJob):
     """Renders the model's tile under all lights; result() is a NormalMap.
 
-    principled, diffuse: of the approximation; colors: its map, RGBA.
+    principled, diffuse: values of the approximation; colors: its color map, RGBA.
     """
 
     def __init__(self, model: Model, principled: dict, diffuse: tuple | None, colors: np.ndarray):
@@ -46,7 +46,7 @@ class NormalMapJob(ReadJob):
     def poll(self) -> JobState:
         state = super().poll()
         return state._replace(
-            fraction=self._done / self._all if state.running else state.fraction, stage="finding normals"
+            fraction=self._done / self._all if state.running else state.fraction, stage="computing normals"
         )
 
     def _make(self) -> NormalMap:
@@ -67,7 +67,7 @@ class NormalMapJob(ReadJob):
         return NormalMap(normals if is_worth_it else None, without, with_map)
 
     def _distance(self, normals: np.ndarray | None, lights: np.ndarray, truth: list) -> float:
-        """Each light counts alike."""
+        """Relative RMS error; all lights have equal weight."""
         with Scene() as scene:
             show_tile(scene, self._approximation(scene, normals))
             errors = []
@@ -78,7 +78,7 @@ class NormalMapJob(ReadJob):
         return math.sqrt(sum(errors) / len(errors))
 
     def _approximation(self, scene: Scene, normals: np.ndarray | None) -> int:
-        """The material's number: the lobes that the library has of it, without coat, tint and anisotropy."""
+        """Adds the approximation without coat, tint and anisotropy. Returns the material's number."""
         shader, relief = Shader.new(), None
         values = {name: self._principled[name] for name in ("metallic", "roughness", "specular")}
         if normals is not None:
@@ -100,12 +100,12 @@ class NormalMapJob(ReadJob):
 
 
 def encoded(normals: np.ndarray) -> np.ndarray:
-    """As colours of a normal map, float32 from 0 to 1."""
+    """Normals as colors of a normal map, float32 from 0 to 1."""
     return (0.5 + 0.5 * normals).astype(np.float32)
 
 
 def _rings(degrees: tuple[int, ...], azimuths: int) -> np.ndarray:
-    """Unit directions [n x 3] at these angles from the vertical, each ring turned by half a step."""
+    """Unit directions [n x 3] at these angles from the vertical, every second ring rotated by half a step."""
     theta = np.radians(degrees)[:, None]
     step = 2 * np.pi / azimuths
     phi = step * (np.arange(azimuths) + 0.5 * (np.arange(len(degrees)) % 2)[:, None])
@@ -114,7 +114,7 @@ def _rings(degrees: tuple[int, ...], azimuths: int) -> np.ndarray:
 
 
 def _shining_from(light: np.ndarray) -> np.ndarray:
-    """4 x 4: a lamp's +z towards it. No light stands upright."""
+    """4 x 4 transform with +z towards `light`, which must not be vertical."""
     x = np.cross((0.0, 0.0, 1.0), light)
     matrix = np.eye(4)
     matrix[:3, 2], matrix[:3, 0] = light, x / np.linalg.norm(x)

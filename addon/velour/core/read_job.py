@@ -1,4 +1,4 @@
-"""What Python reads itself, beside the thread that draws: used as a job of the library."""
+"""Runs Python code that reads files on a thread of its own, with the interface of a library job."""
 
 from __future__ import annotations
 
@@ -14,13 +14,13 @@ from ..native.job_state import JobState, ProgressCallback
 from . import reading_gate
 
 _SLICE_SECONDS = 0.1  # between two calls of a progress callback
-_PATIENCE = 2.0  # seconds that the end of the process waits for threads
-_of_thread = threading.local()  # `cancelled`: the Event of the reading that a thread does
+_PATIENCE = 2.0  # seconds that the exit of the process waits for the threads
+_of_thread = threading.local()  # `cancelled`: Event of the thread's ReadJob
 _all = weakref.WeakSet()
 
 
 def is_cancelled() -> bool:
-    """Whether nobody wants any more what this thread reads; False on threads that are no ReadJob's."""
+    """Whether this thread's ReadJob was cancelled; False on other threads."""
     cancelled = getattr(_of_thread, "cancelled", None)
     if cancelled is None:
         return False
@@ -29,15 +29,15 @@ def is_cancelled() -> bool:
 
 
 def check() -> None:
-    """Ends a reading that was cancelled: to be called between two pieces of what takes long."""
+    """Raises VelourError if this thread's ReadJob was cancelled. Call it between the steps of long work."""
     if is_cancelled():
-        raise VelourError(Status.CANCELLED, "The reading was cancelled.")
+        raise VelourError(Status.CANCELLED, "Reading was cancelled.")
 
 
 class ReadJob:
-    """Runs `read` on a thread of its own; result() is what it returned. `read` knows nothing of Blender.
+    """Runs `read` on a thread of its own; result() is what it returned. `read` must not use Blender.
 
-    A cancel ends the waiting at once; the thread goes on to the next check() in what it reads, for nobody.
+    A cancel ends wait() at once; the thread runs on to its next check(), and its result is discarded.
     """
 
     def __init__(self, read: Callable[[], object]):
@@ -46,9 +46,9 @@ class ReadJob:
         _all.add(self)
 
     def start(self) -> ReadJob:
-        # Another Event: a thread that a cancel has left behind stays cancelled.
+        # A new Event: a thread left behind by a cancel stays cancelled.
         self._cancelled, self._error, self._begun = threading.Event(), None, time.monotonic()
-        # A daemon: the end of the process waits for no file server. _end_all() lets it end by itself.
+        # A daemon: the process must not wait for a file server at exit. _end_all() gives it time to finish.
         self._thread = threading.Thread(
             target=self._run, args=(self._cancelled,), name="velour-read", daemon=True
         )
@@ -60,7 +60,7 @@ class ReadJob:
         with reading_gate.inside():
             try:
                 result, error = self._read(), None
-            except Exception as raised:  # belongs to whoever waits
+            except Exception as raised:  # wait() raises it
                 result, error = None, raised
             if not cancelled.is_set():
                 self._result, self._error = result, error
@@ -75,13 +75,13 @@ class ReadJob:
         self._cancelled.set()
 
     def wait(self, progress: ProgressCallback | None = None, timeout: float | None = None) -> bool:
-        """As Job.wait(): raises what `read` raised."""
+        """Like Job.wait(). Raises what `read` raised."""
         end = math.inf if timeout is None else time.monotonic() + timeout
         while True:
             with reading_gate.opened():
                 self._thread.join(max(0.0, min(_SLICE_SECONDS, end - time.monotonic())))
             if self._cancelled.is_set():
-                raise VelourError(Status.CANCELLED, "The reading was cancelled.")
+                raise VelourError(Status.CANCELLED, "Reading was cancelled.")
             if progress:
                 progress(self.poll())
             if not self._thread.is_alive():
@@ -95,13 +95,13 @@ class ReadJob:
         return self._result
 
     def close(self) -> None:
-        """Cancels what still runs; the result goes with this object."""
+        """Cancels a running read and drops the result."""
         self.cancel()
         self._result = None
 
 
 def _end_all() -> None:
-    """What is read in one piece, or by a file server that is gone, is left behind."""
+    """Cancels all jobs. Threads within one long read, or waiting for a dead file server, are left behind."""
     threads = [job._thread for job in _all if job._thread is not None]
     for job in _all:
         job.cancel()

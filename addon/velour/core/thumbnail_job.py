@@ -1,4 +1,4 @@
-"""Thumbnails of many files, made beside the thread that draws."""
+"""Makes thumbnails of many files on a background thread."""
 
 from __future__ import annotations
 
@@ -12,9 +12,9 @@ from .thumbnails import Thumbnail, thumbnail
 
 
 class ThumbnailJob(ReadJob):
-    """Makes those of `files` in their order and hands each to `receive`, on a thread of its own.
+    """Makes the thumbnails of `files` in order and passes each to `receive`, on a thread of its own.
 
-    After a cancel the thread ends as soon as the library has read the file that it reads."""
+    After a cancel the thread ends as soon as the library has read the current file."""
 
     def __init__(
         self,
@@ -30,10 +30,10 @@ class ThumbnailJob(ReadJob):
     def poll(self) -> JobState:
         state = super().poll()
         if not state.running or not self._done:
-            return state._replace(stage="making pictures")
+            return state._replace(stage="rendering thumbnails")
         left = state.seconds / self._done * (len(self.files) - self._done)
         return state._replace(
-            fraction=self._done / len(self.files), stage="making pictures", seconds_left=left
+            fraction=self._done / len(self.files), stage="rendering thumbnails", seconds_left=left
         )
 
     def _make_all(self) -> None:

@@ -1,4 +1,4 @@
-"""Small pictures of measurements and models, kept in a cache by what is in the files."""
+"""Thumbnails of measurements and models, cached by the content of the files."""
 
 from __future__ import annotations
 
@@ -21,31 +21,31 @@ from .measurement_files import MeasurementFile
 
 SIDE = 128  # pixels
 _SAMPLES = 128
-_TILES = 6  # of a BTF, from pole to pole
+_TILES = 6  # tiles of a BTF from pole to pole
 _MOST_BTF_BYTES = 1 << 30  # in memory
-_VERSION = 1  # another one where pictures are made otherwise
-_FACTS = ("kind", "format", "model", "isotropic", "texels")  # of info(), where it has them
+_VERSION = 1  # changes when thumbnails are made differently
+_FACTS = ("kind", "format", "model", "isotropic", "texels")  # keys of info(), if present
 
 
 class Thumbnail(NamedTuple):
     """`pixels` [SIDE x SIDE x 4] uint8, sRGB, opaque, row 0 at the bottom; None: there is no picture."""
 
     pixels: np.ndarray | None
-    facts: dict  # some of info()
+    facts: dict  # the _FACTS of info()
     sentence: str | None  # why there is no picture
 
 
 def thumbnail(file: MeasurementFile, cache: Path, check: Callable[[], object], threads: int = 1) -> Thumbnail:
-    """The one that is kept below the folder `cache`, or a new one. What ails the file is its sentence.
+    """The thumbnail cached below the folder `cache`, or a new one. Its sentence tells what is wrong with it.
 
-    `check` is called ten times a second, and ends the work by raising.
+    `check` is called ten times a second; it cancels by raising.
     """
     try:
         kept = thumbnail_folder(cache)
         digest = _digest(file, kept, check)
         return _kept(kept, digest) or _made(file, kept, digest, check, threads)
     except OSError as error:
-        return Thumbnail(None, {}, f"{file.path}: cannot be read ({error.strerror}); check the file.")
+        return Thumbnail(None, {}, f"{file.path} cannot be read ({error.strerror}); check the file.")
     except VelourError as error:
         if error.cancelled:
             raise
@@ -53,7 +53,7 @@ def thumbnail(file: MeasurementFile, cache: Path, check: Callable[[], object], t
 
 
 def thumbnail_folder(cache: Path) -> Path:
-    """Where they are kept; it need not exist."""
+    """Folder of the cached thumbnails; it may not exist."""
     return cache / f"thumbnails-{_VERSION}"
 
 
@@ -64,7 +64,7 @@ def _made(
     info = library.file_info(file.path)
     facts = {name: info[name] for name in _FACTS if name in info}
     if info["kind"] == "observation":
-        return Thumbnail(None, facts, f"{file.path}: is what a scene shows of a material, and no material.")
+        return Thumbnail(None, facts, f"{file.path} is a scene usage file, not a material.")
     check()
     with ball_scene(functools.partial(_add, file.path, info["kind"]), _TILES) as scene:
         check()
@@ -72,7 +72,7 @@ def _made(
             job.start().wait(lambda _state: check())
             linear = job.read_pass("Combined")
     made = Thumbnail(np.rint(shown(linear) * 255).astype(np.uint8), facts, None)
-    with contextlib.suppress(OSError):  # who cannot write the cache goes without
+    with contextlib.suppress(OSError):  # the cache may not be writable
         _keep(_path(kept, digest), made)
     return made
 
@@ -109,20 +109,20 @@ def _digest(file: MeasurementFile, kept: Path, check: Callable[[], object]) -> s
 
 
 def _digest_of_set(index: Path, check: Callable[[], object]) -> str:
-    """SHA-256 of the index, which says nothing of what is in the pictures, and of their sizes and times: they
-    are too many to be read for it."""
+    """SHA-256 of the index and of the sizes and times of its pictures, of which it does not tell the content:
+    they are too many to be read."""
     digest = hashlib.sha256(sha256(index).encode())
     for number, name in enumerate(_pictures(index)):
         if number % 1000 == 0:
             check()
-        with contextlib.suppress(OSError, ValueError):  # one that is missing ails the set, not its digest
+        with contextlib.suppress(OSError, ValueError):  # a missing picture does not matter to the digest
             state = (index.parent / name).stat()
             digest.update(f"{number} {state.st_size} {state.st_mtime_ns}\n".encode())
     return digest.hexdigest()
 
 
 def _pictures(index: Path) -> Iterator[str]:
-    """What the column "file" names, as the library reads it; nothing of an index that it refuses."""
+    """The names in the column "file", parsed as in the library; none from an index that it refuses."""
     with (
         open(index, encoding="utf-8-sig", errors="surrogateescape", newline="") as file,
         contextlib.suppress(csv.Error),
@@ -136,7 +136,7 @@ def _pictures(index: Path) -> Iterator[str]:
 
 
 def _kept(kept: Path, digest: str) -> Thumbnail | None:
-    """What another run may have left half, or somebody else altogether, is made anew."""
+    """The cached thumbnail; None if it is missing, incomplete or a foreign file."""
     try:
         with np.load(_path(kept, digest), allow_pickle=False) as arrays:
             pixels, facts = arrays["pixels"], json.loads(arrays["facts"].tobytes().decode())

@@ -1,4 +1,4 @@
-"""Velour's options on Blender's command line: what follows "--", as Cycles has its own there."""
+"""Velour's options on Blender's command line, after "--", like those of Cycles."""
 
 import argparse
 import sys
@@ -15,22 +15,22 @@ _PREFIX = "--velour-"
 
 class _Parser(argparse.ArgumentParser):
     def error(self, message):
-        raise refuse(f"After --: {message}.")
+        raise refuse(f"Wrong arguments after --: {message}.")
 
 
 class Share(NamedTuple):
-    """Of all samples the `number`-th of `count` parts, from 1 on."""
+    """Part `number`, from 1 on, of all samples in `count` parts."""
 
     number: int
     count: int
 
     def of(self, spp, split):
-        """Its range, in whole camera rays."""
+        """Range of samples of this part, in whole camera rays."""
         rays = -(-spp // split)
         if rays < self.count:
             raise refuse(
-                f"Each pixel has {rays} camera rays ({spp} samples, {split} a ray), which cannot be shared"
-                f" out to {self.count} parts; take fewer."
+                f"Each pixel has {rays} camera rays ({spp} samples, {split} per ray), too few for"
+                f" {self.count} parts; use fewer parts."
             )
         begin, end = (rays * number // self.count * split for number in (self.number - 1, self.number))
         return begin, min(end, spp)
@@ -42,12 +42,12 @@ def _samples(text):
         return numbers.span(text)
     number, count = map(numbers.whole(1, 1 << 20), text.split("/", 1))
     if number > count:
-        raise argparse.ArgumentTypeError(f"{text!r}: there are {count} parts")
+        raise argparse.ArgumentTypeError(f"{text!r}: the number of the part must be at most {count}")
     return Share(number, count)
 
 
 def arguments():
-    """`parts`, `keep_parts`, `samples`, `memory`; None or False where not given, and with a window."""
+    """`parts`, `keep_parts`, `samples`, `memory`; None or False if not given, or if there is a window."""
     parser = _Parser(prog="blender", add_help=False, allow_abbrev=False)
     add = parser.add_argument
     add("--velour-parts", dest="parts", type=Path)
@@ -58,8 +58,11 @@ def arguments():
     given, others = parser.parse_known_args(behind)
     unknown = next((each for each in others if each.startswith(_PREFIX)), None)
     if unknown:
-        names = "--velour-parts, -keep-parts, -samples and -memory"
-        raise refuse(f"After --: there is no option {unknown}; {names} are.")
+        names = "--velour-parts, --velour-keep-parts, --velour-samples and --velour-memory"
+        raise refuse(f"Wrong arguments after --: unknown option {unknown}; the options are {names}.")
     if given.samples and not given.parts:
-        raise refuse("After --: --velour-samples needs a folder to keep them in: --velour-parts FOLDER.")
+        raise refuse(
+            "Wrong arguments after --: --velour-samples needs a folder for the parts; add --velour-parts"
+            " FOLDER."
+        )
     return given

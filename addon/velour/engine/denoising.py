@@ -1,4 +1,4 @@
-"""Denoised pictures: by Blender's own Open Image Denoise where it brings one; and what is known of errors."""
+"""Denoises pictures, preferably by the Open Image Denoise that Blender ships, and reports their errors."""
 
 import functools
 from pathlib import Path
@@ -9,20 +9,20 @@ from ..native import VelourError, denoise_job, library
 from ..native.errors import refuse
 
 _FILES = "libOpenImageDenoise.so.2*"
-last_errors = {}  # {scene's name: sentence on the picture that was denoised last}
+last_errors = {}  # {name of scene: sentence on the error of its last denoised picture}
 
 
 def prepare(scene):
-    """Raises a sentence where there is no Open Image Denoise."""
+    """Raises VelourError if there is no Open Image Denoise."""
     if reason := missing():
         raise refuse(
-            f"Scene '{scene.name}' is to be denoised, but {reason} Or switch off Render > Denoise > Render."
+            f"Scene '{scene.name}' cannot be denoised: {reason} Or disable Render > Denoise > Render."
         )
 
 
 @functools.cache
 def missing():
-    """Why nothing can be denoised; empty where something can."""
+    """Why denoising is unavailable; empty if it is available."""
     try:
         library.set_denoiser(_blenders_own())
         library.denoiser()
@@ -32,22 +32,24 @@ def missing():
 
 
 def _blenders_own():
-    """Its file; empty where this Blender has none beside it."""
+    """Path of the Open Image Denoise that ships with this Blender; empty if there is none."""
     folders = [Path(bpy.app.binary_path).parent] if bpy.app.binary_path else []
-    folders.append(Path(bpy.__file__).parent)  # of the module bpy
+    folders.append(Path(bpy.__file__).parent)  # for Blender as a module
     found = [path for folder in folders for path in sorted((folder / "lib").glob(_FILES))]
     return str(found[0]) if found else ""
 
 
 def denoise(job, scene, threads, wait):
-    """Gives a render job the pass "Denoised"; `wait(job)` waits for another job. Returns text for a stamp."""
+    """Adds the pass "Denoised" to a render job; `wait(job)` waits for a job. Returns text for a stamp."""
     with denoise_job(job, threads) as denoising:
         wait(denoising.start())
         report = denoising.report()
     bound = report["relmse_bound"]
     if bound is None:
-        last_errors[scene.name] = "Error of the denoised picture: unknown, a pixel has one camera ray."
+        last_errors[scene.name] = (
+            "Error of the denoised image: unknown, as each pixel has a single camera ray. Raise Samples."
+        )
         return "relmse unknown"
     percent = 100 * max(bound, 0.0) ** 0.5
-    last_errors[scene.name] = f"Error of the last picture: at most {percent:.2g} %."
+    last_errors[scene.name] = f"Error of the last image: at most {percent:.2g} %."
     return f"relmse {max(report['relmse'], 0.0):.3g}, at most {max(bound, 0.0):.3g}"

@@ -24,9 +24,9 @@ from .scene_models import choose_models
 log = logging.getLogger(__package__)
 
 _POLL_SECONDS = 0.05
-_STATISTICS_SECONDS = 0.5  # a line of a farm's log each
+_STATISTICS_SECONDS = 0.5  # each is a line in a farm's log
 _FIRST_PICTURE_SECONDS = 0.3
-_PICTURE_GROWTH = 1.5  # pictures in between grow rarer: each copies the whole film
+_PICTURE_GROWTH = 1.5  # intermediate pictures become rarer, as each copies the whole film
 
 
 class RenderCancelledError(Exception):
@@ -36,11 +36,11 @@ class RenderCancelledError(Exception):
 def render_final(engine, depsgraph):
     scene = depsgraph.scene_eval
     if scene.render.use_multiview:
-        raise ExportError("Stereoscopy is not supported; switch it off in Output > Stereoscopy.")
-    engine.update_stats("Velour", "Exporting the scene")
+        raise ExportError("Stereoscopy is not supported; disable it in Output > Stereoscopy.")
+    engine.update_stats("Velour", "Exporting scene")
     given = None if engine.is_preview else arguments()
     limit = memory.MemoryLimit(given and given.memory)
-    breaks = _Clock(_POLL_SECONDS)  # asked once an instance, which the answers take longer than
+    breaks = _Clock(_POLL_SECONDS)  # called once per instance, which takes less time than the checks
 
     def check_break():
         if not breaks.rings():
@@ -91,8 +91,8 @@ def render_final(engine, depsgraph):
 
 
 def _render_layer(engine, depsgraph, view, shown, surroundings, film, denoise):
-    """What the job reports; None: all samples were there; and what `denoise(job)` says of the picture, empty
-    without. `film(follow)` is that of frame_parts, which has follow(job, begin, end) wait for these samples.
+    """Returns the job's report (None: all samples were there) and the text of `denoise(job)` (empty without).
+    `film(follow)`: film() of frame_parts, which calls follow(job, begin, end) to wait for these samples.
     """
     layer = depsgraph.view_layer_eval
     add_passes(engine, layer, shown)
@@ -115,8 +115,8 @@ def _render_layer(engine, depsgraph, view, shown, surroundings, film, denoise):
 
 
 def _some_samples(parts, options, report):
-    """The range of samples that the picture has alone: it is a part, or the time limit ended it. Empty: it
-    has all, or, with a noise threshold, another number in each pixel."""
+    """The picture's range of samples, if it is a part or the time limit ended it. Empty if it has all samples
+    or, with a noise threshold, a different number in each pixel."""
     if parts:
         return "" if parts.is_whole else "{}:{}".format(*parts.asked)
     if options["noise"] or report["spp"] == options["spp"]:
@@ -125,7 +125,7 @@ def _some_samples(parts, options, report):
 
 
 def _follow(engine, delivery, job, begin, end):
-    """Until the job ends: Esc, progress, statistics, and with a window pictures in between."""
+    """Waits for the job; handles Esc, progress, statistics and, with a window, intermediate pictures."""
     statistics = _Clock(_STATISTICS_SECONDS)
     pictures = _Clock(_FIRST_PICTURE_SECONDS, growth=_PICTURE_GROWTH)
     for state in _states(engine, job):
@@ -148,7 +148,7 @@ def _states(engine, job):
 
 
 def _denoise(engine, scene, threads, job):
-    """Denoises the picture of the job. Returns what is known of its error."""
+    """Denoises the picture of the job. Returns text on its error."""
 
     def wait(denoising_job):
         for _state in _states(engine, denoising_job):
@@ -164,7 +164,7 @@ def _tell_memory(engine, state):
 
 
 class _Clock:
-    """Rings every `interval` seconds; each time `growth` times later."""
+    """Rings after `interval` seconds, then at intervals that grow by the factor `growth`."""
 
     def __init__(self, interval, growth=1.0):
         self._interval, self._growth = interval, growth
@@ -181,7 +181,7 @@ class _Clock:
 def _exported(info, seconds):
     counts = f"{info['instances']} instances of {info['meshes']} meshes, {info['triangles']} triangles"
     size, tracing = f"{info['bytes'] / 2**20:.0f} MiB", f"{info['bvh_seconds']:.2f} s"
-    return f"Exported {counts}, {size} in {seconds:.2f} s; {tracing} of it for tracing's hierarchies"
+    return f"Exported {counts}, {size} in {seconds:.2f} s, including {tracing} for the BVH"
 
 
 def _statistics(state, begin, end):
@@ -197,7 +197,7 @@ def _say(notes):
 
 def _say_report(engine, report, denoised):
     if not report:
-        engine.update_stats("Velour", "All samples were there")
+        engine.update_stats("Velour", "All samples were already rendered")
         return
     line = f"{report['spp_mean']:.0f} samples | {report['samples_per_second'] / 1e6:.1f} M samples/s"
     if report["blocks_unfinished"] is not None:
@@ -205,7 +205,7 @@ def _say_report(engine, report, denoised):
     if denoised:
         line += f" | Denoised: {denoised}"
     if report["nan_samples"]:
-        line += f" | {report['nan_samples']} samples without a finite value left out"
+        line += f" | {report['nan_samples']} samples left out, as they were not finite"
     engine.update_stats("Velour", line)
     # A handler on this logger gets the whole report as the record's args.
     log.info("%(seconds).2f s of tracing and shading, %(rays)d rays", report)

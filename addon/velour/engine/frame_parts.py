@@ -12,22 +12,24 @@ from ..native.errors import refuse
 from ..native.version import version_text
 from .arguments import Share
 
-_ELSEWHERE = {"threads", "time_limit", "cache_folder"}  # options that say nothing of the picture
-_superfluous = []  # files of a frame that is about to be written
-_stopping = Stopping()  # until Blender has written the frame
+_ELSEWHERE = {"threads", "time_limit", "cache_folder"}  # options that do not affect the picture
+_superfluous = []  # files to remove once Blender has written the frame
+_stopping = Stopping()  # held until Blender has written the frame
 
 
 class UnfinishedError(Exception):
-    """One sentence: how far the frame came, and where that lies."""
+    """The message says how far the frame got, and where its samples are."""
 
 
 def frame_parts(given, depsgraph, view, options, models, shown):
-    """The FilmParts of the view layer; None: it is rendered at once, and keeps nothing."""
+    """The FilmParts of the view layer; None: it is rendered in one run, and nothing is kept."""
     if not given.parts:
         return None
     if options["noise"]:
         if given.samples:
-            raise refuse("A noise threshold looks at a whole picture; switch it off to render some samples.")
+            raise refuse(
+                "Noise Threshold needs all samples of the image; disable it to render only some of them."
+            )
         return None
     scene, layer = depsgraph.scene_eval, depsgraph.view_layer_eval
     made = {name: value for name, value in options.items() if name not in _ELSEWHERE}
@@ -50,16 +52,16 @@ def frame_parts(given, depsgraph, view, options, models, shown):
 
 
 def _blend_hash():
-    """Of the file that is open: parts of different states of it do not go together."""
+    """SHA-256 of the open file: parts from different states of it must not be merged."""
     if not bpy.data.filepath:
-        raise refuse("Parts of a frame are told apart by their .blend; save it first.")
+        raise refuse("Parts of a frame are identified by their .blend file; save the file first.")
     return sha256(bpy.data.filepath)
 
 
 @contextlib.contextmanager
 def film(depsgraph, make_job, options, parts, follow):
-    """A render job whose film has all that is asked for; what others need of it is kept when the block has
-    ended well. `follow(job, begin, end)` waits until a job that renders these samples has ended."""
+    """A render job whose film has all requested samples; those that other runs need are kept when the block
+    succeeds. `follow(job, begin, end)` waits for a job that renders these samples."""
     if not parts:
         with make_job(**options) as job:
             follow(job.start(), 0, options["spp"])
@@ -84,7 +86,7 @@ def film(depsgraph, make_job, options, parts, follow):
 
 
 def _keep(parts, job, scene):
-    """Of parts for who renders the rest; of layers in case that one of those to come is ended."""
+    """Keeps parts for the runs that render the rest, and layers in case a later layer is stopped."""
     files = parts.files
     if not parts.is_whole or _layer_count(scene) > 1:
         files = [parts.keep_all(job)]
@@ -109,24 +111,24 @@ def _render(job, parts, gap, follow):
     if end == gap[1]:
         return
     if not report["passes"]:
-        raise UnfinishedError("Stopped before a pass was done; nothing was written.")
+        raise UnfinishedError("Stopped before a pass was complete; nothing was written.")
     path = parts.keep(job, gap, end)
     raise UnfinishedError(
-        f"Stopped at sample {end} of {parts.asked[1]}; {path} has what there is, and the same command goes on"
-        " from there."
+        f"Stopped at sample {end} of {parts.asked[1]}; {path} has the samples so far. Run the same command"
+        " again to continue."
     )
 
 
 @bpy.app.handlers.persistent
 def _keep_unwritten(*_args):
-    """Before a frame: the one before may have ended without a file."""
+    """Before a frame: the previous one may not have been written, so its samples stay."""
     _superfluous.clear()
     _stopping.release(obey=True)
 
 
 @bpy.app.handlers.persistent
 def _forget_written(*_args):
-    """After Blender wrote the frame: a crash before that has lost nothing."""
+    """After Blender wrote the frame: removed only now, its samples survive a crash before."""
     for path in _superfluous:
         path.unlink(missing_ok=True)
     _superfluous.clear()
@@ -135,7 +137,7 @@ def _forget_written(*_args):
 
 @bpy.app.handlers.persistent
 def _obey(*_args):
-    """After what Blender was told to render, written or not."""
+    """After a render of Blender, written or not."""
     _stopping.release(obey=True)
 
 

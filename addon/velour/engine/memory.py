@@ -1,5 +1,5 @@
-"""What a frame will take beside Blender's own scene, stated before it is rendered, and refused where that is
-more than there is."""
+"""Estimates the memory of a frame, including Blender's own scene, before it is rendered, and refuses a frame
+above the limit."""
 
 import os
 
@@ -7,23 +7,23 @@ from ..core.memory_estimate import Estimate, resident
 from ..core.memory_limit import Limit, memory_limit
 from ..native.passes import sums_per_pixel
 
-_RENDERING = 16 << 20  # beside what is counted
+_RENDERING = 16 << 20  # bytes in addition to what is counted
 _THREAD = 2 << 20
 _FLOAT = 4
-_RESULTS = 2  # Blender's own of a frame: while it is handed over, and while it is written
-_KEPT_FILMS = 2  # of parts: what a file had, and what it gets
+_RESULTS = 2  # Blender's copies of a frame: while it is delivered, and while it is written
+_KEPT_FILMS = 2  # films of parts: the one read from a file, and the one written
 
 
-# Of Blender with its scene as it is now, Velour's scene with the hierarchies of tracing, film and passes.
+# Parts: Blender with its current scene; Velour's scene with its BVHs; film and passes.
 _REMEDIES = {
-    "blender": "make the .blend smaller, or give it more",
-    "scene": "take meshes of fewer faces and smaller pictures, or give it more",
-    "picture": "render fewer passes or pixels, or give it more",
+    "blender": "make the .blend smaller, or raise the limit",
+    "scene": "use meshes with fewer faces and smaller images, or raise the limit",
+    "picture": "render fewer passes or pixels, or raise the limit",
 }
 
 
 def estimate(native_scene, view, passes, shown, threads, keeps_film):
-    """Of a scene that is exported already; `passes` is the render job's, `shown` are the LayerPasses."""
+    """Estimate for an exported scene; `passes`: those of the render job, `shown`: the LayerPasses."""
     scene = native_scene.info()["bytes"]
     channels = sum(each.channels for each in shown)
     numbers = sums_per_pixel(passes) * (1 + _KEPT_FILMS * keeps_film) + _RESULTS * channels
@@ -33,19 +33,19 @@ def estimate(native_scene, view, passes, shown, threads, keeps_film):
 
 
 class MemoryLimit:
-    """Of a frame. `asked`: the most that may be taken, in bytes; else what the system gives."""
+    """Memory limit of a frame. `asked`: the limit in bytes; None: the system's limit."""
 
     def __init__(self, asked):
         self._limit = Limit(asked, "--velour-memory") if asked else memory_limit(os.environ)
         self._before = resident()
 
     def check_export(self):
-        """Raises VelourError where the scene is too large before all of it is exported: else the system would
-        end Blender, without a word, before anything is estimated."""
+        """Raises VelourError if the scene is too large before all of it is exported; otherwise the system
+        would kill Blender without a message before the estimate."""
         scene = max(0, resident() - self._before)
         found = Estimate({"blender": self._before, "scene": scene}, _REMEDIES)
-        found.within(self._limit, "The frame, which is not all exported yet,")
+        found.within(self._limit, "The frame, which is only partly exported yet,")
 
     def check(self, found):
-        """A line that states the Estimate; raises VelourError where that is too large."""
+        """A line that states the Estimate; raises VelourError if it is too large."""
         return found.within(self._limit, "The frame")

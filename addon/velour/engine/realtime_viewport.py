@@ -1,4 +1,4 @@
-"""What one 3D viewport shows of the scene in real time, drawn by the graphics processor at each redraw."""
+"""One 3D viewport in real time, drawn by the GPU at each redraw."""
 
 from ..export.caches import cache_folder
 from ..export.film import film_exposure, hides_world
@@ -12,15 +12,15 @@ from .options import viewport_threads
 
 
 class RealtimeViewport:
-    """Raises UnshownError for what it cannot show, and whatever else goes wrong."""
+    """Raises UnshownError for what it cannot show; other errors propagate."""
 
     def __init__(self, engine_reference):
         shaders.check()
         self._engine = engine_reference
         self._live = None
         self._drawing = Drawing(cache_folder())
-        self._key = None  # of what was drawn last
-        self._has_frame = False  # else nothing of it is to be seen
+        self._key = None  # settings of the last drawing
+        self._has_frame = False  # whether anything of it is visible
 
     def close(self):
         viewport_clock.forget(self)
@@ -28,7 +28,7 @@ class RealtimeViewport:
         self._drawing.close()
 
     def forget_scene(self):
-        """Light, tables and the last picture stay: the next export says what is still the same."""
+        """Keeps light, tables and the last picture: the next export tells which of them are still valid."""
         if self._live:
             self._live.close()
         self._live = None
@@ -53,7 +53,7 @@ class RealtimeViewport:
         return LiveExport(depsgraph, look, scene)
 
     def draw(self, context, depsgraph):
-        """A sentence on how far it is."""
+        """Returns a status line."""
         if self._live is None:
             self.update(context, depsgraph)
         frame = viewport_frame(context, depsgraph)
@@ -72,11 +72,11 @@ class RealtimeViewport:
         return self._line() if is_ready else "Preparing real time"
 
     def has_picture(self):
-        """Whether draw() has shown any, be it of the scene of before."""
+        """Whether draw() has shown any picture, even of the previous scene."""
         return self._drawing.last() is not None
 
     def turn(self):
-        """Between redraws. False: there is nothing to wait for."""
+        """Called between redraws. False: there is nothing to wait for."""
         engine = self._engine()
         if engine is None or self._live is None or not self._has_frame:
             return False
@@ -84,12 +84,12 @@ class RealtimeViewport:
             self.pause()
             return True
         if not self._drawing.is_waiting():
-            return False  # another redraw would only ask for the next
+            return False  # a redraw would only request the next one
         engine.tag_redraw()
         return True
 
     def pause(self):
-        """Called from any thread; draw() goes on later."""
+        """May be called from any thread; draw() continues later."""
         self._drawing.jobs.pause()
 
     def _draw(self, depsgraph, frame):
@@ -104,7 +104,7 @@ class RealtimeViewport:
         self._drawing.draw(self._live.scene, frame.view, exposure, shows_world)
 
     def _show(self, scene, place):
-        """What was drawn last: of the scene of before, while this one is prepared."""
+        """Shows the last drawing, which is that of the previous scene while this one is prepared."""
         import gpu
         from gpu_extras.presets import draw_texture_2d
 
@@ -121,10 +121,10 @@ class RealtimeViewport:
         light = self._drawing.light_report
         said = ["Real time"]
         if light.get("relative_l2", 0.0) > 0.0:
-            said.append(f"the world as {light['lobes']} lobes, {100 * light['relative_l2']:.1f} % off")
+            said.append(f"environment as {light['lobes']} lobes, error {100 * light['relative_l2']:.1f} %")
         simpler = sum(look.is_simpler for look in self._live.scene.looks)
         if simpler:
             said.append(f"{simpler} other materials simplified")
         if self._live.scene.simpler_lamps:
-            said.append(f"{self._live.scene.simpler_lamps} lamps simplified")
+            said.append(f"{self._live.scene.simpler_lamps} lights simplified")
         return "; ".join(said)

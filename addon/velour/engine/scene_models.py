@@ -1,4 +1,4 @@
-"""Which model a material that has one for the scene gets in this frame: decided from this frame alone."""
+"""Whether a material with a scene model gets it in this frame: decided from this frame alone."""
 
 import contextlib
 
@@ -7,9 +7,9 @@ from ..export.scene_models import served
 
 
 def choose_models(native_scene, reduced, view, depsgraph, notes, check_break):
-    """Gives each material of `reduced` its model for the scene where the frame allows.
+    """Gives each material of `reduced` its scene model if the frame allows it.
 
-    Notes how much of what is seen of it is new to that model. Returns {material name: stamp text}.
+    Notes the share of its usage that the scene model was not fitted for. Returns {material name: stamp text}.
     """
     if not reduced:
         return {}
@@ -21,14 +21,17 @@ def choose_models(native_scene, reduced, view, depsgraph, notes, check_break):
             native_scene.set_model_material(entry.number, entry.model, entry.neighbors)
         entry.model.close()
         notes.add(each.sentence)
-        stamps[entry.name] = f"{each.share:.2%} outside of its model's domain; {each.words}"
-    native_scene.commit()  # a model may have another outline than the one that it replaces
+        stamps[entry.name] = (
+            f"{each.share:.2%} of its scene usage is outside its scene model's range; {each.words}"
+        )
+    native_scene.commit()  # a model may have another VOTF than the one that it replaces
     return stamps
 
 
 @contextlib.contextmanager
 def _seen_whole(native_scene, view, depsgraph, notes):
-    """A render border must not change the choice: the parts of a picture may be rendered one by one."""
+    """Sets the camera to the whole view, without the render border: parts of a picture, which may be rendered
+    one by one, must get the same models."""
     whole = final_view(depsgraph, notes, whole=True)
     if not depsgraph.scene_eval.render.use_border:
         yield whole

@@ -1,14 +1,14 @@
-"""The cure of a race in Blender between panels and render threads.
+"""Works around a race in Blender between panels and render threads.
 
 While a panel draws, Blender forbids Python to write data. Each call of a Python class saves that state and
-puts it back at its end. A render thread that enters Python in the middle of a panel, whose draw() is slow or
-waits for the disk, saves "no writes"; outlasting the panel, it puts that back when nothing draws any more.
-From then on no timer and no handler of any add-on can write ("can't modify blend data in this state"), until
-Blender ends. Previews of any engine written in Python do it, in 3.4 and 4.3; 5.2 is not prone to it.
+restores it at its end. A render thread that enters Python while a panel draws (draw() may be slow or wait for
+the disk) saves "no writes"; if it outlasts the panel, it restores that state when nothing draws any more.
+From then on no timer or handler of any add-on can write ("can't modify blend data in this state") until
+Blender exits. Previews of any engine written in Python cause it in 3.4 and 4.3; 5.2 is not affected.
 
-Nothing in Python allows writes again, but two calls that end out of order do, as they forbade them: Blender
-allows writes while it asks a property's getter. A poll() that another thread begins meanwhile saves that, and
-puts it back when the getter is over.
+No Python call allows writes again, but two calls that end out of order do, just as they forbade them: Blender
+allows writes during the getter of a property. A poll() that another thread begins in that time saves this
+state and restores it after the getter has returned.
 """
 
 import threading
@@ -21,7 +21,7 @@ _WAIT_SECONDS = 1.0  # for a thread to begin; it takes a tenth of a millisecond
 class VELOUR_OT_allow_writes(bpy.types.Operator):
     bl_idname = "velour.allow_writes"
     bl_label = "Allow Writes"
-    bl_description = "What Velour itself needs; nothing to press"
+    bl_description = "Internal operator"
     bl_options = {"INTERNAL"}
 
     @classmethod
@@ -66,20 +66,20 @@ def detach():
 
 
 class _NoClassOfBlender:
-    """No `object`: Blender looks into a dictionary that classes of Python itself lack since its 3.12."""
+    """Used instead of `object`: Blender reads a dictionary that built-in classes lack since Python 3.12."""
 
 
 def writes_are_forbidden():
-    """For timers, which nothing forbids to write. Takes a microsecond."""
+    """Call from timers, which should always be allowed to write. Takes a microsecond."""
     try:
-        bpy.utils.register_class(_NoClassOfBlender)  # is refused; this refusal comes first
+        bpy.utils.register_class(_NoClassOfBlender)  # always refused; a forbidden write is the first reason
     except RuntimeError as refusal:
         return "readonly" in str(refusal)
     return False
 
 
 def _turn():
-    """Each turn of Blender's loop, so that timers behind this one can write."""
+    """Called in each turn of Blender's main loop, so that later timers can write."""
     if writes_are_forbidden():
         _allow_writes()
     return 0.0

@@ -6,12 +6,12 @@ from .notes import ExportError
 from .world import layer_world, shown_world
 
 _NO_LIGHT = (
-    "nothing shines in it: it has no light with any power, no glowing material and a black world, so its"
-    " picture is black; add a light, or raise the strength of the world"
+    "it has no light with power, no emissive material and a black world, so its image is black; add a light,"
+    " or raise the strength of the world"
 )
 _NOTHING_SEEN = (
-    "it shows the camera no object with faces and a black world, so its picture is black; switch objects or"
-    " their collections on for renders (the camera in the Outliner), or give the world a colour"
+    "the camera sees no object with faces and a black world, so its image is black; enable objects or their"
+    " collections for renders (the camera icon in the Outliner), or give the world a color"
 )
 
 

@@ -46,7 +46,7 @@ def final_view(depsgraph, notes, whole=False):
         )
     lens = camera.data
     if lens.type not in _WINDOWS:
-        kind = f"{lens.type.lower()} cameras are" if lens.type else f"its type is {UNKNOWN}, which is"
+        kind = f"{lens.type.lower()} cameras are" if lens.type else f"its type is {UNKNOWN} and"
         raise ExportError(
             f"Camera '{camera.name}': {kind} not supported; choose Perspective or Orthographic."
         )
@@ -55,7 +55,7 @@ def final_view(depsgraph, notes, whole=False):
     if not whole:
         window, size = _inside_border(window, size, scene.render)
     if not np.isfinite(camera.matrix_world).all():
-        raise ExportError(f"Camera '{camera.name}': its transform is not a finite number; place it anew.")
+        raise ExportError(f"Camera '{camera.name}': its transform is not finite; place it again.")
     kind = "perspective" if lens.type == "PERSP" else "orthographic"
     matrix, clips = unscaled(camera.matrix_world), (lens.clip_start, lens.clip_end)
     return View(kind, matrix, window, *clips, *size, aperture(camera, depsgraph))
@@ -96,7 +96,7 @@ def _inside_border(window, size, render):
     x0, x1 = (int(np.float32(b) * np.float32(size[0])) for b in (render.border_min_x, render.border_max_x))
     y0, y1 = (int(np.float32(b) * np.float32(size[1])) for b in (render.border_min_y, render.border_max_y))
     if x1 <= x0 or y1 <= y0:
-        raise ExportError("The render border holds no pixel; draw a larger one, or switch Render Region off.")
+        raise ExportError("The render region has no pixels; draw a larger one, or disable Render Region.")
     return inside(window, size, x0, y0, x1, y1)
 
 

@@ -38,7 +38,7 @@ def corner_colors_of(plug, is_number):
     if node.attribute_type != "GEOMETRY":
         known = node.bl_rna.properties["attribute_type"].enum_items.get(node.attribute_type)
         kind = f"type '{known.name}'" if known else f"a type that is {UNKNOWN}"
-        raise UnsupportedError(f"'{node.name}' shows an attribute of {kind}")
+        raise UnsupportedError(f"'{node.name}' reads an attribute of {kind}")
     otherwise = 1.0 if part == "Alpha" else 0.0
     return CornerColors(node.attribute_name, "Fac" if part == "Factor" else part, is_number, otherwise)
 
@@ -48,8 +48,8 @@ def shader_colors(owner, sources, notes):
     asked = tuple(dict.fromkeys(source for source in sources if isinstance(source, CornerColors)))
     if len(asked) > MOST_SETS:
         notes.add(
-            f"{owner}: it shows {len(asked)} attributes of meshes; beyond {MOST_SETS} the values below the"
-            " links are used."
+            f"{owner}: it uses {len(asked)} mesh attributes, but only {MOST_SETS} are supported; the others"
+            " are replaced by the values of the inputs."
         )
     return asked[:MOST_SETS]
 
@@ -83,10 +83,10 @@ def has_attribute(mesh, asked):
 
 def missing_colors(obj, asked, material_name):
     """Note for an object without the attribute."""
-    what = "colour attribute" if asked.name is None else f"colours or numbers '{asked.name}'"
+    what = "color attribute" if asked.name is None else f"attribute '{asked.name}'"
     return (
-        f"Object '{obj.name}': it has no {what} for material '{material_name}', which shows"
-        f" {asked.otherwise:g} in its place."
+        f"Object '{obj.name}': it has no {what} for material '{material_name}';"
+        f" {asked.otherwise:g} is used instead."
     )
 
 

@@ -50,9 +50,9 @@ def _check(node):
     if node.image is None:
         raise UnsupportedError(f"'{node.name}' has no image")
     if node.image.source not in _SOURCES:
-        raise UnsupportedError(f"the image '{node.image.name}' is no single picture")
+        raise UnsupportedError(f"the image '{node.image.name}' is not a single image")
     if node.projection != "FLAT":
-        raise UnsupportedError(f"'{node.name}' is not projected flat")
+        raise UnsupportedError(f"'{node.name}' is not projected with Flat")
 
 
 def _uv_map(vector):
@@ -73,14 +73,14 @@ def _coordinates(plug):
     if node.bl_idname == "ShaderNodeUVMap":
         return node.uv_map
     if node.bl_idname != "ShaderNodeTexCoord" or plug.socket.name != "UV":
-        raise UnsupportedError(f"the coordinates of '{node.name}' are not texture coordinates")
+        raise UnsupportedError(f"the coordinates of '{node.name}' are not UV coordinates")
     return ""
 
 
 def _mapping_matrix(plug):
     node = plug.node
     if any(fed_by(plug.input(name)) for name in ("Location", "Rotation", "Scale")):
-        raise UnsupportedError(f"something is linked to '{node.name}'")
+        raise UnsupportedError(f"'{node.name}' has linked inputs")
     rotation = Euler(node.inputs["Rotation"].default_value).to_matrix().to_4x4()
     scale = Matrix.Diagonal((*node.inputs["Scale"].default_value, 1.0))
     location = node.inputs.get("Location")  # newer Blender versions have it only for types that use it

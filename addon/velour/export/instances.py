@@ -50,4 +50,4 @@ class InstanceGroups:
 
     def _note_endless(self, matrices, owners):
         for i in np.flatnonzero(~np.isfinite(matrices).all(axis=(1, 2))):
-            self._notes.add(f"Object '{owners[i].name}': its transform is not a finite number; left out.")
+            self._notes.add(f"Object '{owners[i].name}': its transform is not finite; left out.")

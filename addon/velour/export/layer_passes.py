@@ -93,7 +93,7 @@ def note_missing_passes(layer, notes):
         notes.add(f"{owner}: the pass {name} is not supported; left out.")
     for name, (theirs, own) in _SWITCHED_APART.items():
         if getattr(cycles, theirs, False) and not getattr(layer.velour, own):
-            notes.add(f"{owner}: {name} is asked of Cycles alone, which has a switch of its own; left out.")
+            notes.add(f"{owner}: {name} is enabled for Cycles only; left out. Enable it in Passes > Data.")
     if abs(layer.pass_alpha_threshold - _ALPHA_THRESHOLD) > 1e-6:
         notes.add(f"{owner}: the Alpha Threshold of passes is not supported; ignored.")
     if layer.aovs:

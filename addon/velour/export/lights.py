@@ -29,12 +29,12 @@ def add_light(scene, obj, matrix, notes):
     emission = emission_factor(lamp)
     if emission is None:
         notes.add(
-            f"{owner}: shader nodes of lights are ignored, but for an Emission of constant values, IES files "
-            "too; its colour and power are used."
+            f"{owner}: shader nodes of lights, such as IES files, are not supported except an Emission with"
+            " constant values; its color and power are used."
         )
         emission = (1.0, 1.0, 1.0)
     if any(abs(getattr(lamp, name, 1.0) - 1.0) > 1e-6 for name in _FACTORS):
-        notes.add(f"{owner}: its diffuse, specular and volume factors are ignored.")
+        notes.add(f"{owner}: its diffuse, specular and volume factors are not supported; ignored.")
     note_emitter(owner, getattr(lamp, "cycles", None), notes)
     kind, factor, values = choice(_DESCRIBE, lamp.type, "POINT", owner, "type", notes)(lamp, matrix)
     watts = power(lamp, matrix) * factor

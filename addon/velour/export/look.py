@@ -70,7 +70,7 @@ def _shown_types(space):
 def _studio_light(shading):
     light = shading.selected_studio_light
     if light is None or not light.path:
-        raise ExportError("The viewport's studio light has no picture; choose another, or use Scene World.")
+        raise ExportError("The viewport's studio light has no image; choose another, or use Scene World.")
     return StudioLight(light.path, shading.studiolight_intensity, shading.studiolight_rotate_z)
 
 

@@ -158,7 +158,7 @@ class MaterialTable:
             number = self._scene.add_textured_material(self._slots(plain, material), **plain.values)
             return self._with_rays(number, material)
         self.beyond_reflection += [
-            f"{_owner(material)}: {words} is no part of a BTF; left out."
+            f"{_owner(material)}: {words} cannot be captured in a BTF; left out."
             for words in unlike_reflection(layers)
         ]
         with Shader.new() as shader:

@@ -118,7 +118,9 @@ class MeasuredMaterials:
 
     def _add_reference(self, node, owner):
         if node.velour.measurement is None:
-            raise ExportError(f"{owner}: 'Render from Measurement' is on, but no measurement is chosen.")
+            raise ExportError(
+                f"{owner}: 'Render from Measurement' is enabled, but no measurement is chosen; choose one."
+            )
         if files.measurement_info(node.velour.measurement, owner)["kind"] == "btf":
             return self._add_btf(node.velour.measurement, owner)
         proposal = files.read_model(node.image, owner) if node.image else None

@@ -1,6 +1,6 @@
 """Files of newer Blender versions: unknown enum values read as '', and properties may be missing."""
 
-UNKNOWN = "one that this Blender does not know"
+UNKNOWN = "unknown to this version of Blender"
 
 
 def choice(table, value, usual, owner, what, notes):

@@ -168,8 +168,8 @@ class ObjectExport:
         shading = _terminator(obj, "shading", "shadow_terminator_offset")
         if shading:
             self._notes.add(
-                f"Object '{obj.name}': the shading offset of its shadow terminator is {shading:.2g}, which "
-                "Velour does not follow; the geometry offset is followed."
+                f"Object '{obj.name}': the shading offset {shading:.2g} of its shadow terminator is not"
+                " supported; ignored. The geometry offset is used."
             )
         return _terminator(obj, "geometry", "shadow_terminator_geometry_offset")
 

@@ -33,9 +33,9 @@ def outline_report_on(depsgraph, obj, material, shell, tile, width=0.0):
     low, high = (width * height for height in shell["heights"])
     share = _share(_bends(shown), low, high)
     rows = (
-        ("Tile here", f"{_metres(width)} wide"),
-        ("Structure here", f"{_metres(low)} to {_metres(high)}"),
-        ("Of the least radius", f"{share:.0%}"),
+        ("Tile width", _metres(width)),
+        ("Structure height", f"{_metres(low)} to {_metres(high)}"),
+        ("Height / radius", f"{share:.0%}"),
     )
     return OutlineReport(rows, _warnings(obj, share), share)
 
@@ -71,7 +71,7 @@ def _warnings(obj, share):
     if share < 1:
         return ()
     sentence = (
-        f"Object '{obj.name}': the structure reaches farther than the surface's least radius of curvature and"
-        " folds over itself there; make the tiles smaller, or the surface smoother."
+        f"Object '{obj.name}': the structure reaches farther than the surface's minimum radius of curvature"
+        " and folds over itself there; make the tiles smaller or the surface smoother."
     )
     return (sentence,)

@@ -26,7 +26,7 @@ def working_pixels(image, notes, beside_alpha=False):
     if not is_float:
         values, known = bytes_to_working(values, space)
         if not known:
-            notes.add(f"Image '{image.name}': its colour space '{space}' is read as sRGB.")
+            notes.add(f"Image '{image.name}': its color space '{space}' is not supported; read as sRGB.")
     return values
 
 

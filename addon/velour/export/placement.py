@@ -71,7 +71,7 @@ def tile_map(tile, metrics):
     if settings.mode == "REAL_SIZE":
         if tile.metres is None:
             raise ExportError(
-                f"Material '{tile.material}': its model does not know how large its tile is; enter Tile Size"
+                f"Material '{tile.material}': its model does not store the size of its tile; enter Tile Size"
                 " in its Placement panel, or choose Repeats there."
             )
         repeats, lengths = 1 / np.array(tile.metres), lengths / _density(settings, metrics)
@@ -106,25 +106,25 @@ def surface_of(arrays, slots):
 
 def missing_coordinates(obj, material_name):
     return (
-        f"Object '{obj.name}': its UV map is missing or has no extent; one point of material"
-        f" '{material_name}' is shown all over it. Unwrap it, or choose another material."
+        f"Object '{obj.name}': its UV map is missing or has no extent, so one point of material"
+        f" '{material_name}' covers all of it. Unwrap it, or choose another material."
     )
 
 
 def projected_onto(obj, material_name):
     return (
         f"Object '{obj.name}': it has no UV map; material '{material_name}' is projected onto it along its"
-        " own axes. Unwrap it to say how the material lies."
+        " local axes. Unwrap it to control the placement."
     )
 
 
 def stretch_sentence(obj, tile, lie, surface):
     x, y, z = surface.centers[lie.worst]
-    most = f"up to {lie.stretch:.1f}:1" if math.isfinite(lie.stretch) else "in places without end"
+    most = f"up to {lie.stretch:.1f}:1" if math.isfinite(lie.stretch) else "infinitely in places"
     return (
         f"Object '{obj.name}': tiles of material '{tile.material}' are stretched by more than"
         f" {LARGEST_STRETCH:g}:1 on {lie.stretched:.0%} of it, {most}, worst near ({x:.3g}, {y:.3g}, {z:.3g})"
-        " of its own axes."
+        " in local coordinates."
     )
 
 

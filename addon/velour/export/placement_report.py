@@ -80,7 +80,7 @@ def _texels(tile):
 
 
 def _density_row(metrics):
-    return "UV density", "{:.3g} x {:.3g} per metre".format(*metrics.world.density())
+    return "UV density", "{:.3g} x {:.3g} per meter".format(*metrics.world.density())
 
 
 def _size_row(tile, tiles):
@@ -88,11 +88,11 @@ def _size_row(tile, tiles):
     unit, factor = ("m", 1) if max(sides) >= 1 else ("mm", 1e3)
     size = "{:.3g} x {:.3g} {}".format(*(factor * side for side in sides), unit)
     if tile.metres is None:
-        return "Tile here", f"{size}, real size not known"
+        return "Tile size", f"{size}, real size unknown"
     times = [side / real for side, real in zip(sides, tile.metres, strict=True)]
     if max(abs(t - 1) for t in times) < _SAME:
-        return "Tile here", f"{size}, real size"
-    return "Tile here", "{}, {:.3g} x {:.3g} of real size".format(size, *times)
+        return "Tile size", f"{size}, real size"
+    return "Tile size", "{}, {:.3g} x {:.3g} times real size".format(size, *times)
 
 
 def _spread_row(lie):
@@ -104,7 +104,7 @@ def _texel_row(tile, lie):
 
 
 def _stretch_row(lie):
-    most = f"{lie.stretch:.2f}:1" if math.isfinite(lie.stretch) else "without end"
+    most = f"{lie.stretch:.2f}:1" if math.isfinite(lie.stretch) else "infinite"
     return "Stretch", f"{most}, {lie.stretched:.0%} above {LARGEST_STRETCH:g}:1"
 
 
@@ -113,5 +113,5 @@ def _camera_row(depsgraph, obj, texels_per_unit):
     try:
         found = texels_per_pixel(depsgraph, obj, texels_per_unit)
     except ExportError:
-        return name, "no camera that renders"
-    return name, "{1:.3g} texels per pixel, least {0:.3g}".format(*found) if found else "not seen"
+        return name, "no render camera"
+    return name, "{1:.3g} texels per pixel, minimum {0:.3g}".format(*found) if found else "not visible"

@@ -122,6 +122,6 @@ def _surroundings(camera, owner):
     if owner is None:
         return ""
     return (
-        f"Camera '{camera.name}': it is inside of object '{owner}' and sees nothing else; move it out, hide"
+        f"Camera '{camera.name}': it is inside object '{owner}' and sees nothing else; move it out, hide"
         " the object from renders, or raise the camera's Clip Start."
     )

@@ -23,11 +23,11 @@ class Served(NamedTuple):
     def words(self):
         """The part of the message that says how it is rendered."""
         if self.is_inside:
-            return "rendered with that model"
+            return "rendered with the scene model"
         more = f"that is more than {domain.LARGEST_SHARE:.1%}"
         if self.has_full:
             return f"{more}: rendered with the full model"
-        return f"{more}, but the full model is missing: rendered with that model, which may be wrong"
+        return f"{more}, but the full model is missing: rendered with the scene model, which may be wrong"
 
     @property
     def remedy(self):
@@ -35,13 +35,13 @@ class Served(NamedTuple):
             return ""
         if self.has_full:
             return "To use the smaller model here as well, press Fit for This Scene again."
-        return "Fit the material, or put the full model back."
+        return "Restore the full model, or fit the material again."
 
     @property
     def sentence(self):
         said = (
-            f"Material '{self.name}', frame {self.frame}: {self.share:.2%} of what is seen of it is outside"
-            f" of what its model for the scene was fitted to; {self.words}."
+            f"Material '{self.name}', frame {self.frame}: {self.share:.2%} of its scene usage is outside its"
+            f" scene model's range; {self.words}."
         )
         return f"{said} {self.remedy}".rstrip()
 

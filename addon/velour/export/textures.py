@@ -35,13 +35,15 @@ class TextureTable:
         try:
             pixels = working_pixels(picture.image, self._notes, picture.beside_alpha)
         except VelourError as error:
-            self._notes.add(f"{owner}: the value below image '{picture.image.name}' is used: {error}")
+            self._notes.add(
+                f"{owner}: image '{picture.image.name}' is replaced by the value of its input: {error}"
+            )
             return None
         if pixels is None:
             path = absolute_path(picture.image) or "no file"
             self._notes.add(
-                f"{owner}: the image '{picture.image.name}' ({path}) cannot be read, and the value below it"
-                f" is used; {FIND}."
+                f"{owner}: image '{picture.image.name}' ({path}) cannot be read and is replaced by the value"
+                f" of its input; {FIND}."
             )
             return None
         options = {"wrap": picture.wrap, "filter": picture.filter}

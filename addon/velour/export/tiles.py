@@ -39,7 +39,7 @@ class TileSource(NamedTuple):
 def object_tile(obj, depsgraph):
     """Tile with the axes of the object, whose scale counts."""
     if obj.velour.is_repeat:
-        raise ExportError(f"Object '{obj.name}' shows how a tile goes on; choose the tile itself.")
+        raise ExportError(f"Object '{obj.name}' is only a repeat of a tile; choose the tile itself.")
     location, rotation, scale = obj.matrix_world.decompose()
     to_tile = (Matrix.Translation(location) @ rotation.to_matrix().to_4x4()).inverted()
     stretch = (abs(scale.x), abs(scale.y))
@@ -75,7 +75,7 @@ def export_tile(source, depsgraph, approximate=False):
             material_notes.add(sentence)
         if len(material_notes) and not approximate:
             sentence = next(iter(material_notes))
-            raise ExportError(f"{sentence} Switch on Approximate to capture it all the same.")
+            raise ExportError(f"{sentence} Enable Approximate to capture it anyway.")
         scene.commit()
     except BaseException:
         scene.close()
@@ -109,6 +109,8 @@ def _bounds(source, depsgraph):
         for corner in instance.object.bound_box
     ]
     if not corners:
-        raise ExportError(f"{source.label} shows no geometry; nothing can be captured of it.")
+        raise ExportError(
+            f"{source.label} has no visible geometry to use as a tile; show or add an object with faces."
+        )
     columns = list(zip(*corners, strict=True))
     return Vector(map(min, columns)), Vector(map(max, columns))

@@ -21,7 +21,7 @@ def note_scene(scene, notes):
     other = [words for words, names in COPIED.items() if _is_not_copied(scene, cycles, *names)]
     if other:
         notes.add(
-            f"{owner}: {listed(other)} of Cycles: not copied to Velour's in Render > Light Paths; ignored."
+            f"{owner}: {listed(other)} of Cycles: ignored; use Copy from Cycles in Render > Light Paths."
         )
     asked = [words for words, is_asked in _OF_CYCLES.items() if is_asked(cycles)]
     if scene.render.use_simplify:
@@ -66,7 +66,7 @@ def _is_usual_filter(cycles):
 
 def note_layer(layer, notes):
     if not layer.use_solid:
-        notes.add(f"View layer '{layer.name}': that surfaces are left out is not supported; ignored.")
+        notes.add(f"View layer '{layer.name}': leaving out surfaces is not supported; ignored.")
 
 
 def note_emitter(owner, settings, notes):
@@ -74,15 +74,15 @@ def note_emitter(owner, settings, notes):
     if getattr(settings, "is_caustics_light", False):
         notes.add(f"{owner}: shadow caustics are not supported; ignored.")
     if getattr(settings, "max_bounces", _BOUNCES) < _BOUNCES:
-        notes.add(f"{owner}: a limit of its own to bounces is not supported; ignored.")
+        notes.add(f"{owner}: its own Max Bounces is not supported; ignored.")
 
 
 def note_strokes(scene, layer, notes):
     """`scene`: the original or rendered scene; copies that are only inspected have Freestyle off."""
     if bpy.app.build_options.freestyle and scene.render.use_freestyle and layer.use_freestyle:
         notes.add(
-            f"View layer '{layer.name}': Blender itself adds Freestyle's strokes to the picture, by EEVEE;"
-            " without OpenGL it ends."
+            f"View layer '{layer.name}': Blender itself adds Freestyle strokes to the image with EEVEE."
+            " Disable Freestyle on machines without OpenGL, where Blender exits."
         )
 
 
@@ -90,6 +90,6 @@ def note_pencil(obj, layer, notes):
     """`obj`: an evaluated Grease Pencil object."""
     if getattr(layer, "use_grease_pencil", True):  # 5.0 and newer
         notes.add(
-            f"Object '{obj.name}': Blender itself draws Grease Pencil over the picture, without shadows and"
-            " reflections; without OpenGL it ends."
+            f"Object '{obj.name}': Blender itself draws Grease Pencil over the image, without shadows and"
+            " reflections. Hide it on machines without OpenGL, where Blender exits."
         )

@@ -58,8 +58,8 @@ def shader_maps(owner, sources, reliefs, notes):
         return UNUSED
     if len(names) > MOST_SETS:
         notes.add(
-            f"{owner}: its pictures ask for {len(names)} UV maps; those beyond {MOST_SETS} are shown by"
-            f" {_called(names[0])}."
+            f"{owner}: its images use {len(names)} UV maps, but only {MOST_SETS} are supported; others are"
+            f" replaced by {_called(names[0])}."
         )
         names = names[:MOST_SETS]
     return UvMaps(names, _relief_map(owner, names, reliefs, notes))
@@ -69,17 +69,17 @@ def _relief_map(owner, names, reliefs, notes):
     asked = list(dict.fromkeys(relief.uv_map for relief in reliefs))
     if len(asked) > 1:
         notes.add(
-            f"{owner}: its Normal Maps ask for several UV maps; tangents of all follow {_called(asked[0])}."
+            f"{owner}: its Normal Maps use several UV maps; the tangents of all follow {_called(asked[0])}."
         )
     return asked[0] if asked and asked[0] != names[0] else None
 
 
 def _called(name):
-    return f"'{name}'" if name else "the one that renders"
+    return f"'{name}'" if name else "the active render UV map"
 
 
 def missing_map(obj, name, material_name):
     return (
-        f"Object '{obj.name}': it has no UV map '{name}', which material '{material_name}' is placed by; the"
-        " one that renders is used."
+        f"Object '{obj.name}': it has no UV map '{name}' for material '{material_name}'; the active"
+        " render UV map is used."
     )

@@ -72,7 +72,10 @@ def _camera(space, region_view, depsgraph):
     if camera is None or camera.type != "CAMERA":
         return None
     if camera.data.type == "PANO":
-        raise ExportError(f"Camera '{camera.name}': panoramic cameras are not supported.")
+        raise ExportError(
+            f"Camera '{camera.name}': panoramic cameras are not supported; choose Perspective or"
+            " Orthographic."
+        )
     return camera.evaluated_get(depsgraph)
 
 

@@ -28,15 +28,13 @@ class Visibility:
         if len(bounces) == len(_BOUNCES):
             found.append("bounces")
         elif bounces:
-            notes.add(
-                f"Object '{obj.name}': that it is hidden from {bounces[0]} alone is not supported; ignored."
-            )
+            notes.add(f"Object '{obj.name}': hiding it from {bounces[0]} only is not supported; ignored.")
         if not obj.visible_shadow:
             found.append("shadows")
         if obj.is_holdout or self._is_holdout(obj):
             found.append("holdout")
         if obj.is_shadow_catcher:
-            notes.add(f"Object '{obj.name}': that it is a shadow catcher is not supported; ignored.")
+            notes.add(f"Object '{obj.name}': Shadow Catcher is not supported; ignored.")
         _note_linking(obj, "Object", notes)
         return tuple(found)
 
@@ -67,7 +65,7 @@ def note_light_visibility(obj, notes):
     """Notes unsupported visibility settings of an evaluated light."""
     bounces = _hidden_bounces(obj)
     if bounces:
-        notes.add(f"Light '{obj.name}': that it is hidden from {listed(bounces)} is not supported; ignored.")
+        notes.add(f"Light '{obj.name}': hiding it from {listed(bounces)} is not supported; ignored.")
     _note_linking(obj, "Light", notes)
 
 

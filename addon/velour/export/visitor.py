@@ -47,7 +47,7 @@ def _render(scene):
         bpy.ops.render.render(scene=scene.name)
     except RuntimeError as error:  # Blender itself refuses, as without a camera
         sentence = str(error).splitlines()[0].removeprefix("Error: ")
-        raise ExportError(f"The scene cannot be looked at: {sentence}.") from error
+        raise ExportError(f"The scene cannot be evaluated: {sentence}.") from error
 
 
 @contextlib.contextmanager

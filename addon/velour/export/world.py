@@ -58,12 +58,12 @@ def _note_visibility(world, notes):
     visibility = getattr(world, "cycles_visibility", None)
     for name, rays in _RAYS.items():
         if not getattr(visibility, name, True):
-            notes.add(f"World '{world.name}': that it is hidden from {rays} is not supported; ignored.")
+            notes.add(f"World '{world.name}': hiding it from {rays} is not supported; ignored.")
     cycles = getattr(world, "cycles", None)
     if world:
         note_emitter(f"World '{world.name}'", cycles, notes)
     if not getattr(cycles, "use_shadows", True):  # 5.2 and newer
-        notes.add(f"World '{world.name}': that it casts no shadow is not supported; ignored.")
+        notes.add(f"World '{world.name}': disabling its shadows is not supported; ignored.")
 
 
 def _add_nodes(light, world, frame, notes):
@@ -77,7 +77,7 @@ def _add_nodes(light, world, frame, notes):
             notes.add(f"{owner}: node '{background.name}' is not a Background; rendered black.")
         return _add_color(light, (0.0, 0.0, 0.0))
     if source(background.inputs["Strength"]):
-        notes.add(f"{owner}: what is linked to the strength is not supported; its own value is used.")
+        notes.add(f"{owner}: the link to its strength is not supported; the value of the input is used.")
     strength = background.inputs["Strength"].default_value
     color = source(background.inputs["Color"])
     if color is not None and color.bl_idname == "ShaderNodeTexEnvironment":
@@ -85,7 +85,7 @@ def _add_nodes(light, world, frame, notes):
         return strength != 0.0
     if color is not None:
         notes.add(
-            f"{owner}: node '{color.name}' is not an Environment Texture; the Background's colour is used."
+            f"{owner}: node '{color.name}' is not an Environment Texture; the Background's color is used."
         )
     return _add_color(light, tuple(strength * c for c in background.inputs["Color"].default_value[:3]))
 
@@ -96,7 +96,7 @@ def _add_environment(light, owner, node, strength, frame, notes):
         raise ExportError(f"{owner}: node '{node.name}' has no image; choose one, or unlink it.")
     if node.projection != "EQUIRECTANGULAR":
         raise ExportError(
-            f"{owner}: node '{node.name}' is a mirror ball; only equirectangular images are supported."
+            f"{owner}: node '{node.name}' is a mirror ball, which is not supported; choose Equirectangular."
         )
     rotation = _rotation(owner, node, notes)
     path = absolute_path(image)
@@ -117,8 +117,8 @@ def _file_of_frame(owner, node, path, frame):
     image = node.image
     if image.source == "MOVIE" or not _is_linear(image, path):
         raise ExportError(
-            f"{owner}: the image '{image.name}' is a movie, or a sequence of other files than OpenEXR and"
-            " Radiance ones in linear Rec. 709, which is not supported; convert its frames, or use one image."
+            f"{owner}: the image '{image.name}' is a movie, or a sequence of files other than OpenEXR and"
+            " Radiance in linear Rec. 709, which is not supported; convert its frames, or use a single image."
         )
     path = sequence_file(path, sequence_number(node.image_user, frame))
     if not os.path.isfile(path):
@@ -183,5 +183,5 @@ def _note_mapping(owner, mapping, notes):
         )
     if any(source(socket) for socket in mapping.inputs if socket.name in ("Location", "Rotation", "Scale")):
         notes.add(
-            f"{owner}: node '{mapping.name}': what is linked to it is not supported; its own values are used."
+            f"{owner}: node '{mapping.name}': links to its inputs are not supported; their values are used."
         )

@@ -1,4 +1,4 @@
-"""The release that saved a file's settings: stamped when Blender saves, looked at when it opens a file."""
+"""The release that saved a file's settings: stamped when Blender saves a file, checked when it opens one."""
 
 import bpy
 from bpy.app.handlers import persistent
@@ -19,12 +19,12 @@ def detach():
 
 
 def newer_sentence(saved_by):
-    """Why a file may look different here; None where no later release has saved it; patches are none."""
+    """Why a file may look different here; None unless a later release saved it, other than a patch."""
     if saved_by // 100 <= packed() // 100:
         return None
     return (
-        f"Saved by Velour {version_text(saved_by)}; this is {version_text()}, which does not know all of its"
-        " settings and may show it differently. Update Velour. What this one does not know stays in the file."
+        f"Saved by Velour {version_text(saved_by)}, which is newer than this version ({version_text()})."
+        " Settings of newer versions are ignored, but stay in the file; renders may differ. Update Velour."
     )
 
 
@@ -34,7 +34,7 @@ def _handlers():
     yield handlers.load_post, _open
     if hasattr(
         handlers, "blend_import_post"
-    ):  # 4.3 and newer; before, what is appended waits for the next save
+    ):  # 4.3 and newer; in older versions, appended data wait for the next save
         yield handlers.blend_import_post, _open
 
 
@@ -42,7 +42,7 @@ def _handlers():
 def _stamp(*_arguments):
     for owner in saved_owners():
         _bring_up_to_date(owner)
-        # A later release would take what it has saved for ours: its number stays.
+        # Keeps the number of a later release, which would otherwise take its own settings for ours.
         if owner.id_data.library is None and owner.velour.saved_by < packed():
             owner.velour.saved_by = packed()
 
@@ -59,7 +59,7 @@ def _open(*_arguments):
 
 
 def _bring_up_to_date(owner):
-    """Settings that were never saved are this release's own."""
+    """Converts settings saved by an earlier release; those never saved are this release's."""
     saved_by = owner.velour.saved_by
     if not 0 < saved_by < packed():
         return

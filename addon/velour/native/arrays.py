@@ -1,7 +1,7 @@
-"""Arrays that cross the boundary: checked, never silently copied.
+"""Arrays that are passed to the library: checked, never silently copied.
 
 Large arrays must already be float32 (or uint32, uint8), C-contiguous and of the right shape. Small ones (a
-colour, a matrix) may be any sequence of numbers.
+color, a matrix) may be any sequence of numbers.
 """
 
 from __future__ import annotations
@@ -20,18 +20,18 @@ _POINTERS = {
 
 
 def checked(name: str, array, shape: tuple, dtype=np.float32) -> np.ndarray:
-    """`array` itself if it has `dtype`, has `shape` (None: any length) and is contiguous; else a sentence."""
+    """`array` itself. Refused unless contiguous and of this `dtype` and `shape` (None: any length)."""
     if not isinstance(array, np.ndarray):
         raise refuse(
-            f"{name} is a {type(array).__name__}; a numpy array of {np.dtype(dtype).name} is needed."
+            f"{name} is a {type(array).__name__}; a NumPy array of {np.dtype(dtype).name} is needed."
         )
     if array.dtype != dtype:
-        raise refuse(f"{name} is {array.dtype}; {np.dtype(dtype).name} is needed (array.astype).")
+        raise refuse(f"{name} is {array.dtype}; {np.dtype(dtype).name} is needed; convert it with astype().")
     if not _fits(array.shape, shape):
         wanted = " x ".join("n" if w is None else str(w) for w in shape)
         raise refuse(f"{name} has shape {array.shape}; {wanted} is needed.")
     if not array.flags.c_contiguous:
-        raise refuse(f"{name} is not contiguous in memory; pass numpy.ascontiguousarray of it.")
+        raise refuse(f"{name} is not contiguous in memory; pass numpy.ascontiguousarray({name}).")
     return array
 
 
@@ -45,7 +45,7 @@ def _fits(found: tuple, wanted: tuple) -> bool:
 
 
 def address(array: np.ndarray) -> int:
-    """As pointer(), for arguments without a type: several times as fast."""
+    """Like pointer(), for arguments without a type: several times faster."""
     return array.__array_interface__["data"][0]
 
 
@@ -59,11 +59,11 @@ def small(name: str, values, count: int) -> ctypes.Array:
     try:
         flat = np.asarray(values, dtype=np.float32).ravel()
     except (TypeError, ValueError) as error:
-        raise refuse(f"{name} is not {count} numbers ({error}).") from error
+        raise refuse(f"{name} must be {count} numbers ({error}).") from error
     if flat.size != count:
         raise refuse(f"{name} has {flat.size} numbers; {count} are needed.")
     if not np.isfinite(flat).all():
-        raise refuse(f"{name} holds a number that is not finite: {flat.tolist()}.")
+        raise refuse(f"{name} contains a number that is not finite: {flat.tolist()}.")
     return (ctypes.c_float * count)(*flat.tolist())
 
 
@@ -72,10 +72,10 @@ def affine(name: str, matrix) -> ctypes.Array:
     try:
         rows = np.asarray(matrix, dtype=np.float32)
     except (TypeError, ValueError) as error:
-        raise refuse(f"{name} is not a matrix of numbers ({error}).") from error
+        raise refuse(f"{name} must be a matrix of numbers ({error}).") from error
     if rows.shape == (4, 4):
         if not np.allclose(rows[3], (0, 0, 0, 1)):
-            raise refuse(f"{name} has the last row {rows[3].tolist()}; an affine matrix ends in 0 0 0 1.")
+            raise refuse(f"{name} has the last row {rows[3].tolist()}; an affine matrix ends with 0 0 0 1.")
         rows = rows[:3]
     return small(name, rows, 12)
 

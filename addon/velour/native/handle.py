@@ -1,4 +1,4 @@
-"""What all wrapper classes share: they own one opaque handle of the library."""
+"""Base of all wrapper classes: each owns one opaque handle of the library."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from .errors import Status, VelourError, refuse
 
 
 class Handle:
-    """Owns a handle. A context manager; close() may be called again. Use from one thread at a time."""
+    """Owns a handle. A context manager; close() may be called repeatedly. Use from one thread at a time."""
 
     _free_name = ""
     _pointer: ctypes.c_void_p | None = None
@@ -19,7 +19,7 @@ class Handle:
         self._lib = lib
         self._free = getattr(
             lib, self._free_name
-        )  # looked up now: __del__ may run while the interpreter ends
+        )  # looked up now: __del__ may run while the interpreter exits
         self._pointer = pointer
 
     @classmethod
@@ -59,7 +59,7 @@ def path_bytes(path: str | os.PathLike) -> bytes:
     """A path for the library: UTF-8 or whatever bytes the system gave, without a zero byte."""
     encoded = os.fsencode(path)
     if b"\0" in encoded:
-        raise refuse(f"The path {encoded!r} holds a zero byte.")
+        raise refuse(f"The path {encoded!r} contains a zero byte.")
     return encoded
 
 
@@ -69,20 +69,20 @@ def set_fields(struct, values: dict) -> None:
     for name, value in values.items():
         if name not in names:
             known = ", ".join(names)
-            raise TypeError(f"{type(struct).__name__} has no option {name!r}; it has {known}")
+            raise TypeError(f"{type(struct).__name__} has no option {name!r}; its options are {known}")
         kind = names[name]
         largest = 2 ** (8 * ctypes.sizeof(kind)) - 1
         if kind in (ctypes.c_uint32, ctypes.c_uint64) and not 0 <= int(value) <= largest:
-            raise refuse(f"{name} is {value}; a whole number from 0 to {largest} is needed.")
+            raise refuse(f"{name} is {value}; an integer from 0 to {largest} is needed.")
         setattr(struct, name, value)
 
 
 def choice(name: str, value, names: tuple[str, ...]) -> int:
-    """The number of a named choice; a number passes if it is in range."""
+    """The number of a named choice; a number in range is returned as it is."""
     if isinstance(value, str):
         value = value.lower()
         if value in names:
             return names.index(value)
     elif 0 <= int(value) < len(names):
         return int(value)
-    raise refuse(f"{name} is {value!r}; it is one of {', '.join(names)}.")
+    raise refuse(f"{name} is {value!r}; it must be one of {', '.join(names)}.")

@@ -1,4 +1,4 @@
-"""Pictures as files. Linear pixels [height x width x channels] float32, row 0 at the bottom."""
+"""Image files. Linear pixels [height x width x channels] float32, row 0 at the bottom."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ def write(path: str | os.PathLike, pixels: np.ndarray) -> None:
 
 
 class Frame(NamedTuple):
-    """Where a picture's pixels lie in a larger one: its size, and the place of their lower left one in it."""
+    """Position of a part in a picture: size of the whole picture, and the part's lower left pixel in it."""
 
     width: int
     height: int
@@ -32,7 +32,7 @@ class Frame(NamedTuple):
 
 
 def write_part(path: str | os.PathLike, pixels: np.ndarray, frame: Frame, texts: dict[str, str]) -> None:
-    """As write(), of .exr alone: says where the part lies, and `texts` in its header."""
+    """Like write(), for .exr only; the header has the position of the part, and `texts`."""
     pixels = checked("pixels", pixels, (None, None, None))
     height, width, channels = pixels.shape
     place = structs.ImageFrame(**frame._asdict())
@@ -44,7 +44,7 @@ def write_part(path: str | os.PathLike, pixels: np.ndarray, frame: Frame, texts:
 
 
 def header(path: str | os.PathLike) -> dict:
-    """Of an OpenEXR file: width, height, channels (names), frame (a Frame), texts (by name), multi_part."""
+    """OpenEXR header: width, height, channels (names), frame (a Frame), texts (by name), multi_part."""
     said = library.json_of(library.load().vlr_image_header_json, path_bytes(path))
     return said | {"frame": Frame(**said["frame"])}
 
@@ -67,9 +67,9 @@ def read(path: str | os.PathLike) -> np.ndarray:
 
 
 def read_picture(path: str | os.PathLike, layer: str = "", as_stored: bool = False) -> np.ndarray:
-    """The picture of a file that any program wrote (OpenEXR, Radiance HDR, PNG, JPEG, TIFF, BMP): 1 to 4
-    channels, upright, linear Rec. 709. `layer`: of an OpenEXR file. `as_stored`: what the header says of
-    orientation, exposure, primaries and windows is not followed, as in Blender.
+    """The picture in a file from any program (OpenEXR, Radiance HDR, PNG, JPEG, TIFF, BMP): 1 to 4
+    channels, upright, linear Rec. 709. `layer`: layer of an OpenEXR file. `as_stored`: ignores orientation,
+    exposure, primaries and windows in the header, as Blender does.
     """
     width, height, channels = c_uint32(), c_uint32(), c_uint32()
     places = byref(width), byref(height), byref(channels)
@@ -81,7 +81,7 @@ def read_picture(path: str | os.PathLike, layer: str = "", as_stored: bool = Fal
 
 
 def picture_notes(path: str | os.PathLike, layer: str = "", as_stored: bool = False) -> list[str]:
-    """Sentences: what read_picture() leaves out, and what the header says that is not followed."""
+    """Sentences on what read_picture() leaves out, and what it ignores in the header."""
     options = picture_options(layer, as_stored)
     return library.json_of(library.load().vlr_picture_notes_json, path_bytes(path), byref(options))
 
@@ -96,7 +96,9 @@ def compare(pixels: np.ndarray, reference: np.ndarray) -> tuple[float, float]:
         checked(n, a, (None, None, None)) for n, a in (("pixels", pixels), ("reference", reference))
     )
     if pixels.shape != reference.shape:
-        raise refuse(f"The picture is {_size(pixels)}, the reference {_size(reference)}; they must agree.")
+        raise refuse(
+            f"The image is {_size(pixels)}, but the reference is {_size(reference)}; they must agree."
+        )
     rmse, relmse = c_double(), c_double()
     height, width, channels = pixels.shape
     library.load().vlr_image_compare(

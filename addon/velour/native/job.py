@@ -1,4 +1,4 @@
-"""Anything long: fit, compare, capture, render, observe. One mechanism for progress, cancel and errors."""
+"""Jobs: fit, compare, capture, render, observe. One mechanism for progress, cancellation and errors."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ from .observation import Observation
 from .passes import Passes, channels_of
 from .plot import Plot, plot_arguments
 
-_SLICE_SECONDS = 0.1  # how long a signal (Ctrl-C) may have to wait for the interpreter
+_SLICE_SECONDS = 0.1  # longest time that a signal (Ctrl-C) has to wait for the interpreter
 
 
 class Job(Handle):
@@ -51,18 +51,18 @@ class Job(Handle):
         )
 
     def cancel(self) -> None:
-        """Asks for the end; the job stops within 0.1 s."""
+        """Requests a cancel; the job stops within 0.1 s."""
         self._lib.vlr_job_cancel(self.pointer)
 
     def stop(self) -> None:
-        """Asks a render to end at a whole pass, with what it has; its report says how far it came."""
+        """Asks a render to end after a whole pass and to keep its samples; its report tells their number."""
         self._lib.vlr_job_stop(self.pointer)
 
     def wait(self, progress: ProgressCallback | None = None, timeout: float | None = None) -> bool:
-        """Waits for the end; False when `timeout` seconds ran out first. Raises the error of a failed job.
+        """Waits for the end; False if `timeout` seconds ran out first. Raises the error of a failed job.
 
-        `progress` is called on this thread about ten times a second and once at the end. Whatever it raises,
-        and Ctrl-C, cancels the job, waits until it has stopped and goes on upwards.
+        `progress` is called on this thread about ten times a second and once at the end. An exception from
+        it, or Ctrl-C, cancels the job and propagates once the job has stopped.
         """
         end = math.inf if timeout is None else time.monotonic() + timeout
         try:
@@ -82,7 +82,7 @@ class Job(Handle):
         return self.report()
 
     def report(self) -> dict:
-        """What a finished job reports: the JSON keys of the command line's verb."""
+        """Report of a finished job, with the JSON keys of the command line's verb."""
         return library.json_of(self._lib.vlr_job_report_json, self.pointer)
 
     def result_model(self) -> Model:
@@ -90,7 +90,7 @@ class Job(Handle):
         return Model._create("vlr_job_result_model", self.pointer)
 
     def result_measurement(self) -> Measurement:
-        """What a finished measurement_job() has read."""
+        """The measurement of a finished measurement_job()."""
         return Measurement._create("vlr_job_result_measurement", self.pointer)
 
     def result_plot(self) -> Plot:
@@ -102,7 +102,7 @@ class Job(Handle):
         return Observation._create("vlr_job_result_observation", self.pointer)
 
     def result_table(self) -> np.ndarray:
-        """[height x width x 4] float32, of a finished job that makes a table for shaders."""
+        """The table of a finished job that makes one for shaders: [height x width x 4] float32."""
         floats, width, height = ctypes.POINTER(ctypes.c_float)(), ctypes.c_uint32(), ctypes.c_uint32()
         self._lib.vlr_job_result_table(
             self.pointer, ctypes.byref(floats), ctypes.byref(width), ctypes.byref(height)
@@ -110,23 +110,25 @@ class Job(Handle):
         return np.ctypeslib.as_array(floats, (height.value, width.value, 4)).copy()
 
     def read_pass(self, name: str, out: np.ndarray | None = None) -> np.ndarray:
-        """The film so far, also while the job runs: [height x width x channels] float32, row 0 at the bottom.
+        """The film so far, even while the job runs: [height x width x channels] float32, row 0 at the bottom.
 
-        "Combined" 4 (RGBA, premultiplied), "Depth" 1, "Normal" 3 (world), "Sample Count" 1, and those that
-        were asked for (Passes).
+        "Combined" 4 (RGBA, premultiplied), "Depth" 1, "Normal" 3 (world), "Sample Count" 1, and the requested
+        Passes.
         """
         if self.size is None:
-            raise refuse("This job renders nothing, so it has no passes.")
+            raise refuse("This job does not render, so it has no passes.")
         shape = (self.size[1], self.size[0], channels_of(name))
         if out is None:
             out = np.empty(shape, np.float32)
         elif out.size != np.prod(shape) or out.dtype != np.float32 or not out.flags.c_contiguous:
-            raise refuse(f"The buffer for {name} must be contiguous float32 of {np.prod(shape)} numbers.")
+            raise refuse(
+                f"The buffer for {name} must be a contiguous float32 array of {np.prod(shape)} numbers."
+            )
         self._lib.vlr_job_read_pass(self.pointer, name.encode(), pointer(out), out.size)
         return out
 
     def read_sums(self) -> np.ndarray:
-        """What the film has, for add_sums(): [height x width x numbers] float32."""
+        """The sums in the film, for add_sums(): [height x width x sums_per_pixel()] float32."""
         out = np.empty((self.size[1], self.size[0], self.sums_per_pixel()), np.float32)
         self._lib.vlr_job_read_sums(self.pointer, pointer(out), out.size, None)
         return out
@@ -137,8 +139,8 @@ class Job(Handle):
         return numbers.value
 
     def add_sums(self, sums: np.ndarray) -> None:
-        """Adds read_sums() of another run: of camera rays before those of this job, which is to be started,
-        or of camera rays after them, once it is done."""
+        """Adds read_sums() of another run: before the start, sums of camera rays that precede those of this
+        job; once it is done, sums of camera rays that follow them."""
         sums = np.ascontiguousarray(sums, np.float32)
         self._lib.vlr_job_add_sums(self.pointer, pointer(sums), sums.size)
 
@@ -152,26 +154,25 @@ class Job(Handle):
         if not self.poll().running:
             return
         self.cancel()
-        with contextlib.suppress(VelourError):  # "cancelled": the reason is already on its way up
+        with contextlib.suppress(VelourError):  # "cancelled": the caller raises the reason
             self._wait_once(-1.0)
 
 
 def measurement_job(path: str | os.PathLike) -> Job:
-    """Reads a measurement, as Measurement.load() does. Result: result_measurement()."""
+    """Reads a measurement like Measurement.load(). Result: result_measurement()."""
     return Job._create("vlr_measurement_load_create_job", path_bytes(path))
 
 
 def plot_job(model: Model, kind: str, measurement: Measurement | None = None, **view: float) -> Job:
-    """As Plot.of(). Result: result_plot()."""
+    """Like Plot.of(). Result: result_plot()."""
     return Job._create("vlr_plot_create_job", *plot_arguments(model, kind, measurement, **view))
 
 
 def fit_job(measurement: Measurement, **options) -> Job:
     """Options: model ("scattered", "parametric"), kernel (scattered: "gaussian", "abel-poisson"), tolerance,
-    max_lobes, threads, max_bytes, seed, all_data, align_views (scattered), limit_albedo and
-    symmetric (parametric);
-    for_scene (an Observation) and full_model (a Model) reduce a parametric model to what scenes show. What is
-    not given has the library's default. Result: result_model()."""
+    max_lobes, threads, max_bytes, seed, all_data, align_views (scattered), limit_albedo and symmetric
+    (parametric); for_scene (an Observation) and full_model (a Model) make a scene model of a parametric one.
+    The library has defaults for all. Result: result_model()."""
     raw = _defaults(structs.FitOptions, "vlr_fit_options_init")
     for name in {"for_scene", "full_model"} & options.keys():
         options[name] = options[name].pointer
@@ -188,13 +189,13 @@ def compare_job(measurement: Measurement, model: Model) -> Job:
 
 
 def compare_peer_job(measurement: Measurement, peer: str) -> Job:
-    """The same errors of the `peer` (table.PEERS) that suits it best, and its parameters."""
+    """The errors of compare_job() for the best fit of a `peer` (table.PEERS), and its parameters."""
     number = choice("peer", peer, table.PEERS)
     return Job._create("vlr_compare_peer_create_job", measurement.pointer, number)
 
 
 def model_peer_job(model: Model, peer: str) -> Job:
-    """As compare_peer_job, of a model in the place of its measurement."""
+    """Like compare_peer_job(), for a model instead of a measurement."""
     return Job._create("vlr_model_peer_create_job", model.pointer, choice("peer", peer, table.PEERS))
 
 
@@ -211,12 +212,11 @@ def microsurface_job(path: str | os.PathLike, **options) -> Job:
 
 
 def render_job(scene, passes: Passes | None = None, **options) -> Job:
-    """`passes`: beyond those that every picture has. Options: width, height, spp, split, bounces, strategy
+    """Renders a committed `scene` with extra `passes`. Options: width, height, spp, split, bounces, strategy
     (table.STRATEGIES), threads, seed, time_limit (seconds), transparent, measure_ray_share, heuristic
     (table.HEURISTICS), sequence (table.SEQUENCES), share, noise, cache_folder (keeps fits of the environment;
-    none: nowhere), clamp_direct, clamp_indirect, filter_glossy, reflective_caustics, denoise. Of parts:
-    samples_begin, samples_end, crop_x0, crop_y0, crop_x1, crop_y1
-    (vlr_render_options). `scene` is committed."""
+    default: none), clamp_direct, clamp_indirect, filter_glossy, reflective_caustics, denoise; for parts:
+    samples_begin, samples_end, crop_x0, crop_y0, crop_x1, crop_y1 (vlr_render_options)."""
     raw = render_options(options)
     if passes:
         raw.passes = ctypes.pointer(passes.raw())
@@ -235,20 +235,20 @@ def render_options(options: dict) -> structs.RenderOptions:
 
 
 def denoise_job(render: Job, threads: int = 0) -> Job:
-    """Takes the noise out of the picture of a render_job() with the option `denoise`, which has ended: its
-    pass "Denoised". The report: relmse and relmse_bound of that (None: unknown), noisy_share, path."""
+    """Adds the pass "Denoised" to a render_job() with the option `denoise` that has ended. Report: relmse and
+    relmse_bound of the denoised picture (None: unknown), noisy_share, path."""
     return Job._create("vlr_denoise_create_job", render.pointer, threads)
 
 
 def biases(options: dict) -> list[str]:
-    """The options of render_job() that bias its picture, by name: a render's noise does not tell of that."""
+    """Names of the options of render_job() that bias its picture, which its noise does not show."""
     raw = render_options(options)
     names = [name for name in ("clamp_direct", "clamp_indirect", "filter_glossy") if getattr(raw, name) > 0]
     return names if raw.reflective_caustics else [*names, "reflective_caustics"]
 
 
 def observe_job(scene, material: int, **options) -> Job:
-    """Learns under which views and lights `scene`, which is committed, shows its material of that number.
+    """Records the views and lights under which a committed `scene` shows the material with this number.
     Options: width, height, bounces, threads, seed. Result: result_observation()."""
     raw = _defaults(structs.ObserveOptions, "vlr_observe_options_init")
     set_fields(raw, options)

@@ -1,7 +1,7 @@
 """Finds, opens and checks libvelour.
 
-The library lies in `lib/` of this package; VELOUR_LIBRARY names another file. Whatever goes wrong is one
-LibraryError sentence with the file, the cause and the remedy. Nothing is opened before the first load().
+The library lies in `lib/` of this package; VELOUR_LIBRARY names another file. Every failure is a
+LibraryError with the file, the cause and the remedy. Nothing is opened before the first load().
 """
 
 from __future__ import annotations
@@ -39,13 +39,13 @@ def load() -> ctypes.CDLL:
 
 
 def release() -> None:
-    """Forgets the library: the next load() looks for the file anew. Living handles keep theirs open."""
+    """Forgets the library: the next load() looks for the file again. Existing handles keep theirs open."""
     global _loaded
     _loaded = None
 
 
 def system() -> dict:
-    """What the library says of itself: version, embree, simd, simd_targets, threads, build_type."""
+    """Information on the library: version, embree, simd, simd_targets, threads, build_type."""
     return json_of(load().vlr_system_json)
 
 
@@ -55,12 +55,12 @@ def select_simd(name: str) -> None:
 
 
 def denoiser() -> dict:
-    """version and path of Open Image Denoise, which it opens; VelourError where that is missing."""
+    """Opens Open Image Denoise. Returns its version and path; raises VelourError if it is missing."""
     return json_of(load().vlr_denoiser_json)
 
 
 def set_denoiser(path: str | os.PathLike) -> None:
-    """The file of Open Image Denoise to try first; VELOUR_OIDN goes before. Once one is open, it stays."""
+    """Sets the file of Open Image Denoise to try first; VELOUR_OIDN wins. No effect once one is open."""
     load().vlr_set_denoiser_file(os.fsencode(os.environ.get("VELOUR_OIDN") or path))
 
 
@@ -72,7 +72,7 @@ def json_of(function, *arguments) -> dict:
 
 
 def file_info(path: str | os.PathLike) -> dict:
-    """What a file holds: info() of Measurement, Model or Observation, whichever it is."""
+    """info() of the Measurement, Btf, Model or Observation in a file."""
     return json_of(load().vlr_file_info_json, os.fsencode(path))
 
 
@@ -80,7 +80,7 @@ def _open(path: Path) -> ctypes.CDLL:
     where = f"{path} ({platform.system()} {platform.machine()}, Python {platform.python_version()})"
     remedy = "build it with scripts/build, install the package for this platform, or unset VELOUR_LIBRARY"
     if not path.is_file():
-        raise LibraryError(f"The Velour library {where} is not there; {remedy}.")
+        raise LibraryError(f"The Velour library {where} does not exist; {remedy}.")
     try:
         library = ctypes.CDLL(str(path))
     except OSError as error:
@@ -89,25 +89,27 @@ def _open(path: Path) -> ctypes.CDLL:
     try:
         table.bind(library)
     except AttributeError as error:
-        raise LibraryError(f"The Velour library {where} lacks a function ({error}); {remedy}.") from error
+        raise LibraryError(
+            f"The Velour library {where} has a missing function ({error}); {remedy}."
+        ) from error
     library.vlr_set_denoiser_file(os.fsencode(os.environ.get("VELOUR_OIDN", "")))
     try:
         library.vlr_self_test()
     except VelourError as error:
-        raise LibraryError(f"The Velour library {where} fails its self test: {error}") from error
+        raise LibraryError(f"The Velour library {where} failed its self-test: {error}") from error
     return library
 
 
 def _check_version(library: ctypes.CDLL, path: Path, where: str, remedy: str) -> None:
-    # Before anything else is bound: a foreign library may lack everything.
+    # Checked before anything else is bound: a foreign library may lack everything.
     try:
         version, abi = library.vlr_version, library.vlr_abi_version
     except AttributeError as error:
         raise LibraryError(f"{where} is not a Velour library ({error}); {remedy}.") from error
-    if is_replaced(path, version):  # the loader gives out what it has mapped under this name
+    if is_replaced(path, version):  # the loader returns what it has mapped by this name
         raise LibraryError(
-            f"The Velour library {where} was replaced, as updates do, but this Blender has the one before"
-            " in use: restart Blender."
+            f"The Velour library {where} was replaced, for example by an update, but Blender still uses"
+            " the previous one; restart Blender."
         )
     version.restype = abi.restype = ctypes.c_uint32
     if (version(), abi()) != (packed(), ABI_VERSION):

@@ -1,4 +1,4 @@
-"""Meshes as the library reads them: a struct each, whose arrays lie one behind the other."""
+"""Structs that describe meshes to the library; the arrays of all meshes lie back to back."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from . import structs
 from .arrays import address, checked
 from .errors import refuse
 
-# Of Scene.add_mesh: type, what there is one for each of (corner, triangle, vertex), its shape.
+# Arrays of Scene.add_mesh: type, element (c and k: corner, t: triangle, v: vertex), shape per element.
 MESH_ARRAYS = {
     "positions": (np.float32, "v", (3,)),
     "triangles": (np.uint32, "t", (3,)),
@@ -27,9 +27,9 @@ MESH_ARRAYS = {
 
 
 def checked_mesh(arrays: Mapping[str, np.ndarray]) -> dict[str, tuple[np.ndarray, list[int]]]:
-    """The arguments of Scene.add_meshes for one mesh, of those of Scene.add_mesh."""
+    """Converts the arguments of Scene.add_mesh to those of Scene.add_meshes for one mesh."""
     if unknown := arrays.keys() - MESH_ARRAYS.keys():
-        raise refuse(f"a mesh has no {min(unknown)}; it has {', '.join(MESH_ARRAYS)}.")
+        raise refuse(f"Meshes have no array {min(unknown)!r}; the arrays are {', '.join(MESH_ARRAYS)}.")
     corners = (None, 3) if arrays.get("corner_vertices") is None else (None,)
     found = {}
     for name, array in arrays.items():
@@ -43,10 +43,10 @@ def checked_mesh(arrays: Mapping[str, np.ndarray]) -> dict[str, tuple[np.ndarray
 
 
 def mesh_descs(meshes: Mapping[str, tuple]) -> np.ndarray:
-    """vlr_mesh_descs [n] of the arguments of Scene.add_meshes; those must outlive them."""
+    """vlr_mesh_descs [n] of the arguments of Scene.add_meshes, which must outlive them."""
     for name in ("positions", "triangles"):
         if name not in meshes:
-            raise refuse(f"a mesh has no {name}.")
+            raise refuse(f"The mesh has no {name}; they are required.")
     sizes = {name: np.asarray(each, np.int64) for name, (_, each) in meshes.items()}
     descs = np.zeros(len(sizes["positions"]), structs.MeshDesc)
     counts = _counts(sizes, len(descs))
@@ -69,11 +69,11 @@ _COUNT_FIELDS = {
     "more_uvs": "more_uv_sets",
     "corner_colors": "color_sets",
 }
-_SETS = ("more_uvs", "corner_colors")  # of these there are several, one after the other
+_SETS = ("more_uvs", "corner_colors")  # arrays with several sets, back to back
 
 
 def _counts(sizes, meshes):
-    """How many of each kind there are, [n]; refuses sizes that do not agree."""
+    """Numbers of elements of each kind, [n]. Refuses sizes that do not agree."""
     none = np.zeros(meshes, np.int64)
     counts = {
         "v": sizes["positions"] // 3,
@@ -89,5 +89,5 @@ def _counts(sizes, meshes):
         wanted = counts[kind] * int(np.prod(rest)) * (counts[name] if name in _SETS else 1)
         wrong = np.flatnonzero((size != wanted) & (size > 0))
         if len(wrong):
-            raise refuse(f"{name} holds {size[wrong[0]]} numbers; {wanted[wrong[0]]} are needed.")
+            raise refuse(f"{name} has {size[wrong[0]]} numbers; {wanted[wrong[0]]} are needed.")
     return counts

@@ -18,10 +18,10 @@ _COLORS = ("background", "foreground", "model", "measured", "red", "green", "blu
 
 
 class Plot(Handle):
-    """The numbers of one plot of a model, immutable; drawn at any size and in any colours.
+    """The data of one plot of a model, immutable; drawn at any size and in any colors.
 
-    Styles: side (pixels), text (em, pixels), and the sRGB colours background, foreground, model, measured,
-    red, green, blue, each three numbers from 0 to 1. What is not said is the library's own.
+    Styles: side (pixels), text (em, pixels), and the sRGB colors background, foreground, model, measured,
+    red, green, blue, each three numbers from 0 to 1. The library has defaults for all.
     """
 
     _free_name = "vlr_plot_free"
@@ -35,7 +35,7 @@ class Plot(Handle):
         view: float = math.radians(30),
         azimuth: float = 0.0,
     ) -> Plot:
-        """`kind`: lobes, order, view-error, albedo. Angles in radians. VelourError: there is no such plot."""
+        """`kind`: one of table.PLOTS. Angles in radians. Raises VelourError if the model has no such plot."""
         return cls._create("vlr_plot_create", *plot_arguments(model, kind, measurement, view, azimuth))
 
     def data(self) -> dict:
@@ -50,7 +50,7 @@ class Plot(Handle):
         return pixels
 
     def save(self, path: str | os.PathLike, **style) -> None:
-        """By extension: .png, .svg, .csv. Atomic."""
+        """Writes .png, .svg or .csv, by extension. Atomic."""
         self._lib.vlr_plot_save(self.pointer, byref(_style(style)), path_bytes(path))
 
 
@@ -61,7 +61,7 @@ def plot_arguments(
     view: float = math.radians(30),
     azimuth: float = 0.0,
 ) -> tuple:
-    """As the library takes them."""
+    """Arguments of vlr_plot_create()."""
     measured = None if measurement is None else measurement.pointer
     return model.pointer, measured, choice("kind", kind, table.PLOTS), view, azimuth
 
@@ -73,6 +73,6 @@ def _style(values: dict) -> structs.PlotStyle:
         if name in _COLORS:
             value = small(name, value, 3)
         elif name not in ("side", "text"):
-            raise TypeError(f"a plot has no style {name!r}; it has side, text, {', '.join(_COLORS)}")
+            raise TypeError(f"plots have no style {name!r}; the styles are side, text, {', '.join(_COLORS)}")
         setattr(style, name, value)
     return style

@@ -1,4 +1,4 @@
-"""A picture for somebody who watches it and keeps changing the scene."""
+"""Progressive rendering for a viewer who keeps changing the scene."""
 
 from __future__ import annotations
 
@@ -14,40 +14,41 @@ from .job import Job, render_options
 
 
 class Picture(NamedTuple):
-    width: int  # 0: there is none yet
+    width: int  # 0: no picture yet
     height: int
-    samples: int  # light directions that every pixel of full size has
-    version: int  # grows with what there is to see
+    samples: int  # light directions of every pixel at full size
+    version: int  # increases when the picture changes
 
 
 class ProgressiveJob(Job):
-    """Coarse at once, then finer, then less noisy. Started again after a cancel, it goes on where it was."""
+    """Coarse at once, then finer, then less noisy. When started after a cancel, it continues where it was."""
 
     @classmethod
     def of(cls, scene, **options) -> ProgressiveJob:
-        """Options as of render_job, which see; noise and time_limit are not used."""
+        """Options as for render_job(); noise and time_limit are ignored."""
         raw = render_options(options)
         size = (raw.width, raw.height)
         return cls._create("vlr_progressive_create_job", scene.pointer, ctypes.byref(raw), size=size)
 
     def restart(self) -> None:
-        """The next start begins anew, after Scene.commit() where the scene has changed. Not while it runs."""
+        """The next start begins from scratch; call Scene.commit() before if the scene has changed. Not while
+        the job runs."""
         self._lib.vlr_progressive_restart(self.pointer)
 
     def stop(self) -> None:
-        """Cancels and waits, at most 0.1 s."""
+        """Cancels the job and waits for it, at most 0.1 s."""
         self._stop()
 
     def picture(self) -> Picture:
         return self._read(None, 0)
 
     def read(self, out: np.ndarray) -> Picture:
-        """Into the start of `out`, float32, which a picture of full size fits: [height x width x 4].
+        """Copies the picture to the start of `out`, float32, with room for full size: [height x width x 4].
 
         RGBA, premultiplied, row 0 at the bottom.
         """
         if out.dtype != np.float32 or not out.flags.c_contiguous:
-            raise refuse("The buffer for a picture must be contiguous float32.")
+            raise refuse("The buffer for an image must be a contiguous float32 array.")
         return self._read(pointer(out), out.size)
 
     def _read(self, pixels, count: int) -> Picture:

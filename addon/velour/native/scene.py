@@ -1,6 +1,6 @@
-"""What is rendered: meshes, materials, instances, lights, world, camera.
+"""The scene to render: meshes, materials, instances, lights, world, camera.
 
-Metres, +z up, matrices 3 x 4 row-major.
+Meters, +z up, matrices 3 x 4 row-major.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ _COLORS = {"color": 3, "size": 2, "window": 4, "cone_scale": 2}
 
 
 class Scene(Handle):
-    """Colours are linear, in the working space (Rec. 709 unless set_working_space says otherwise)."""
+    """Colors are linear, in the working space (Rec. 709 unless set_working_space says otherwise)."""
 
     _free_name = "vlr_scene_free"
 
@@ -40,33 +40,33 @@ class Scene(Handle):
         super().__init__(lib, handle)
 
     def set_working_space(self, rec709_to_working) -> None:
-        """3 x 3 row-major; takes colours of measurements and models to the space of all other colours."""
+        """3 x 3 row-major; takes colors of measurements and models to the space of all other colors."""
         self._lib.vlr_scene_set_working_space(self.pointer, small("rec709_to_working", rec709_to_working, 9))
 
     # ---- geometry
 
     def add_mesh(self, positions: np.ndarray, triangles: np.ndarray, **arrays) -> tuple[int, int]:
-        """The mesh's number, and how many degenerate or non-finite triangles were left out.
+        """Returns the mesh's number and the number of degenerate or non-finite triangles left out.
 
-        float32: positions [v x 3] in metres; uint32: triangles [t x 3]. Others may be None, or not given;
-        float32: corner_normals [t x 3 x 3], corner_uvs [t x 3 x 2], more_uvs [sets x t x 3 x 2] (sets 1, 2,
-        ... of texture coordinates), relief_uvs [t x 3 x 2] (what tangents of normal maps follow, else
-        corner_uvs), corner_colors [sets x t x 3 x 3] (Texture.of_corners); uint32: material_slots [t] (else
-        all 0); uint8: smooth [t], 0: the triangle is flat (else none is; not beside corner_normals).
+        float32: positions [v x 3] in meters; uint32: triangles [t x 3]. The others are optional. float32:
+        corner_normals [t x 3 x 3], corner_uvs [t x 3 x 2], more_uvs [sets x t x 3 x 2] (texture coordinate
+        sets 1, 2, ...), relief_uvs [t x 3 x 2] (for tangents of normal maps; default: corner_uvs),
+        corner_colors [sets x t x 3 x 3] (Texture.of_corners); uint32: material_slots [t] (default: 0);
+        uint8: smooth [t], 0: the triangle is flat (default: smooth; not together with corner_normals).
 
-        With corner_vertices (uint32 [c]: of each corner of the faces) `triangles` name corners, and what has
-        [t x 3] has [c]. Without corner_normals: vertex_normals [v x 3] of what is smooth, else the means of
-        the triangles about each vertex. The library copies; nothing need stay alive.
+        With corner_vertices (uint32 [c]: the vertex of each face corner) `triangles` index corners, and
+        arrays of t x 3 corners have c instead. Without corner_normals, smooth triangles have vertex_normals
+        [v x 3], by default the means of the triangles around each vertex. The library copies all arrays.
         """
         mesh = checked_mesh({"positions": positions, "triangles": triangles, **arrays})
         numbers, dropped = self.add_meshes(mesh)
         return int(numbers[0]), int(dropped[0])
 
     def add_meshes(self, meshes: Mapping[str, tuple]) -> tuple[np.ndarray, np.ndarray]:
-        """Of each mesh what add_mesh returns, uint32 [n]; all or none are added.
+        """Adds all meshes or none. Returns the results of add_mesh() for each mesh, as uint32 [n].
 
-        meshes: by the names of its arguments the numbers of all meshes in turn, one array [m] of its type,
-        and how many of them are of each mesh, [n]; 0: not given.
+        meshes: {argument of add_mesh(): (numbers of all meshes back to back, an array [m] of its type; their
+        count per mesh, [n], 0: not given)}
         """
         descs = mesh_descs(meshes)
         first, dropped = c_uint32(), np.zeros(len(descs), np.uint32)
@@ -76,22 +76,22 @@ class Scene(Handle):
         return np.arange(first.value, first.value + len(descs), dtype=np.uint32), dropped
 
     def remove_mesh(self, mesh: int) -> None:
-        """Takes what there is of one that no instance shows; its number stays, of a mesh of nothing."""
+        """Empties a mesh that no instance shows. Its number stays valid."""
         self._lib.vlr_scene_remove_mesh(self.pointer, mesh)
 
     def load_mesh(self, path: str | os.PathLike) -> int:
-        """Reads a Wavefront OBJ file; the mesh's number."""
+        """Reads a Wavefront OBJ or a Stanford PLY (.ply) file. Returns the mesh's number."""
         return self._numbered("vlr_scene_load_mesh", path_bytes(path))
 
     def add_instance(
         self, mesh: int, object_to_world, materials, placements=None, hidden=(), terminator: float = 0.0
     ) -> None:
-        """`materials`: the material's number of each slot of the mesh.
+        """`materials`: material number of each slot of the mesh.
 
-        placements: of each slot a map [2 x 3] that takes (u, v, 1) of the mesh to the texture coordinates
-        that its material is shown with, footprints and tangents included; None: they are the mesh's own.
-        hidden: of "camera", "bounces", "shadows": rays that pass through it; "holdout": the camera sees
-        nothing of it, and nothing behind it. terminator: geometry offset of the shadow terminator, 0 to 1.
+        placements: for each slot a map [2 x 3] from the mesh's (u, v, 1) to the texture coordinates of its
+        material, which also applies to footprints and tangents; None: the mesh's own. hidden: names of rays
+        that pass through the instance ("camera", "bounces", "shadows"); "holdout": the camera sees neither
+        the instance nor anything behind it. terminator: geometry offset of the shadow terminator, 0 to 1.
         """
         self._set_looks(hidden, terminator)
         numbers = (c_uint32 * len(materials))(*materials)
@@ -103,9 +103,9 @@ class Scene(Handle):
     def add_instances(
         self, meshes: np.ndarray, object_to_world: np.ndarray, materials, hidden=(), terminator: float = 0.0
     ) -> None:
-        """Many that differ in nothing but meshes and matrices, uint32 [n], float32 [n x 3 x 4].
+        """Adds instances that differ only in meshes, uint32 [n], and matrices, float32 [n x 3 x 4].
 
-        Else as add_instance.
+        Otherwise like add_instance().
         """
         matrices = checked("object_to_world", object_to_world, (None, 3, 4))
         meshes = checked("meshes", meshes, (len(matrices),), np.uint32)
@@ -120,7 +120,7 @@ class Scene(Handle):
         self._lib.vlr_scene_soften_terminator(self.pointer, terminator)
 
     def clear_instances(self) -> None:
-        """Meshes and materials stay."""
+        """Removes all instances. Meshes and materials stay."""
         self._lib.vlr_scene_clear_instances(self.pointer)
 
     # ---- materials: each returns its number
@@ -130,73 +130,73 @@ class Scene(Handle):
         return self._numbered("vlr_scene_add_model_material", model.pointer, neighbors)
 
     def set_model_material(self, material: int, model: Model, neighbors: int = 0) -> None:
-        """Puts a model in the place of a material; a shell keeps tile and softness.
+        """Replaces a material by a model; a shell keeps its tile and softness.
 
-        A committed scene stays so, unless their shells differ in their heights. No job may run on it."""
+        A committed scene stays committed unless the shells differ in height. No job may run on it."""
         self._lib.vlr_scene_set_model_material(self.pointer, material, model.pointer, neighbors)
 
     def replace_material(self, material: int) -> None:
-        """Puts the one that was added last in the place of `material`, and takes it from the end."""
+        """Moves the last material into slot `material` (swap and pop)."""
         self._lib.vlr_scene_replace_material(self.pointer, material)
 
     def set_gain(self, material: int, gain: tuple[float, float, float]) -> None:
-        """What the material reflects is multiplied with, in the working space; at least 0."""
+        """Sets the factor on the material's reflected light, in the working space; at least 0."""
         self._lib.vlr_scene_set_gain(self.pointer, material, (c_float * 3)(*gain))
 
     def hide_backs(self, material: int, hidden) -> None:
-        """hidden: of "camera", "bounces", "shadows": rays that pass through back faces of the material."""
+        """hidden: which rays ("camera", "bounces", "shadows") pass through the material's back faces."""
         flags = sum(table.HIDDEN[name] for name in set(hidden))
         self._lib.vlr_scene_hide_backs(self.pointer, material, flags)
 
     def set_shell_softness(self, material: int, widths: float) -> None:
-        """Over what share of the tile's width the edge of a shell fades out, from 0 (hard) to below 1."""
+        """Sets the share of the tile's width over which a shell's edge fades out: 0 (hard) to below 1."""
         self._lib.vlr_scene_set_shell_softness(self.pointer, material, widths)
 
     def set_shell_tile(self, material: int, metres: float) -> None:
-        """How wide a tile of the material's shell (VOTF) is; 0: as the texture coordinates say."""
+        """Sets the width of a tile of the material's shell (VOTF) in meters; 0: from texture coordinates."""
         self._lib.vlr_scene_set_shell_tile(self.pointer, material, metres)
 
     def set_drawn_to(self, material: int, drawn: bool) -> None:
-        """Whether rays are drawn to its surfaces where they glow; the picture converges to the same."""
+        """Whether emissive surfaces of the material are light-sampled; the picture converges to the same."""
         self._lib.vlr_scene_set_drawn_to(self.pointer, material, drawn)
 
     def add_measurement_material(
         self, measurement: Measurement, proposal: Model | None = None, neighbors: int = 0
     ) -> int:
-        """Reference mode: f of the raw data; `proposal` draws samples (None: a coarse model made here)."""
+        """Reference mode: f of the raw data; `proposal` is sampled from (None: a coarse model made here)."""
         proposal_pointer = proposal.pointer if proposal else None
         return self._numbered(
             "vlr_scene_add_measurement_material", measurement.pointer, proposal_pointer, neighbors
         )
 
     def add_btf_material(self, btf: Btf, most_bytes: int = 0) -> int:
-        """Reference mode of a BTF: f of the BTF itself, read into memory: `most_bytes` (0: 4 GiB)."""
+        """Reference mode: f of the BTF itself, read into at most `most_bytes` of memory (0: 4 GiB)."""
         return self._numbered("vlr_scene_add_btf_material", btf.pointer, most_bytes)
 
     def add_principled_material(self, **values) -> int:
-        """base_color [3], metallic, roughness (alpha of GGX: its square): 0..1; specular: 0..11.25, 0.5 is an
-        index of 1.5.
+        """base_color [3], metallic, roughness (GGX alpha is its square): 0..1; specular: 0..11.25, 0.5 is an
+        index of refraction of 1.5.
 
-        emission [3]: radiance; alpha: 0..1, the share of the surface that is there; rays pass the rest.
-        formula: layered, as Blender since 4.0, or disney, as before. lobe: whole (light between facets is
-        kept), single, or separable (facets shadow both directions independently: before Blender 3.5).
-        specular_tint [3]: of dielectrics at normal incidence, not negative; of metals near 82 degrees, 0..1.
-        Of layered: coat: 0..1, the weight of a dielectric layer on top; coat_roughness, coat_index (at least
-        1), coat_tint [3]; coat_lobe: whole, as since Blender 4.5, or single.
+        emission [3]: radiance; alpha: 0..1, coverage of the surface; rays pass through the rest. formula:
+        layered (Blender since 4.0) or disney (before). lobe: whole (with multiple scattering), single, or
+        separable (separable masking and shadowing: before Blender 3.5). specular_tint [3]: for dielectrics at
+        normal incidence, not negative; for metals near 82 degrees, 0..1. Only layered: coat: 0..1, weight of
+        a dielectric layer on top; coat_roughness, coat_index (at least 1), coat_tint [3]; coat_lobe: whole
+        (Blender since 4.5) or single.
         """
         return self.add_textured_material({}, **values)
 
     def texture(self, pixels: np.ndarray, **options) -> Texture:
-        """A texture for its materials: Texture.from_pixels."""
+        """A texture for the scene's materials, made by Texture.from_pixels()."""
         return Texture.from_pixels(pixels, **options)
 
     def add_textured_material(self, textures: dict[str, TextureSlot], **values) -> int:
-        """As add_principled_material; textures of base_color, metallic, roughness, alpha go before values."""
+        """Like add_principled_material(); textures override base_color, metallic, roughness, alpha."""
         desc, pictures = described(self._lib, textures, values)
         return self._numbered("vlr_scene_add_textured_material", byref(desc), byref(pictures))
 
     def add_shader_material(self, shader: Shader) -> int:
-        """Of the layers that it has by now."""
+        """Uses the layers that the shader has now."""
         return self._numbered("vlr_scene_add_shader_material", shader.pointer)
 
     # ---- light
@@ -206,10 +206,10 @@ class Scene(Handle):
 
         color [3]: a sun's irradiance on a facing plane, W/m^2; the others' power, W. angle: a sun's angular
         diameter or the angle of a spot's cone, radians. size [2]: a point's or spot's radius, a rectangle's
-        sides, a disk's diameters, metres. blend: share of a spot's cone over which it fades out. spread: the
-        angle in which a rectangle or disk shines, radians. sphere: whether a point or spot is a ball or a
-        disk that faces each place it lights. cosine: whether a spot's light falls with the cosine to its
-        axis. cone_scale [2]: how much wider than its angle a spot's cone is along its x and y.
+        sides, a disk's diameters, meters. blend: share of a spot's cone over which it fades out. spread: the
+        angle into which a rectangle or disk emits, radians. sphere: whether a point or spot is a sphere, or a
+        disk facing each point it lights. cosine: whether a spot's light falls off with the cosine to its
+        axis. cone_scale [2]: factors on the width of a spot's cone along its x and y.
         """
         values = {"type": choice("light", kind, table.LIGHTS), "color": color, **values}
         desc = self._desc(structs.LightDesc, "vlr_light_desc_init", values)
@@ -226,7 +226,7 @@ class Scene(Handle):
     def set_world_pixels(self, pixels: np.ndarray, strength: float = 1.0, world_to_image=None) -> None:
         """Equirectangular [height x width x channels] float32, row 0 at the top (+z); Blender's convention.
 
-        `world_to_image` [3 x 3] turns a world direction before the look-up.
+        `world_to_image` [3 x 3] rotates a world direction before the look-up.
         """
         pixels = checked("pixels", pixels, (None, None, None))
         height, width, channels = pixels.shape
@@ -252,7 +252,7 @@ class Scene(Handle):
         )
 
     def place_world(self, strength: float, world_to_image=None) -> None:
-        """The picture that is there, lit and turned anew."""
+        """Changes the strength and the rotation of the current world picture."""
         self._lib.vlr_scene_place_world(self.pointer, strength, _rotation(world_to_image))
 
     # ---- camera
@@ -260,9 +260,9 @@ class Scene(Handle):
     def set_camera(self, kind: str, camera_to_world, window, **values) -> None:
         """`kind`: perspective, orthographic; looks along its -z, +y up.
 
-        window: left, right, bottom, top of the picture at distance 1 (perspective) or in metres
-        (orthographic). clip_start, clip_end in metres. aperture: radius of the lens, focus: distance of what
-        is sharp, metres; blades, blade_rotation (radians), aperture_ratio (height over width): its shape.
+        window: left, right, bottom, top of the picture at distance 1 (perspective) or in meters
+        (orthographic). clip_start, clip_end in meters. aperture: radius of the lens, focus: focus distance,
+        meters; blades, blade_rotation (radians), aperture_ratio (height over width): shape of the aperture.
         """
         values = {"type": choice("camera", kind, table.CAMERAS), "window": window, **values}
         desc = self._desc(structs.CameraDesc, "vlr_camera_desc_init", values)
@@ -270,7 +270,7 @@ class Scene(Handle):
         self._lib.vlr_scene_set_camera(self.pointer, byref(desc))
 
     def look_at(self, eye, target, fov: float, aspect: float) -> None:
-        """From a point to a point, +z up. `fov`: vertical, radians; `aspect`: width / height."""
+        """Perspective, from `eye` to `target`, +z up. `fov`: vertical, radians; `aspect`: width / height."""
         self._lib.vlr_scene_look_at(
             self.pointer, small("eye", eye, 3), small("target", target, 3), fov, aspect
         )
@@ -278,13 +278,13 @@ class Scene(Handle):
     def frame_camera(self, aspect: float, up_axis: int = 2) -> None:
         """Frames the bounding box of all instances to the picture's height. `up_axis` 1 (y) or 2 (z)."""
         if up_axis not in (1, 2):
-            raise refuse(f"up_axis is {up_axis}; it is 1 (y) or 2 (z).")
+            raise refuse(f"up_axis is {up_axis}; it must be 1 (y) or 2 (z).")
         self._lib.vlr_scene_frame_camera(self.pointer, aspect, up_axis)
 
     # ---- end
 
     def stay(self) -> None:
-        """Says before commit() that no geometry changes after it: rays take less time."""
+        """Call before commit() if no geometry will change after it: makes rays faster."""
         self._lib.vlr_scene_stay(self.pointer)
 
     def commit(self) -> None:
@@ -292,7 +292,7 @@ class Scene(Handle):
         self._lib.vlr_scene_commit(self.pointer)
 
     def info(self) -> dict:
-        """As vlr_scene_info_json: triangles, instances, lights, camera_inside, bytes, warnings and more."""
+        """From vlr_scene_info_json: triangles, instances, lights, camera_inside, bytes, warnings and more."""
         return library.json_of(self._lib.vlr_scene_info_json, self.pointer)
 
     def _numbered(self, function_name: str, *arguments) -> int:

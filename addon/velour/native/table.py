@@ -1,6 +1,6 @@
 """The C header as ctypes: names of choices, and the result and argument types of every function.
 
-native/include/velour/velour.h is the law; a test compares names, argument counts, sizes and offsets.
+native/include/velour/velour.h is authoritative; a test compares names, argument counts, sizes and offsets.
 """
 
 from __future__ import annotations
@@ -25,8 +25,8 @@ from .errors import VelourError
 JOB_STATES = ("ready", "running", "done", "failed", "cancelled")
 KERNELS = ("gaussian", "abel-poisson")
 MODELS = ("scattered", "parametric")
-COMPRESS_METHODS = ("svd", "srbf", "tucker", "cta", "kcta", "svd-view")  # by number
-COMPANDINGS = ("none", "root")  # by number
+COMPRESS_METHODS = ("svd", "srbf", "tucker", "cta", "kcta", "svd-view")  # in the order of the C enum
+COMPANDINGS = ("none", "root")
 BTF_VALUES = ("automatic", "brdf", "reflectance", "radiance")
 BTF_COLORS = ("rec709", "xyz")
 BTF_ANGLES = ("automatic", "degrees", "radians")
@@ -63,7 +63,7 @@ STRATEGIES = (
     *("uniform", "cosine", "table", "srbf", "light", "mis", "ggx", "mis-ggx", "product"),
     *("dissertation", "mis-dissertation"),
 )
-MOST_SPLIT = 48  # of vlr_render_options.split
+MOST_SPLIT = 48  # maximum of vlr_render_options.split
 
 _handle = c_void_p
 _out_handle = POINTER(c_void_p)
@@ -278,13 +278,13 @@ PLAIN_CALLS = {
 
 
 def bind(library: ctypes.CDLL) -> None:
-    """Gives every function of `library` its types; AttributeError names the first one that is not there."""
+    """Sets the types of every function of `library`. AttributeError names the first one that is missing."""
 
     def check(status, function, _arguments):
         if status:
             text = library.vlr_last_error()
             sentence = (
-                text.decode("utf-8", "replace") if text else f"{function.__name__} failed without a word"
+                text.decode("utf-8", "replace") if text else f"{function.__name__} failed without a message."
             )
             raise VelourError(status, sentence)
         return status

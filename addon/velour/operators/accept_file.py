@@ -16,16 +16,18 @@ _MEASUREMENT = "measurement"
 class VELOUR_OT_accept_file(ReadsFirst, bpy.types.Operator):
     bl_idname = "velour.accept_file"
     bl_label = "Accept Changed File"
-    bl_description = "Take the model and the measurement as they are on disk now"
+    bl_description = "Accept the model and measurement files as they are on disk now"
     bl_options = {"UNDO"}
 
-    material: StringProperty(name="Material", description="Empty: the active one", options={"SKIP_SAVE"})
+    material: StringProperty(
+        name="Material", description="Name of the material. Empty: the active one", options={"SKIP_SAVE"}
+    )
 
     def _read(self, context):
         material = measured.find_material(context, self.material)
         node = velour_node(material)
         if node is None:
-            raise ExportError("There is no measured material.")
+            raise ExportError("There is no measured material; select an object that has one.")
         self._target, self._subject = JobTarget(material, node), material.name
         owner = f"Material '{material.name}'"
         stored = {role: StoredFile.of(image, owner) for role, image in _images(node)}
@@ -40,7 +42,7 @@ class VELOUR_OT_accept_file(ReadsFirst, bpy.types.Operator):
             self.report({"WARNING"}, sentence)
         material, node = self._target.find()
         if material is None:
-            self.report({"WARNING"}, "The material is gone.")
+            self.report({"WARNING"}, "The material no longer exists, so no file was accepted.")
             return {"CANCELLED"}
         accepted = 0
         for role, image in _images(node):
@@ -48,7 +50,9 @@ class VELOUR_OT_accept_file(ReadsFirst, bpy.types.Operator):
                 image.velour.sha256 = digests.get(role, image.velour.sha256)
                 accepted += role in digests
             else:
-                sentence = f"'{image.name}' came to '{material.name}' meanwhile, and was not read."
+                sentence = (
+                    f"Material '{material.name}': '{image.name}' was assigned meanwhile; accept it again."
+                )
                 self.report({"WARNING"}, sentence)
         return {"FINISHED"} if accepted else {"CANCELLED"}
 

@@ -10,10 +10,10 @@ from .slots import assign
 class VELOUR_OT_add_material(bpy.types.Operator):
     bl_idname = "velour.add_material"
     bl_label = "Use Measured Material"
-    bl_description = "Make the active material a measured one; adds a material where there is none"
+    bl_description = "Turn the active material into a measured material. Adds a material if there is none"
     bl_options = {"REGISTER", "UNDO"}
 
-    name: StringProperty(name="Name", default="Measured", description="Of the material, where one is added")
+    name: StringProperty(name="Name", default="Measured", description="Name of the material, if one is added")
 
     def execute(self, context):
         material = measured.find_material(context, "")

@@ -12,11 +12,11 @@ from ..export.units import metres_per_unit
 from ..native import Tile, VelourError
 
 _TYPES = (
-    ("WEAVE", "Plain Weave", "Yarns over one, under one", 0),
-    ("TWILL", "Twill", "Yarns over two, under two, shifted by one each row", 1),
+    ("WEAVE", "Plain Weave", "Each yarn passes over one, then under one", 0),
+    ("TWILL", "Twill", "Each yarn passes over two, then under two, shifted by one in each row", 1),
     ("NET", "Net", "Crossed cords around square holes", 2),
-    ("CHAINMAIL", "Chain Mail", "Rings of wire, each through four others", 3),
-    ("GRAVEL", "Gravel", "A bed of pebbles on a floor", 4),
+    ("CHAINMAIL", "Chain Mail", "Wire rings, each linked with four others", 3),
+    ("GRAVEL", "Gravel", "Bed of pebbles on a floor", 4),
     ("CORDUROY", "Corduroy", "Ribs of pile with grooves between them", 5),
 )
 _SHAPE = ("size", "count", "thickness", "gap", "irregularity", "resolution", "seed")
@@ -31,14 +31,14 @@ def _forget_shape(operator, _context):
 class VELOUR_OT_add_mesostructure(bpy.types.Operator, AddObjectHelper):
     bl_idname = "velour.add_mesostructure"
     bl_label = "Add Mesostructure"
-    bl_description = "Add one tile of a small structure, true to life in size, that repeats without a seam"
+    bl_description = "Add one tile of a small structure in real size that repeats seamlessly"
     bl_options = {"REGISTER", "UNDO"}
 
     # Properties that are not set use the type's defaults, which are filled in once the tile is made.
     type: EnumProperty(name="Type", items=_TYPES, default="WEAVE", update=_forget_shape)
     size: FloatProperty(
         name="Size",
-        description="Side of the tile",
+        description="Length of the sides of the tile",
         min=1e-6,
         default=0.002,
         subtype="DISTANCE",
@@ -47,7 +47,7 @@ class VELOUR_OT_add_mesostructure(bpy.types.Operator, AddObjectHelper):
     )
     count: IntProperty(
         name="Count",
-        description="Yarns, cords, rings or ribs along a side; of gravel: pebbles, about",
+        description="Number of yarns, cords, rings or ribs along a side. Gravel: rough number of pebbles",
         min=1,
         max=170,
         default=4,
@@ -55,8 +55,8 @@ class VELOUR_OT_add_mesostructure(bpy.types.Operator, AddObjectHelper):
     )
     thickness: FloatProperty(
         name="Thickness",
-        description="Of a yarn, cord, wire or rib as a share of the distance of neighbours; of gravel: depth"
-        " of the bed in pebbles",
+        description="Thickness of a yarn, cord, wire or rib, as a share of the distance between neighbors."
+        " Gravel: depth of the bed in pebbles",
         min=0.01,
         max=8.0,
         default=0.3,
@@ -64,7 +64,7 @@ class VELOUR_OT_add_mesostructure(bpy.types.Operator, AddObjectHelper):
     )
     gap: FloatProperty(
         name="Gap",
-        description="Between neighbours, as a share of their distance",
+        description="Gap between neighbors, as a share of their distance",
         min=0.0,
         max=0.95,
         default=0.1,
@@ -72,7 +72,7 @@ class VELOUR_OT_add_mesostructure(bpy.types.Operator, AddObjectHelper):
     )
     irregularity: FloatProperty(
         name="Irregularity",
-        description="How far things shrink, here and there, from their ideal shape",
+        description="Random shrinkage of the parts from their ideal shape",
         min=0.0,
         max=1.0,
         default=0.1,
@@ -81,7 +81,7 @@ class VELOUR_OT_add_mesostructure(bpy.types.Operator, AddObjectHelper):
     )
     resolution: IntProperty(
         name="Resolution",
-        description="Points around a yarn, wire, pebble or rib; even",
+        description="Number of points around a yarn, wire, pebble or rib. Must be even",
         min=6,
         max=256,
         default=16,

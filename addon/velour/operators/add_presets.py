@@ -10,14 +10,14 @@ from ..core import presets
 
 class VELOUR_OT_add_presets(bpy.types.Operator):
     bl_idname = "velour.add_presets"
-    bl_label = "Add the Preset Library"
-    bl_description = "Let asset browsers show Velour's preset materials: adds their folder to the preferences"
+    bl_label = "Add Preset Library"
+    bl_description = "Add the folder of Velour's preset materials to the asset libraries in the preferences"
     bl_options = {"REGISTER"}
 
     directory: StringProperty(
         name="Folder",
         subtype="DIR_PATH",
-        description="Where velour_presets.blend lies; empty: in the add-on",
+        description="Folder that contains velour_presets.blend. Empty: the folder of the add-on",
         options={"SKIP_SAVE"},
     )
 
@@ -35,18 +35,18 @@ class VELOUR_OT_add_presets(bpy.types.Operator):
             return {"CANCELLED"}
         known = library_of(context.preferences, folder)
         if known is not None:
-            self.report({"INFO"}, f"The asset library '{known.name}' is there already: {folder}")
+            self.report({"INFO"}, f"The asset library '{known.name}' already exists: {folder}")
             return {"FINISHED"}
         _add(context.preferences, folder)
-        self.report({"INFO"}, f"Asset browsers have the library '{presets.NAME}' now: {folder}")
+        self.report({"INFO"}, f"Added the asset library '{presets.NAME}': {folder}")
         return {"FINISHED"}
 
 
 def missing(folder):
     """Error message for a `folder` without presets, with the remedy."""
     return (
-        f"{folder} has no {presets.LIBRARY_FILE}: run scripts/presets in Velour's sources, then scripts/build"
-        " or scripts/package; or choose the folder that has it."
+        f"{folder} does not contain {presets.LIBRARY_FILE}. Run scripts/presets in Velour's sources, then"
+        " scripts/build or scripts/package; or choose the folder that contains it."
     )
 
 

@@ -16,14 +16,14 @@ from .job_target import JobTarget
 
 class VELOUR_OT_add_votf(AskedOutline, MakesModel, bpy.types.Operator):
     bl_idname = "velour.add_votf"
-    bl_label = "Add Outline"
+    bl_label = "Add Silhouette"
     bl_description = (
-        "Give the material's model the outline and the holes of the structure (VOTF). The model before it is"
-        " not touched"
+        "Give the material's model the silhouette and holes of the structure (VOTF). The previous model is"
+        " kept"
     )
     bl_options = {"UNDO"}
 
-    _what = "Adding the outline"
+    _what = "Adding the silhouette"
 
     def _begin(self, context):
         asked = self._asked(context)
@@ -53,7 +53,7 @@ class VELOUR_OT_add_votf(AskedOutline, MakesModel, bpy.types.Operator):
             self.report({"WARNING"}, sentence)
         self.report(
             {"INFO"},
-            f"'{material.name}' has the outline of '{report['source']}': {data_size(report['bytes'])},"
+            f"'{material.name}' has the silhouette of '{report['source']}': {data_size(report['bytes'])},"
             f" {report['wrong']:.2%} of rays wrong.",
         )
         return {"FINISHED"}

@@ -43,12 +43,14 @@ class VELOUR_OT_approximate(JobsInSteps, bpy.types.Operator):
     bl_idname = "velour.approximate"
     bl_label = "Approximate"
     bl_description = (
-        "Make the node group of a Principled BSDF that comes closest to the model: what EEVEE, Cycles and"
-        " Solid mode show. Other nodes are not touched"
+        "Fit a node group with a Principled BSDF to the model, for EEVEE, Cycles and Solid mode. Other nodes"
+        " are not changed"
     )
     bl_options = {"UNDO"}
 
-    material: StringProperty(name="Material", description="Empty: the active one", options={"SKIP_SAVE"})
+    material: StringProperty(
+        name="Material", description="Name of the material. Empty: the active one", options={"SKIP_SAVE"}
+    )
 
     _what = "The approximation"
 
@@ -56,7 +58,7 @@ class VELOUR_OT_approximate(JobsInSteps, bpy.types.Operator):
         material = measured.wanted_material(context, self.material)
         owner = f"Material '{material.name}'"
         if not approximation_group.is_editable(material):
-            raise ExportError(f"{owner} is linked from another file; approximate it there, or make it local.")
+            raise ExportError(f"{owner} is linked from another file; approximate it there or make it local.")
         node = measured.modelled_node(material)
         self._target, self._subject = JobTarget(material, node), material.name
 
@@ -71,7 +73,7 @@ class VELOUR_OT_approximate(JobsInSteps, bpy.types.Operator):
             return None
         material, _node = self._target.find()
         if material is None:
-            self.report({"WARNING"}, "The material is gone.")
+            self.report({"WARNING"}, "The material no longer exists; its approximation was discarded.")
             return {"CANCELLED"}
         found = self._steps.result
         approximation_group.put(material, found, self._digest)

@@ -41,44 +41,45 @@ class AskedFit:
     filepath: StringProperty(
         name="BTF",
         subtype="FILE_PATH",
-        description="A folder, a CSV index or a .btf file; empty: what was captured of the tile",
+        description="Folder, CSV index or .btf file of a BTF. Empty: the captured BTF of the tile",
         options={"SKIP_SAVE"},
     )
     collection: StringProperty(
-        name="Collection", description="The tile; empty: the active object is it", options={"SKIP_SAVE"}
+        name="Collection",
+        description="Collection that is the tile. Empty: the active object",
+        options={"SKIP_SAVE"},
     )
     material: StringProperty(
         name="Material",
-        description="Whose BTF is fitted anew. Empty: a new material is made, of the file or of the tile",
+        description="Material whose BTF is fitted again. Empty: a new material from the file or the tile",
         options={"SKIP_SAVE"},
     )
     # If set, these replace the settings of the tile or the material.
     method: EnumProperty(name="Method", items=METHODS, default="SRBF", options={"SKIP_SAVE"})
     clusters: IntProperty(
         name="Clusters",
-        description="Of CTA and K-CTA; 0: what serves best",
+        description="Number of clusters (CTA, K-CTA). 0: automatic",
         min=0,
         max=256,
         options={"SKIP_SAVE"},
     )
     members: IntProperty(
-        name="Clusters of a Texel",
-        description="Of K-CTA; 0: what serves best",
+        name="Clusters per Texel",
+        description="Number of clusters per texel (K-CTA). 0: automatic",
         min=0,
         max=8,
         options={"SKIP_SAVE"},
     )
     tolerance: FloatProperty(
-        name="Largest Error",
-        description="Relative L2 error of the roots of values; the smallest model within it. 0: none",
+        name="Max Error",
+        description="Maximum error of the model. The smallest model that meets it is chosen. 0: no limit",
         min=0.0,
         max=0.9,
         options={"SKIP_SAVE"},
     )
     megabytes: FloatProperty(
-        name="Megabytes",
-        description="Of all coefficients at most; 0: a four-hundredth of the BTF (SVD: twice that), or a few;"
-        " with a largest error, whatever it takes",
+        name="Max Size (MB)",
+        description="Maximum model size in MB. 0: automatic, or unlimited if Max Error is set",
         min=0.0,
         options={"SKIP_SAVE"},
     )

@@ -23,14 +23,18 @@ class AskedOutline:
 
     _keeps = True  # stores given properties in the settings of the material
 
-    material: StringProperty(name="Material", description="Empty: the active one", options={"SKIP_SAVE"})
+    material: StringProperty(
+        name="Material", description="Name of the material. Empty: the active one", options={"SKIP_SAVE"}
+    )
     structure: StringProperty(
         name="Structure",
-        description="The object that is the tile; empty: the one that the material names",
+        description="Object that is the tile. Empty: the structure that is set in the material",
         options={"SKIP_SAVE"},
     )
     collection: StringProperty(
-        name="Collection", description="The tile, in place of an object", options={"SKIP_SAVE"}
+        name="Collection",
+        description="Collection that is the tile, instead of an object",
+        options={"SKIP_SAVE"},
     )
     texels: IntProperty(name="Texels", min=4, max=4096, default=128, options={"SKIP_SAVE"})
 
@@ -55,11 +59,11 @@ class AskedOutline:
         if self.structure:
             structure = bpy.data.objects.get(self.structure)
             if structure is None:
-                raise ExportError(f"There is no object {self.structure!r} to take as a tile.")
+                raise ExportError(f"There is no object {self.structure!r} to use as a tile; check its name.")
             if self._keeps:
                 settings.structure = structure
         if structure is None:
-            raise ExportError(f"{owner}: choose the object that is the structure.")
+            raise ExportError(f"{owner}: no structure is chosen; choose the object that is the tile.")
         return tile_of(context, structure)
 
 

@@ -49,7 +49,7 @@ class BackgroundJob:
     def modal(self, context, event):
         try:
             if self._ticket.is_given_up:
-                raise VelourError(Status.CANCELLED, "It was taken out of the line.")
+                raise VelourError(Status.CANCELLED, "The job was removed from the queue.")
             result = self._wants_to_stop(context, event) and self._stop()
             if not result and event.type == "TIMER" and self._has_turn(context):
                 result = self._step(context)
@@ -192,7 +192,7 @@ class OneJob(BackgroundJob):
 
     def _fail(self, error):
         cancelled = isinstance(error, VelourError) and error.cancelled
-        sentence = f"{self._what} was cancelled{self._after_cancel}." if cancelled else str(error)
+        sentence = f"{self._what} was canceled{self._after_cancel}." if cancelled else str(error)
         self.report({"WARNING" if cancelled else "ERROR"}, sentence)
         return {"CANCELLED"}
 

@@ -49,7 +49,7 @@ class VELOUR_OT_choose_measurement(bpy.types.Operator):
 class VELOUR_OT_refresh_browser(bpy.types.Operator):
     bl_idname = "velour.refresh_browser"
     bl_label = "Refresh"
-    bl_description = "Look through the folder anew"
+    bl_description = "Search the folder again"
     bl_options = {"INTERNAL"}
 
     def execute(self, context):
@@ -59,22 +59,25 @@ class VELOUR_OT_refresh_browser(bpy.types.Operator):
 
 class VELOUR_OT_make_thumbnails(JobsInSteps, bpy.types.Operator):
     bl_idname = "velour.make_thumbnails"
-    bl_label = "Make All Pictures"
+    bl_label = "Make All Thumbnails"
     bl_description = (
-        "Make the pictures of all measurements and models in the folder now, not as they are looked"
-        " at. They are kept in a cache"
+        "Render the thumbnails of all measurements and models in the folder now instead of on demand, and"
+        " cache them"
     )
 
     directory: StringProperty(
-        name="Folder", subtype="DIR_PATH", description="Empty: that of the preferences", options={"SKIP_SAVE"}
+        name="Folder",
+        subtype="DIR_PATH",
+        description="Folder of measurements. Empty: the folder set in the preferences",
+        options={"SKIP_SAVE"},
     )
 
-    _what = "Making pictures"
+    _what = "Making thumbnails"
 
     def _begin(self, context):
         folder = bpy.path.abspath(self.directory) or measurement_folder(context)
         if not folder:
-            raise ExportError("No folder of measurements is chosen; choose one in the preferences of Velour.")
+            raise ExportError("No folder of measurements is chosen; choose one in Velour's preferences.")
         self._subject = os.path.basename(os.path.normpath(folder))
         self._steps = _Pictures(folder, Path(cache_folder()), context.scene.render.threads)
         self._advance()
@@ -87,10 +90,11 @@ class VELOUR_OT_make_thumbnails(JobsInSteps, bpy.types.Operator):
         for sentence in pictures.sentences[:_MOST_SENTENCES]:
             self.report({"WARNING"}, sentence)
         rest = len(pictures.sentences) - _MOST_SENTENCES
-        more = f" {rest} more sentences were left out." if rest > 0 else ""
+        more = f" {rest} more warnings are not shown." if rest > 0 else ""
         self.report(
             {"INFO"},
-            f"{len(pictures.files)} files, {pictures.made} of them with a picture, in {pictures.kept}.{more}",
+            f"{len(pictures.files)} files, {pictures.made} of them with a thumbnail,"
+            f" in {pictures.kept}.{more}",
         )
         return {"FINISHED"}
 

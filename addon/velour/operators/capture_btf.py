@@ -13,7 +13,7 @@ from ..properties.tile_settings import SIDES
 from .background_job import OneJob
 from .tiles import CAPTURE_NUMBERS, capture_options, find_tile, held_out_folder, new_folder, tile_folder
 
-_NEW_FOLDER = "Capture into a new folder. What the one before holds stays"
+_NEW_FOLDER = "Capture into a new folder. The previous capture is kept"
 _SETTINGS = ("directory", *CAPTURE_NUMBERS, "sides", "use_approximate")
 
 
@@ -21,12 +21,13 @@ class VELOUR_OT_capture_btf(OneJob, bpy.types.Operator):
     bl_idname = "velour.capture_btf"
     bl_label = "Capture BTF"
     bl_description = (
-        "Trace how the tile, repeated without end, looks under every light from every view, and write it to a"
-        " folder"
+        "Render the endlessly repeated tile from all views under all lights, and write the BTF to a folder"
     )
 
     collection: StringProperty(
-        name="Collection", description="The tile; empty: the active object is it", options={"SKIP_SAVE"}
+        name="Collection",
+        description="Collection that is the tile. Empty: the active object",
+        options={"SKIP_SAVE"},
     )
     # If set, these replace the settings of the tile.
     directory: StringProperty(name="Folder", subtype="DIR_PATH", options={"SKIP_SAVE"})
@@ -37,9 +38,9 @@ class VELOUR_OT_capture_btf(OneJob, bpy.types.Operator):
     bounces: IntProperty(name="Bounces", min=0, default=1, options={"SKIP_SAVE"})
     sides: EnumProperty(name="Sides", items=SIDES, options={"SKIP_SAVE"})
     held_out: IntProperty(
-        name="Held-out Pairs",
-        description="Capture so many pairs of a view and a light that models of the tile's BTF are judged by,"
-        " in place of all views and lights, into a folder beside it; 0: the BTF itself",
+        name="Held-Out Pairs",
+        description="Capture this many held-out view-light pairs for validation, in a folder next to the BTF."
+        " 0: capture the BTF itself",
         min=0,
         max=4096,
         options={"SKIP_SAVE"},
@@ -48,17 +49,17 @@ class VELOUR_OT_capture_btf(OneJob, bpy.types.Operator):
     seed: IntProperty(name="Seed", min=0, options={"SKIP_SAVE"})
     resume: BoolProperty(
         name="Resume",
-        description="Go on with a capture of the same tile that was stopped. Not given: in a window, yes",
+        description="Continue a stopped capture of the same tile. If not set: only with a window",
         options={"SKIP_SAVE"},
     )
     new_folder: BoolProperty(
         name="New Folder",
-        description="Leave what the folder holds, and capture into a new one beside it, numbered",
+        description="Keep the existing folder, and capture into a new, numbered one next to it",
         options={"SKIP_SAVE"},
     )
 
     _what = "The capture"
-    _after_cancel = "; Capture BTF goes on where it stopped"
+    _after_cancel = "; press Capture BTF to continue it"
     _later = None  # a job to start when the first has finished
 
     @classmethod
@@ -117,7 +118,7 @@ class VELOUR_OT_capture_btf(OneJob, bpy.types.Operator):
         for sentence in (*self._notes, *map(plain, report["warnings"])):
             self.report({"WARNING"}, sentence)
         resumed = report["views_resumed"]
-        there = f", of which {resumed} of {report['views']} views were there" if resumed else ""
+        there = f"; {resumed} of {report['views']} views were captured earlier" if resumed else ""
         self.report(
             {"INFO"},
             f"Captured '{self._subject}' in {report['seconds']:.0f} s: {data_size(report['bytes'])} in"

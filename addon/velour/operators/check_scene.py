@@ -15,9 +15,8 @@ class VELOUR_OT_check_scene(bpy.types.Operator):
     bl_idname = "velour.check_scene"
     bl_label = "Check Scene"
     bl_description = (
-        "Say what of the scene Velour leaves out in this frame, what it refuses to render, and which model"
-        " for the scene does not serve in it, without rendering. Takes as long as the export of a render, and"
-        " a look at what it shows of each material with a model for the scene"
+        "List what Velour does not support in this frame, and scene models that were not fitted for it,"
+        " without rendering"
     )
     bl_options = {"REGISTER"}
 
@@ -28,7 +27,7 @@ class VELOUR_OT_check_scene(bpy.types.Operator):
         for sentence in (*refused, *ignored):
             self.report({"WARNING"}, sentence)
         if not ignored and not refused:
-            self.report({"INFO"}, "Nothing is left out.")
+            self.report({"INFO"}, "All features of this frame are supported.")
         return {"FINISHED"}
 
 

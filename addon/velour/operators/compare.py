@@ -13,19 +13,21 @@ from .shown_image import all_made, made_image, show
 
 class VELOUR_OT_compare(JobsInSteps, bpy.types.Operator):
     bl_idname = "velour.compare"
-    bl_label = "Compare with the Measurement"
+    bl_label = "Compare with Measurement"
     bl_description = (
-        "Show a ball as it was measured, as the model has it, and the difference, in an Image Editor"
+        "Show a ball with the measurement, with the model, and their difference in an Image Editor"
     )
 
-    material: StringProperty(name="Material", description="Empty: the active one", options={"SKIP_SAVE"})
-    side: IntProperty(name="Size", description="Of each of the three: pixels", default=512, min=64, max=4096)
+    material: StringProperty(
+        name="Material", description="Name of the material. Empty: the active one", options={"SKIP_SAVE"}
+    )
+    side: IntProperty(
+        name="Size", description="Width and height of each image in pixels", default=512, min=64, max=4096
+    )
     samples: IntProperty(
-        name="Samples", description="Light directions a pixel", default=256, min=1, max=1 << 20
+        name="Samples", description="Number of light directions per pixel", default=256, min=1, max=1 << 20
     )
-    gain: FloatProperty(
-        name="Gain", description="What the difference is multiplied with", default=4.0, min=0.01
-    )
+    gain: FloatProperty(name="Gain", description="Factor on the difference", default=4.0, min=0.01)
 
     _what = "The comparison"
 
@@ -51,8 +53,8 @@ class VELOUR_OT_compare(JobsInSteps, bpy.types.Operator):
             show(image)
         self.report(
             {"INFO"},
-            f"'{self._subject}': measured, model, {self.gain:g} times the difference; the model is"
-            f" {self._steps.relative_l2:.2%} off on the ball.",
+            f"'{self._subject}': measurement, model and {self.gain:g} times their difference; relative error"
+            f" {self._steps.relative_l2:.2%} on the ball.",
         )
         return {"FINISHED"}
 

@@ -21,7 +21,7 @@ class Comparison:
     def __init__(self, node, owner, side, samples, threads):
         self._owner, self._side, self._samples, self._threads = owner, side, samples, threads
         if node.velour.measurement is None:
-            raise ExportError(f"{owner}: no measurement is chosen, so there is nothing to compare with.")
+            raise ExportError(f"{owner}: there is no measurement to compare with; choose one.")
         self._model = StoredFile.of(node.image, owner)
         self._measurement = StoredFile.of(node.velour.measurement, owner)
         self._until_read = contextlib.ExitStack()

@@ -28,20 +28,23 @@ class VELOUR_OT_compress_btf(AskedFit, MakesModel, bpy.types.Operator):
     bl_idname = "velour.compress_btf"
     bl_label = "Make Material from BTF"
     bl_description = (
-        "Fit a model to a captured or measured BTF: a new material's, or that of the material it is of, whose"
-        " model before it is not touched"
+        "Fit a model to a BTF. Creates a material, or refits the BTF's own; the previous model is kept"
     )
     bl_options = {"UNDO"}
 
     assign: BoolProperty(
         name="Assign",
-        description="Put the material into a slot: the one that is named, or the active one",
+        description="Put the material into the given slot, or else the active slot",
         options={"SKIP_SAVE"},
     )
     object: StringProperty(
-        name="Object", description="Whose slot is meant; empty: the active one", options={"SKIP_SAVE"}
+        name="Object",
+        description="Object that gets the material. Empty: the active one",
+        options={"SKIP_SAVE"},
     )
-    slot: IntProperty(name="Slot", description="Its number, from 0", min=0, options={"SKIP_SAVE"})
+    slot: IntProperty(
+        name="Slot", description="Index of the material slot, from 0", min=0, options={"SKIP_SAVE"}
+    )
 
     _what = "Making the material"
     _target = None  # the material whose model is refitted
@@ -130,7 +133,7 @@ class VELOUR_OT_compress_btf(AskedFit, MakesModel, bpy.types.Operator):
             {"INFO"},
             f"Material '{material.name}': {data_size(len(self._data))}, 1:{report['ratio']:.0f},"
             f" {report['psnr']:.1f} dB, error {report['relative_l2']:.3f}"
-            + ("." if unseen is None else f"; {unseen:.1f} dB at pairs that it has not seen."),
+            + ("." if unseen is None else f"; {unseen:.1f} dB for held-out pairs."),
         )
 
 

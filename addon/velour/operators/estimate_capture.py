@@ -17,10 +17,12 @@ from .tiles import CAPTURE_NUMBERS, capture_options, captured_as, find_tile
 class VELOUR_OT_estimate_capture(JobsInSteps, bpy.types.Operator):
     bl_idname = "velour.estimate_capture"
     bl_label = "Estimate"
-    bl_description = "Find out how long the capture will take, how much memory and disk, by two small ones"
+    bl_description = "Estimate time, memory and disk space of the capture from two small captures"
 
     collection: StringProperty(
-        name="Collection", description="The tile; empty: the active object is it", options={"SKIP_SAVE"}
+        name="Collection",
+        description="Collection that is the tile. Empty: the active object",
+        options={"SKIP_SAVE"},
     )
 
     _what = "The estimate"

@@ -16,9 +16,7 @@ from .tiles import asked_of
 class VELOUR_OT_estimate_fit(AskedFit, ReadsFirst, bpy.types.Operator):
     bl_idname = "velour.estimate_fit"
     bl_label = "Estimate"
-    bl_description = (
-        "Say how long the fit will take, how much memory, and how large the model will be at most"
-    )
+    bl_description = "Estimate time, memory and maximum model size of the fit"
 
     _keeps = False
 

@@ -14,10 +14,7 @@ from .background_job import JobsInSteps
 class VELOUR_OT_estimate_votf(AskedOutline, JobsInSteps, bpy.types.Operator):
     bl_idname = "velour.estimate_votf"
     bl_label = "Estimate"
-    bl_description = (
-        "Find out how long the outline will take, how much memory, how large it will be and how good coarser"
-        " ones are, by two small ones. Nothing is changed"
-    )
+    bl_description = "Estimate time, memory, size and quality from two coarse runs. Changes nothing"
 
     _keeps = False
     _what = "The estimate"

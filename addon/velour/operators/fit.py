@@ -20,13 +20,15 @@ _SETTINGS = ("model", "tolerance", "max_lobes", "kernel", "seed")
 class VELOUR_OT_fit(MakesModel, bpy.types.Operator):
     bl_idname = "velour.fit"
     bl_label = "Fit"
-    bl_description = "Fit a model to the material's measurement. The model before it is not touched"
+    bl_description = "Fit a model to the material's measurement. The previous model is kept"
     bl_options = {"UNDO"}
 
-    material: StringProperty(name="Material", description="Empty: the active one", options={"SKIP_SAVE"})
+    material: StringProperty(
+        name="Material", description="Name of the material. Empty: the active one", options={"SKIP_SAVE"}
+    )
     # If set, these replace the settings of the material.
-    model: EnumProperty(name="Kind", items=MODELS, default="PARAMETRIC", options={"SKIP_SAVE"})
-    tolerance: FloatProperty(name="Tolerance", min=0.0005, max=1.0, default=0.02, options={"SKIP_SAVE"})
+    model: EnumProperty(name="Model", items=MODELS, default="PARAMETRIC", options={"SKIP_SAVE"})
+    tolerance: FloatProperty(name="Max Error", min=0.0005, max=1.0, default=0.02, options={"SKIP_SAVE"})
     max_lobes: IntProperty(name="Max Lobes", min=1, max=64, default=16, options={"SKIP_SAVE"})
     kernel: EnumProperty(
         name="Kernel",
@@ -47,7 +49,7 @@ class VELOUR_OT_fit(MakesModel, bpy.types.Operator):
         if measured.is_btf(node.velour.measurement):
             path = absolute_path(node.velour.measurement)
             call = f"bpy.ops.velour.compress_btf(material={material.name!r})"
-            raise ExportError(f"{owner}: {path} is a BTF, which {call} fits, and Fit in its panel.")
+            raise ExportError(f"{owner}: {path} is a BTF; fit it with {call}, or with Fit in its panel.")
         self._target = JobTarget(material, node)
         self._subject = material.name
         settings = self._settings(node)
@@ -105,7 +107,7 @@ def _model_options(settings):
 class VELOUR_OT_cancel_fit(bpy.types.Operator):
     bl_idname = "velour.cancel_fit"
     bl_label = "Cancel"
-    bl_description = "Stop the fit or the capture that is running"
+    bl_description = "Cancel the running job"
 
     def execute(self, context):
         context.window_manager.velour.cancel_requested = True
@@ -114,8 +116,8 @@ class VELOUR_OT_cancel_fit(bpy.types.Operator):
 
 class VELOUR_OT_cancel_waiting(bpy.types.Operator):
     bl_idname = "velour.cancel_waiting"
-    bl_label = "Cancel Waiting"
-    bl_description = "Take all fits, captures and imports that wait out of the line. What runs goes on"
+    bl_label = "Cancel Queued"
+    bl_description = "Cancel all queued jobs. The running job continues"
 
     def execute(self, context):
         give_up_waiting(context)

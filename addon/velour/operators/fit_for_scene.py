@@ -20,21 +20,22 @@ class VELOUR_OT_fit_for_scene(BackgroundJob, bpy.types.Operator):
     bl_idname = "velour.fit_for_scene"
     bl_label = "Fit for This Scene"
     bl_description = (
-        "Look at the material in all frames, view layers and instances of the scene, and fit a second,"
-        " smaller model that holds for the views and lights found. The full model stays"
+        "Fit a scene model: a smaller model for what all frames, view layers and instances of the scene show"
+        " of the material. The full model is kept"
     )
     bl_options = {"UNDO"}
 
-    material: StringProperty(name="Material", description="Empty: the active one", options={"SKIP_SAVE"})
+    material: StringProperty(
+        name="Material", description="Name of the material. Empty: the active one", options={"SKIP_SAVE"}
+    )
     current_frame: BoolProperty(
         name="Current Frame Only",
-        description="Look at the current frame instead of the scene's frame range",
+        description="Use the current frame instead of the scene's frame range",
         options={"SKIP_SAVE"},
     )
     shared: BoolProperty(
         name="Even if Shared",
-        description="Also if another scene uses the material. Its frames take the full model where they show"
-        " the material otherwise",
+        description="Fit even if other scenes use the material. They use the full model where needed",
         options={"SKIP_SAVE"},
     )
 
@@ -74,7 +75,7 @@ class VELOUR_OT_fit_for_scene(BackgroundJob, bpy.types.Operator):
     def _begin(self, context):
         material = measured.wanted_material(context, self.material)
         if bpy.app.is_job_running("RENDER"):
-            raise ExportError("A render is running; wait for it, or cancel it.")
+            raise ExportError("A render is running; wait until it ends, or cancel it.")
         self._work = SceneFit(material, context.scene, self.current_frame, self.shared)
 
     def _start(self, context):
@@ -139,7 +140,7 @@ class VELOUR_OT_fit_for_scene(BackgroundJob, bpy.types.Operator):
 
     def _cancelled(self):
         self._close()
-        self.report({"WARNING"}, "The fit for the scene was cancelled.")
+        self.report({"WARNING"}, "The fit for the scene was canceled.")
         return {"CANCELLED"}
 
     def _close(self):
@@ -153,7 +154,7 @@ class VELOUR_OT_fit_for_scene(BackgroundJob, bpy.types.Operator):
         if bpy.app.background:
             work = self._work
             print(
-                f"Velour: looked at frame {work.frames[work.done - 1]} ({work.done}/{len(work.frames)})",
+                f"Velour: observed frame {work.frames[work.done - 1]} ({work.done}/{len(work.frames)})",
                 flush=True,
             )
 
@@ -164,19 +165,19 @@ def _report(work, info):
     took, cost = _texels_left(info) if of_btf else _time_and_error(info)
     return (
         f"Fitted '{work.material_name}' for scene '{work.scene_name}', {len(work.frames)} frames{took}:"
-        f" {own} bytes of parameters, the full model has {full} ({full / own:.1f} times as many); {cost}."
+        f" {own} bytes of parameters, full model {full} ({full / own:.1f} times as many); {cost}."
     )
 
 
 def _time_and_error(info):
     scene = info["scene"]
-    errors = f"{scene['picture_error']:.2g}, full {scene['full_picture_error']:.2g}"
-    return f", in {info['seconds']:.1f} s", f"picture error {errors}"
+    errors = f"{scene['picture_error']:.2g}, full model {scene['full_picture_error']:.2g}"
+    return f", in {info['seconds']:.1f} s", f"image error {errors}"
 
 
 def _texels_left(info):
     (width, height), (full_width, full_height) = info["texels"], info["scene"]["full_texels"]
-    return "", f"{width} x {height} texels of {full_width} x {full_height}"
+    return "", f"{width} x {height} texels instead of {full_width} x {full_height}"
 
 
 def _ask(context, sentence, material, current_frame):

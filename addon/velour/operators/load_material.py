@@ -38,13 +38,13 @@ def found_file(path):
     """The _Found of a model, a measurement or a BTF; raises ExportError or VelourError."""
     info = library.file_info(path)
     if info["kind"] == "observation":
-        raise ExportError(f"{path}: is what a scene shows of a material; choose a model or a measurement.")
+        raise ExportError(f"{path} is a scene usage file; choose a model or a measurement.")
     if info["kind"] != "model":
         return _Found(path, info["kind"], info["sha256"], None)
     try:
         data = read_bytes(path)
     except OSError as error:
-        raise ExportError(f"{path}: cannot be read ({error.strerror}); choose it again.") from error
+        raise ExportError(f"{path} cannot be read ({error.strerror}); check the file.") from error
     return _Found(path, info["kind"], sha256(data), data)
 
 
@@ -60,14 +60,14 @@ def _find(paths):
                 raise
             sentences.append(str(error))
     if found and sentences:
-        sentences.insert(0, f"{len(sentences)} of {len(paths)} files were left out.")
+        sentences.insert(0, f"{len(sentences)} of {len(paths)} files were not imported.")
     return found, sentences
 
 
 class VELOUR_OT_load_material(OneJob, bpy.types.Operator, ImportHelper):
     bl_idname = "velour.load_material"
     bl_label = "Import Measured Material"
-    bl_description = "Make materials from model files (.velour) or measurements (MERL, RGL, Cornell, BTFs)"
+    bl_description = "Import materials from model files (.velour) or measurements (MERL, RGL, Cornell, BTFs)"
     bl_options = {"UNDO"}
 
     filename_ext = ".velour"
@@ -76,11 +76,11 @@ class VELOUR_OT_load_material(OneJob, bpy.types.Operator, ImportHelper):
     directory: StringProperty(subtype="DIR_PATH", options={"HIDDEN", "SKIP_SAVE"})
     pack: BoolProperty(
         name="Pack Models",
-        description="Keep models (kilobytes) inside the .blend. Measurements always stay files",
+        description="Store models (kilobytes) in the .blend file. Measurements always stay files",
         default=True,
     )
     fit: BoolProperty(
-        name="Fit Measurements", description="Fit a model to each measurement at once", default=True
+        name="Fit Measurements", description="Fit a model to each imported measurement", default=True
     )
 
     assign: BoolProperty(
@@ -88,10 +88,12 @@ class VELOUR_OT_load_material(OneJob, bpy.types.Operator, ImportHelper):
     )
     object: StringProperty(
         name="Object",
-        description="Whose slot is meant; empty: the active one",
+        description="Object that gets the material. Empty: the active one",
         options={"HIDDEN", "SKIP_SAVE"},
     )
-    slot: IntProperty(name="Slot", description="Its number, from 0", min=0, options={"HIDDEN", "SKIP_SAVE"})
+    slot: IntProperty(
+        name="Slot", description="Index of the material slot, from 0", min=0, options={"HIDDEN", "SKIP_SAVE"}
+    )
 
     _what = "The import"
     _asks = False
@@ -190,6 +192,6 @@ class VELOUR_OT_load_material(OneJob, bpy.types.Operator, ImportHelper):
         more = len(self._sentences) - _MOST_SENTENCES
         said = self._sentences[:_MOST_SENTENCES]
         if more > 0:
-            said.append(f"{more} more sentences were left out.")
+            said.append(f"{more} more errors are not shown.")
         if said:
             self.report({"ERROR"}, " ".join(said))

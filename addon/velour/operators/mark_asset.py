@@ -16,18 +16,20 @@ _TEXTS = ("author", "license", "description")
 class VELOUR_OT_mark_asset(JobsInSteps, bpy.types.Operator):
     bl_idname = "velour.mark_asset"
     bl_label = "Mark as Asset"
-    bl_description = "Offer the material in asset browsers, with a picture of a ball of it in a studio"
+    bl_description = "Mark the material as an asset, with a preview of it on a ball"
     bl_options = {"UNDO"}
 
-    material: StringProperty(name="Material", description="Empty: the active one", options={"SKIP_SAVE"})
+    material: StringProperty(
+        name="Material", description="Name of the material. Empty: the active one", options={"SKIP_SAVE"}
+    )
     # Properties that are not set remain unchanged.
     author: StringProperty(name="Author", options={"SKIP_SAVE"})
     license: StringProperty(name="License", options={"SKIP_SAVE"})
     description: StringProperty(name="Description", options={"SKIP_SAVE"})
-    catalog: StringProperty(name="Catalog", description="Its UUID", options={"SKIP_SAVE"})
-    tags: StringProperty(name="Tags", description="With commas between them", options={"SKIP_SAVE"})
+    catalog: StringProperty(name="Catalog", description="UUID of the asset catalog", options={"SKIP_SAVE"})
+    tags: StringProperty(name="Tags", description="Tags to add, separated by commas", options={"SKIP_SAVE"})
 
-    _what = "The picture of the asset"
+    _what = "The asset preview"
 
     def _begin(self, context):
         material = measured.wanted_material(context, self.material)
@@ -45,13 +47,15 @@ class VELOUR_OT_mark_asset(JobsInSteps, bpy.types.Operator):
             return None
         material, _node = self._target.find()
         if material is None:
-            self.report({"WARNING"}, f"Material '{self._subject}' is gone, and no asset.")
+            self.report(
+                {"WARNING"}, f"Material '{self._subject}' no longer exists, so it was not marked as an asset."
+            )
             return {"CANCELLED"}
         self._describe(material)
         preview = material.preview_ensure()
         preview.image_size = _SIDE, _SIDE
         preview.image_pixels_float.foreach_set(self._steps.pixels.ravel())
-        self.report({"INFO"}, f"'{material.name}' is an asset of this file.")
+        self.report({"INFO"}, f"Marked '{material.name}' as an asset.")
         return {"FINISHED"}
 
     def _describe(self, material):
@@ -66,7 +70,7 @@ class VELOUR_OT_mark_asset(JobsInSteps, bpy.types.Operator):
             if getattr(self, name) and hasattr(asset, name):
                 setattr(asset, name, getattr(self, name))
             elif getattr(self, name):  # the license, in Blender 3.4
-                sentence = f"this Blender keeps no {name} of assets; put it into the description"
+                sentence = f"this Blender does not store the {name} of assets; add it to the description"
                 self.report({"WARNING"}, f"Material '{material.name}': {sentence}.")
         if self.catalog:
             asset.catalog_id = self.catalog

@@ -28,7 +28,7 @@ def wanted_material(context, name):
     """Like find_material(); raises ExportError if there is none."""
     material = find_material(context, name)
     if material is None:
-        raise ExportError(f"There is no material {name!r}." if name else "No active material.")
+        raise ExportError(f"There is no material {name!r}." if name else "There is no active material.")
     return material
 
 
@@ -44,21 +44,21 @@ def stored_model(target):
     """StoredFile of a JobTarget's current model; raises ExportError if there is none."""
     material, node = target.find()
     if node is None:
-        raise ExportError(f"Material '{target.material_name}' is gone.")
+        raise ExportError(f"Material '{target.material_name}' no longer exists.")
     if node.image is None:
         raise _no_model(material)
     return StoredFile.of(node.image, f"Material '{material.name}'")
 
 
 def _no_model(material):
-    return ExportError(f"Material '{material.name}' has no model; fit one, or choose one as its image.")
+    return ExportError(f"Material '{material.name}' has no model; fit one, or choose a model file.")
 
 
 def refuse_linked(material):
     """Raises ExportError for a linked material, whose changes would be lost on the next load of its file."""
     if material.library is not None:
         raise ExportError(
-            f"Material '{material.name}' is linked from a library, where nothing can be kept; make it local."
+            f"Material '{material.name}' is linked from a library and cannot be changed; make it local."
         )
 
 
@@ -116,7 +116,7 @@ def put_model(data, target, report):
     image = packed_model(data, material.name if material else target.material_name)
     if node is None:
         image.use_fake_user = True
-        report({"WARNING"}, f"The material is gone; its model is kept as image '{image.name}'.")
+        report({"WARNING"}, f"The material no longer exists; its model is kept as image '{image.name}'.")
         return None, None
     set_model(node, image, report)
     return material, node
@@ -127,7 +127,7 @@ def set_model(node, image, report):
     node.image = image
     if node.velour.use_scene_model:
         node.velour.use_scene_model = False
-        report({"INFO"}, "The model for the scene is of the model before, and is switched off.")
+        report({"INFO"}, "The scene model belongs to the previous model and was disabled; fit it again.")
 
 
 def linked_model(path, digest):
@@ -169,7 +169,7 @@ def after_fit(material, node, read, digest, report):
     """Stores the hash of the measurement that a model was fitted to, if the material still has it; reports a
     VOTF that only the previous model has."""
     if node.velour.structure is not None:
-        sentence = "An outline (VOTF) stays with the model before; press Add Outline for the new one."
+        sentence = "The new model has no silhouette (VOTF); press Add Silhouette to add it."
         report({"INFO"}, f"Material '{material.name}': {sentence}")
     measurement = node.velour.measurement
     if place_of(measurement) == read.place:
@@ -177,7 +177,8 @@ def after_fit(material, node, read, digest, report):
         return
     report(
         {"WARNING"},
-        f"Material '{material.name}' has another measurement by now, or none; its model is of '{read.name}'.",
+        f"Material '{material.name}': its measurement was changed meanwhile; the model was fitted to"
+        f" '{read.name}'.",
     )
 
 

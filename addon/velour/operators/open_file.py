@@ -12,7 +12,12 @@ from .job_target import JobTarget
 from .load_material import found_file
 from .reads_first import ReadsFirst
 
-_NAMES = {"model": "a model", "measurement": "a measurement", "btf": "a BTF", "observation": "no material"}
+_NAMES = {
+    "model": "a model",
+    "measurement": "a measurement",
+    "btf": "a BTF",
+    "observation": "a scene usage file",
+}
 _MODELS = ".velour"
 
 
@@ -20,7 +25,9 @@ class _OpensFile(ReadsFirst, ImportHelper):
     """Operator mixin. `_kinds`: accepted kinds of files; `_put(node, file)` takes the file that was read."""
 
     filepath: StringProperty(name="File", subtype="FILE_PATH", options={"SKIP_SAVE"})
-    material: StringProperty(name="Material", description="Empty: the active one", options={"SKIP_SAVE"})
+    material: StringProperty(
+        name="Material", description="Name of the material. Empty: the active one", options={"SKIP_SAVE"}
+    )
 
     _asks = False
 
@@ -49,10 +56,12 @@ class _OpensFile(ReadsFirst, ImportHelper):
         material = measured.wanted_material(context, self.material)
         node, path = velour_node(material), bpy.path.abspath(self.filepath)
         if node is None:
-            raise ExportError(f"Material '{material.name}' is not a measured one; make it that first.")
+            raise ExportError(
+                f"Material '{material.name}' is not measured; press Use Measured Material first."
+            )
         if material.library is not None:
             raise ExportError(
-                f"Material '{material.name}' is linked from another file; choose its files there, or make it"
+                f"Material '{material.name}' is linked from another file; choose its files there or make it"
                 " local."
             )
         self._target, self._subject = JobTarget(material, node), material.name
@@ -61,13 +70,13 @@ class _OpensFile(ReadsFirst, ImportHelper):
     def _refusing_others(self, file):
         if file.kind not in self._kinds:
             wanted = " or ".join(_NAMES[kind] for kind in self._kinds)
-            raise ExportError(f"{file.path}: is {_NAMES[file.kind]}; choose {wanted}.")
+            raise ExportError(f"{file.path} is {_NAMES[file.kind]}; choose {wanted}.")
         return file
 
     def _use(self, _context, file):
         _material, node = self._target.find()
         if node is None:
-            self.report({"WARNING"}, "The material is gone.")
+            self.report({"WARNING"}, "The material no longer exists, so the file was not used.")
             return {"CANCELLED"}
         self._put(node, file)
         return {"FINISHED"}
@@ -76,7 +85,7 @@ class _OpensFile(ReadsFirst, ImportHelper):
 class VELOUR_OT_open_measurement(_OpensFile, bpy.types.Operator):
     bl_idname = "velour.open_measurement"
     bl_label = "Open Measurement"
-    bl_description = "Choose the file of a measurement (MERL, RGL, Cornell) or a BTF. It stays where it is"
+    bl_description = "Choose the file of a measurement (MERL, RGL, Cornell) or a BTF. It is not packed"
     bl_options = {"UNDO"}
 
     filter_glob: StringProperty(default=file_filter(without=_MODELS), options={"HIDDEN"})
@@ -89,7 +98,9 @@ class VELOUR_OT_open_measurement(_OpensFile, bpy.types.Operator):
 
 class _OpensModel(_OpensFile):
     filter_glob: StringProperty(default=f"*{_MODELS};*.exr", options={"HIDDEN"})
-    pack: BoolProperty(name="Pack", description="Keep the model (kilobytes) inside the .blend", default=True)
+    pack: BoolProperty(
+        name="Pack", description="Store the model (kilobytes) in the .blend file", default=True
+    )
 
     _kinds = ("model",)
 
@@ -111,7 +122,7 @@ class VELOUR_OT_open_model(_OpensModel, bpy.types.Operator):
 
 class VELOUR_OT_open_scene_model(_OpensModel, bpy.types.Operator):
     bl_idname = "velour.open_scene_model"
-    bl_label = "Open Model for the Scene"
+    bl_label = "Open Scene Model"
     bl_description = "Choose the file of a model that was fitted for a scene (.velour)"
     bl_options = {"UNDO"}
 

@@ -16,9 +16,13 @@ from .reads_first import ReadsFirst
 class PlacementOperator(ReadsFirst):
     """Operator mixin; `_use_on(depsgraph, obj, material, tile)` does the work."""
 
-    object: StringProperty(name="Object", description="Empty: the active one", options={"SKIP_SAVE"})
+    object: StringProperty(
+        name="Object", description="Name of the object. Empty: the active one", options={"SKIP_SAVE"}
+    )
     material: StringProperty(
-        name="Material", description="Empty: the object's active one", options={"SKIP_SAVE"}
+        name="Material",
+        description="Name of the material. Empty: the object's active one",
+        options={"SKIP_SAVE"},
     )
 
     def _read(self, context):
@@ -30,7 +34,9 @@ class PlacementOperator(ReadsFirst):
         material = measured.find_material(context, self.material) if self.material else obj.active_material
         node = velour_node(material)
         if node is None or node.image is None:
-            raise ExportError(f"Object '{obj.name}': there is no material with a model to place on it.")
+            raise ExportError(
+                f"Object '{obj.name}' has no material with a model to place; fit or import one."
+            )
         self._subject, self._keys = material.name, (key_of(obj), key_of(material))
         return StoredFile.of(node.image, f"Material '{material.name}'").model_info
 
@@ -38,10 +44,10 @@ class PlacementOperator(ReadsFirst):
         obj_key, material_key = self._keys
         obj, material = bpy.data.objects.get(obj_key), bpy.data.materials.get(material_key)
         if obj is None or velour_node(material) is None:
-            raise ExportError(f"The object or its material '{self._subject}' is gone.")
+            raise ExportError(f"The object or its material '{self._subject}' no longer exists.")
         tile = Tile.of(material, info)
         if tile is None:
-            raise ExportError(f"Material '{material.name}' is the same all over; it has no tiles to place.")
+            raise ExportError(f"Material '{material.name}' is uniform and has no tiles to place.")
         self._use_on(context.evaluated_depsgraph_get(), obj, material, tile)
         return {"FINISHED"}
 
@@ -49,7 +55,9 @@ class PlacementOperator(ReadsFirst):
 class VELOUR_OT_describe_placement(PlacementOperator, bpy.types.Operator):
     bl_idname = "velour.describe_placement"
     bl_label = "Describe Placement"
-    bl_description = "Say how large the tiles of the material are on the object, and what is wrong with that"
+    bl_description = (
+        "Report the size of the material's tiles on the object, and problems with their placement"
+    )
 
     def _use_on(self, *where):
         report = report_on(*where)
@@ -63,8 +71,8 @@ class VELOUR_OT_keep_uv_density(PlacementOperator, bpy.types.Operator):
     bl_idname = "velour.keep_uv_density"
     bl_label = "Keep UV Density"
     bl_description = (
-        "Take the density of the object's texture coordinates as they are in this frame for all objects and"
-        " frames, so that tiles do not creep over a mesh that deforms"
+        "Use the object's UV density in this frame for all objects and frames, so that tiles do not creep"
+        " over deforming meshes"
     )
     bl_options = {"UNDO"}
 

@@ -19,7 +19,9 @@ _KINDS_OF_FILES = (".png", ".svg", ".csv")
 class _OfMaterial(JobsInSteps):
     """Operator mixin that makes a plot of a material. `_use(plot)` takes it."""
 
-    material: StringProperty(name="Material", description="Empty: the active one", options={"SKIP_SAVE"})
+    material: StringProperty(
+        name="Material", description="Name of the material. Empty: the active one", options={"SKIP_SAVE"}
+    )
     kind: plot_kind()
     view: plot_view()
     azimuth: plot_azimuth()
@@ -53,12 +55,14 @@ class _OfMaterial(JobsInSteps):
 class VELOUR_OT_save_plot(_OfMaterial, bpy.types.Operator, ExportHelper):
     bl_idname = "velour.save_plot"
     bl_label = "Save Plot"
-    bl_description = "Write the plot as a picture for paper (.png, .svg), or its numbers (.csv)"
+    bl_description = "Save the plot as an image for print (.png, .svg), or its numbers (.csv)"
 
     filename_ext = ".png"
     check_extension = None  # the file's extension determines the format
     filter_glob: StringProperty(default="*.png;*.svg;*.csv", options={"HIDDEN"})
-    side: IntProperty(name="Size", description="Of a picture: pixels", default=800, min=64, max=8192)
+    side: IntProperty(
+        name="Size", description="Width and height of an image in pixels", default=800, min=64, max=8192
+    )
 
     _asks = False
 
@@ -96,7 +100,7 @@ class VELOUR_OT_enlarge_plot(_OfMaterial, bpy.types.Operator):
     bl_label = "Enlarge"
     bl_description = "Open the plot as an image in an Image Editor"
 
-    side: IntProperty(name="Size", description="Pixels", default=1024, min=64, max=8192)
+    side: IntProperty(name="Size", description="Width and height in pixels", default=1024, min=64, max=8192)
 
     def _use(self, plot):
         context = bpy.context

@@ -19,16 +19,17 @@ _AROUND = [(x, y) for y in (-1, 0, 1) for x in (-1, 0, 1) if (x, y) != (0, 0)]
 
 class VELOUR_OT_repeat_tile(bpy.types.Operator):
     bl_idname = "velour.repeat_tile"
-    bl_label = "Show Repeated"
+    bl_label = "Show Repeats"
     bl_description = (
-        "Show the tile 3 x 3 times, as a capture sees it: copies around it that follow its changes and cannot"
-        " be selected. Without a Period they lie as far apart as its bounding box is large now. Press again"
-        " to take them away"
+        "Show the tile 3 x 3 times, as it is captured, or hide the copies again. Without a Period, they are"
+        " spaced by the current bounding box"
     )
     bl_options = {"REGISTER", "UNDO"}
 
     collection: StringProperty(
-        name="Collection", description="The tile; empty: the active object is it", options={"SKIP_SAVE"}
+        name="Collection",
+        description="Collection that is the tile. Empty: the active object",
+        options={"SKIP_SAVE"},
     )
 
     @classmethod

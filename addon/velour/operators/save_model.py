@@ -14,13 +14,17 @@ from . import measured
 class VELOUR_OT_save_model(bpy.types.Operator, ExportHelper):
     bl_idname = "velour.save_model"
     bl_label = "Save Model"
-    bl_description = "Write the material's model to a file. The material keeps its own copy"
+    bl_description = "Save the material's model to a file. The material keeps its own copy"
 
     filename_ext = ".velour"
     filter_glob: StringProperty(default="*.velour", options={"HIDDEN"})
-    material: StringProperty(name="Material", description="Empty: the active one", options={"SKIP_SAVE"})
+    material: StringProperty(
+        name="Material", description="Name of the material. Empty: the active one", options={"SKIP_SAVE"}
+    )
     for_scene: BoolProperty(
-        name="Model for the Scene", description="That one instead of the full model", options={"SKIP_SAVE"}
+        name="Scene Model",
+        description="Save the scene model instead of the full model",
+        options={"SKIP_SAVE"},
     )
 
     def invoke(self, context, event):

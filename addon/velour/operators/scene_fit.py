@@ -26,12 +26,12 @@ class SceneFit:
     def __init__(self, material, scene, current_frame=False, shared=False):
         _refuse_unfit(material)
         if not any(layer.use for layer in scene.view_layers):
-            raise ExportError(f"Scene '{scene.name}': no view layer renders; switch one on.")
+            raise ExportError(f"Scene '{scene.name}': no view layer is enabled for rendering; enable one.")
         others = [] if shared else other_scenes(material, scene)
         if others:
             raise SharedMaterialError(
-                f"Material '{material.name}' is also used by {_scenes(others)}, for which the model would not"
-                " be fitted. Make the material single-user, or fit it even if shared (shared=True)."
+                f"Material '{material.name}' is also used by {_scenes(others)}, for which the scene model"
+                " would not be fitted. Make the material single-user, or fit it even if shared (shared=True)."
             )
         self.material_name, self.scene_name = material.name, scene.name
         self._target, self._owner = JobTarget(material, velour_node(material)), JobOwner(scene)
@@ -76,8 +76,8 @@ class SceneFit:
         """Starts and returns the job of the fit."""
         if self.observation.info()["hits"] == 0:
             raise ExportError(
-                f"Material '{self.material_name}' is not seen in {self._range()} of scene"
-                f" '{self.scene_name}'; nothing tells what its model is needed for."
+                f"Material '{self.material_name}' is not visible in {self._range()} of scene"
+                f" '{self.scene_name}', so no scene model can be fitted; choose frames that show it."
             )
         self._owner.take()
         node = self._refuse_another_model()
@@ -89,8 +89,8 @@ class SceneFit:
     def _fit_job(self, measurement, full, settings, threads):
         if full.info()["model"] != "parametric" and "shell" in full.info():
             raise ExportError(
-                f"Material '{self.material_name}': only a parametric model hands its outline (VOTF) on to a"
-                " model for the scene; fit one, and add the outline to it."
+                f"Material '{self.material_name}': only parametric models pass their silhouette (VOTF) on to"
+                " the scene model. Fit a parametric model and add the silhouette to it."
             )
         # Only a parametric model can be the reference; without one, the fit makes it first.
         measure = {"full_model": full} if full.info()["model"] == "parametric" else {}
@@ -115,7 +115,7 @@ class SceneFit:
         if node is None:
             image.use_fake_user = True
             raise ExportError(
-                f"Material '{name}' is gone; its model for the scene is kept as image '{image.name}'."
+                f"Material '{name}' no longer exists; its scene model is kept as image '{image.name}'."
             )
         node.velour.scene_model, node.velour.use_scene_model = image, True
 
@@ -124,7 +124,7 @@ class SceneFit:
         _material, node = self._material()
         if node.image is None or _identity(node.image) != self._model_before:
             raise ExportError(
-                f"Material '{self.material_name}' has another model than when this began; fit for the scene"
+                f"Material '{self.material_name}': its model was changed meanwhile; press Fit for This Scene"
                 " again."
             )
         return node
@@ -133,7 +133,7 @@ class SceneFit:
         """The material and its node, even if renamed."""
         material, node = self._target.find()
         if velour_node(material) is None:
-            raise ExportError(f"Material '{self.material_name}' is gone, or is not measured any more.")
+            raise ExportError(f"Material '{self.material_name}' no longer exists, or is no longer measured.")
         self.material_name = material.name
         return material, node
 
@@ -141,7 +141,7 @@ class SceneFit:
         """The scene, even if renamed."""
         scene = self._owner.find()
         if scene is None:
-            raise ExportError(f"Scene '{self.scene_name}' is gone.")
+            raise ExportError(f"Scene '{self.scene_name}' no longer exists.")
         self.scene_name = scene.name
         return scene
 
@@ -193,8 +193,8 @@ def _read_raw(stored):
     measurement = stored.raw(Measurement)
     if not measurement.info()["isotropic"]:
         raise ExportError(
-            f"{stored.owner}: the measurement is anisotropic, and of a scene's views only the angle from the"
-            " normal is known, not the direction around it; use the full model."
+            f"{stored.owner}: the measurement is anisotropic, but the scene usage has only the angle of views"
+            " to the normal, not their azimuth; use the full model."
         )
     return measurement
 
@@ -202,7 +202,7 @@ def _read_raw(stored):
 def _of_one_content(raw, stored):
     model = stored.model()
     if model.info()["source"]["sha256"] != raw.info()["sha256"]:
-        raise ExportError(f"{stored.owner}: the full model is not of this measurement; press Fit.")
+        raise ExportError(f"{stored.owner}: the full model was not fitted to this measurement; press Fit.")
     return raw, model
 
 

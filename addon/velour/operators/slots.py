@@ -107,15 +107,15 @@ class SlotTarget:
         """Reports why `what`, a material, is not put into the slot."""
         why = self._why_none
         if self._owner:
-            why = f"Slot {self._number + 1} of object '{self._owner.name}' is gone"
-        report({"WARNING"}, f"{why}; {what} is kept without an object.")
+            why = f"Slot {self._number + 1} of object '{self._owner.name}' no longer exists"
+        report({"WARNING"}, f"{why}; {what} is kept without an object; assign it.")
 
 
 def _why_none(obj, slot: Slot | None) -> str:
     """Reason why there is no slot."""
     if obj is not None:
-        return f"Object '{obj.name}' takes no material"
-    return f"There is no object '{slot.object}'" if slot else "No object is active"
+        return f"Object '{obj.name}' cannot have materials"
+    return f"There is no object '{slot.object}'" if slot else "There is no active object"
 
 
 def assign(context, material) -> None:

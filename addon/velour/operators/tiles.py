@@ -18,10 +18,10 @@ def find_tile(context, collection_name):
     if collection_name:
         collection = bpy.data.collections.get(collection_name)
         if collection is None:
-            raise ExportError(f"There is no collection '{collection_name}' to take as a tile.")
+            raise ExportError(f"There is no collection '{collection_name}' to use as a tile; check its name.")
         return collection_tile(collection, depsgraph)
     if context.object is None:
-        raise ExportError("There is no active object to take as a tile.")
+        raise ExportError("There is no active object to use as a tile; select one.")
     return object_tile(context.object, depsgraph)
 
 
@@ -35,7 +35,7 @@ def tile_folder(tile):
     """Absolute folder of the tile's BTF, which may not exist yet."""
     chosen = tile.owner.velour.directory
     if not chosen and not bpy.data.filepath:
-        raise ExportError(f"{tile.label}: save the .blend first, or choose a folder for the capture.")
+        raise ExportError(f"{tile.label}: save the .blend file first, or choose a folder for the capture.")
     name = bpy.path.clean_name(tile.owner.name)
     return os.path.normpath(bpy.path.abspath(chosen or f"//{name}.btf"))
 

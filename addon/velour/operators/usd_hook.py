@@ -18,14 +18,14 @@ class VELOUR_USD_approximation(getattr(bpy.types, "USDHook", object)):
         try:
             return approximation_usd.write(export_context, bl_material, usd_material)
         except Exception as error:  # the export continues without it
-            return _sorry(f"the approximation of the material '{bl_material.name}' is", error)
+            return _sorry(f"the approximation of material '{bl_material.name}'", error)
 
     @staticmethod
     def on_export(export_context):
         try:
             approximation_usd.choose_uvs(export_context.get_stage())
         except Exception as error:
-            return _sorry("the texture coordinates of approximations are", error)
+            return _sorry("the texture coordinates of approximations", error)
         return True
 
 
@@ -53,5 +53,7 @@ def _is_there(module):
 
 
 def _sorry(what, error):
-    print(f"Velour: {what} not in the USD file ({type(error).__name__}: {error}).", flush=True)
+    print(
+        f"Velour: {what} could not be written to the USD file ({type(error).__name__}: {error}).", flush=True
+    )
     return False

@@ -1,4 +1,4 @@
-"""Where a browser of measurements stands. Never saved; its folder is a preference."""
+"""State of the measurement browser. Never saved; its folder is a preference."""
 
 import bpy
 from bpy.props import IntProperty, StringProperty
@@ -13,11 +13,11 @@ class VelourBrowserSettings(bpy.types.PropertyGroup):
 
     search: StringProperty(
         name="Search",
-        description="Words that the names must have",
+        description="Show only files whose names contain all of these words",
         options={"SKIP_SAVE", "TEXTEDIT_UPDATE"},
         update=_to_first_page,
     )
-    page: IntProperty(name="Page", description="Of the pictures", default=1, min=1, options={"SKIP_SAVE"})
+    page: IntProperty(name="Page", description="Page of thumbnails", default=1, min=1, options={"SKIP_SAVE"})
     chosen: StringProperty(options={"HIDDEN", "SKIP_SAVE"})  # path of a file
-    # Grows when the folder is to be looked through anew.
+    # Incremented to search the folder again.
     visits: IntProperty(options={"HIDDEN", "SKIP_SAVE"})

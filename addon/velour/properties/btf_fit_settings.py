@@ -1,16 +1,21 @@
-"""What a fit of a BTF is asked for."""
+"""Settings of a BTF fit."""
 
 import bpy
 from bpy.props import EnumProperty, FloatProperty, IntProperty
 
-# Numbers and, in lower case with hyphens, names are the library's.
+# Numbers are the library's, and so are the names in lower case with hyphens.
 METHODS = (
-    ("SRBF", "SRBF", "Lobes of light and view over a relief: smallest, and smooth between directions", 1),
-    ("KCTA", "K-CTA", "Clustered tensors, of which a texel has a few", 4),
-    ("CTA", "CTA", "Clustered tensors, of which a texel has one", 3),
-    ("TUCKER", "Tucker", "One tensor decomposition for all texels", 2),
-    ("SVD", "SVD", "Truncated singular values", 0),
-    ("SVD_VIEW", "SVD by View", "Singular values of each view for itself", 5),
+    (
+        "SRBF",
+        "SRBF",
+        "Spherical radial basis functions over a relief: smallest, smooth between directions",
+        1,
+    ),
+    ("KCTA", "K-CTA", "Clustered tensor approximation with several clusters per texel", 4),
+    ("CTA", "CTA", "Clustered tensor approximation with one cluster per texel", 3),
+    ("TUCKER", "Tucker", "One Tucker decomposition for all texels", 2),
+    ("SVD", "SVD", "Truncated singular value decomposition", 0),
+    ("SVD_VIEW", "SVD by View", "Separate truncated singular value decomposition for each view", 5),
 )
 SHAPE_OF = {"CTA": ("clusters",), "KCTA": ("clusters", "members")}  # settings that a method takes
 NAMES = ("method", "clusters", "members", "tolerance", "megabytes")
@@ -18,33 +23,33 @@ _OVERRIDABLE = {"LIBRARY_OVERRIDABLE"}
 
 
 class BtfFitSettings:
-    """Mixin of a PropertyGroup."""
+    """Mixin for a PropertyGroup."""
 
     method: EnumProperty(
         name="Method",
-        description="What the BTF is turned into",
+        description="Model that is fitted to the BTF",
         items=METHODS,
         default="SRBF",
         override=_OVERRIDABLE,
     )
     clusters: IntProperty(
         name="Clusters",
-        description="Of texels that look alike in how they turn with view and light. 0: what serves best",
+        description="Number of texel clusters. 0: automatic",
         min=0,
         max=256,
         override=_OVERRIDABLE,
     )
     members: IntProperty(
-        name="Clusters of a Texel",
-        description="How many a texel is made of. 0: what serves best",
+        name="Clusters per Texel",
+        description="Number of clusters that a texel is composed of. 0: automatic",
         min=0,
         max=8,
         override=_OVERRIDABLE,
     )
     tolerance: FloatProperty(
-        name="Largest Error",
-        description="The smallest material that differs from the BTF by no more than this part: 0.1 is about"
-        " a tenth of how bright things look. 0: as good as the size allows",
+        name="Max Error",
+        description="Choose the smallest model with at most this relative error (0.1: about a tenth of the"
+        " perceived brightness). 0: limited by Max Size only",
         min=0.0,
         max=0.9,
         default=0.0,
@@ -53,9 +58,8 @@ class BtfFitSettings:
         override=_OVERRIDABLE,
     )
     megabytes: FloatProperty(
-        name="Largest Size (MB)",
-        description="Of the material, at most. 0: a four-hundredth of the BTF; with a largest error, whatever"
-        " it takes",
+        name="Max Size (MB)",
+        description="Maximum model size in MB. 0: automatic, or unlimited if Max Error is set",
         min=0.0,
         default=0.0,
         precision=3,
@@ -64,4 +68,4 @@ class BtfFitSettings:
 
 
 class VelourBtfFitSettings(BtfFitSettings, bpy.types.PropertyGroup):
-    """`node.velour.btf`: of a material whose measurement is a BTF."""
+    """`node.velour.btf`, for a material whose measurement is a BTF."""

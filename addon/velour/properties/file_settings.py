@@ -1,4 +1,4 @@
-"""What is remembered of a model or measurement file, or of a picture that Velour made."""
+"""Data on a model or measurement file, or on an image that Velour made."""
 
 import bpy
 from bpy.props import BoolProperty, StringProperty
@@ -12,12 +12,10 @@ class VelourFileSettings(bpy.types.PropertyGroup):
     saved_by: saved_by()
     sha256: StringProperty(
         name="SHA-256",
-        description="Of the file when it was chosen or fitted; empty: not checked."
-        " A final render refuses a file that has changed since",
+        description="SHA-256 of the file when it was chosen or fitted. Final renders refuse a file that has"
+        " changed since. Empty: not checked",
         override={"LIBRARY_OVERRIDABLE"},
     )
-    is_plot: BoolProperty(options={"HIDDEN"})  # drawn by an operator, which may draw another one over it
-    made_as: StringProperty(
-        options={"HIDDEN"}
-    )  # the name that its operator asked for; it may have another one
-    compared: StringProperty(options={"HIDDEN"})  # a comparison: of which model with which measurement
+    is_plot: BoolProperty(options={"HIDDEN"})  # made by an operator, which may overwrite it
+    made_as: StringProperty(options={"HIDDEN"})  # name requested by its operator; the actual one may differ
+    compared: StringProperty(options={"HIDDEN"})  # key of the model and measurement that a comparison shows

@@ -5,7 +5,7 @@ from bpy.props import BoolProperty
 
 
 def _update_passes(settings, _context):
-    """The compositor's sockets follow, as they follow Blender's own switches."""
+    """Updates the compositor's sockets, as Blender's own switches do."""
     for layer in settings.id_data.view_layers:
         layer.update_render_passes()
 
@@ -25,10 +25,8 @@ class VelourLayerSettings(bpy.types.PropertyGroup):
 
     use_pass_denoising: _switch(
         "Denoising Data",
-        "Denoising Normal and Denoising Albedo: what the compositor's Denoise node takes beside the picture",
+        "Denoising Normal and Denoising Albedo passes, inputs of the compositor's Denoise node",
     )
-    use_pass_albedo: _switch(
-        "Albedo", "The share of light that surfaces reflect towards the camera, from 0 to 1"
-    )
-    use_pass_error: _switch("Error", "The standard error of the picture's colours, pixel by pixel")
-    use_pass_sample_count: _switch("Sample Count", "How many light directions each pixel received")
+    use_pass_albedo: _switch("Albedo", "Share of light that surfaces reflect toward the camera, from 0 to 1")
+    use_pass_error: _switch("Error", "Standard error of the color of each pixel")
+    use_pass_sample_count: _switch("Sample Count", "Number of light directions sampled in each pixel")

@@ -19,8 +19,13 @@ from .saved_by import saved_by
 _OVERRIDE = {"LIBRARY_OVERRIDABLE"}
 
 MODELS = (
-    ("SCATTERED", "Scattered", "Lobes of each sampled view direction, mixed between views", 0),
-    ("PARAMETRIC", "Parametric", "Few lobes that change smoothly with the view direction: smallest", 1),
+    ("SCATTERED", "Per-View", "Separate lobes for each sampled view direction, blended between views", 0),
+    (
+        "PARAMETRIC",
+        "Parametric",
+        "Few lobes that change smoothly with the view direction; the smallest model",
+        1,
+    ),
 )
 
 
@@ -30,38 +35,38 @@ class VelourMaterialSettings(bpy.types.PropertyGroup):
     saved_by: saved_by()
     enabled: BoolProperty(
         name="Measured Material",
-        description="Render the material of this node from the measured model in its image",
+        description="Render this node's material with the measured model in the node's image",
         default=False,
         update=changed,
         override=_OVERRIDE,
     )
     measurement: PointerProperty(
         name="Measurement",
-        description="The measurement file that the model is fitted to. Only its path is used",
+        description="Measurement file that the model is fitted to. Only the path of the image is used",
         type=bpy.types.Image,
         override=_OVERRIDE,
     )
     model: EnumProperty(
-        name="Kind",
-        description="The kind of model that the measurement is turned into",
+        name="Model",
+        description="Type of model that is fitted to the measurement",
         items=MODELS,
         default="PARAMETRIC",
         override=_OVERRIDE,
     )
     kernel: EnumProperty(
         name="Kernel",
-        description="The shape of a lobe of a scattered model",
+        description="Shape of the lobes of a per-view model",
         items=(
-            ("GAUSSIAN", "Gaussian", "exp(bandwidth (cos - 1)), the von Mises-Fisher shape", 0),
-            ("ABEL_POISSON", "Abel-Poisson", "A sharp peak with a long tail", 1),
+            ("GAUSSIAN", "Gaussian", "exp(bandwidth * (cos - 1)), the von Mises-Fisher distribution", 0),
+            ("ABEL_POISSON", "Abel-Poisson", "Sharp peak with a long tail", 1),
         ),
         default="GAUSSIAN",
         override=_OVERRIDE,
     )
     tolerance: FloatProperty(
-        name="Tolerance",
-        description="Largest relative error asked for at every view up to 75 degrees, twice that beyond."
-        " 0.02: hardly to be seen beside the measurement",
+        name="Max Error",
+        description="Maximum relative error at view angles up to 75 degrees, twice that beyond."
+        " 0.02: hardly visible next to the measurement",
         default=0.02,
         min=0.0005,
         max=1.0,
@@ -72,16 +77,16 @@ class VelourMaterialSettings(bpy.types.PropertyGroup):
     )
     max_lobes: IntProperty(
         name="Max Lobes",
-        description="Most lobes in all; of a scattered model, of a view. The fit stops earlier where"
-        " the tolerance is met",
+        description="Maximum number of lobes (per view for the per-view model). The fit stops earlier"
+        " when Max Error is met",
         default=16,
         min=1,
         max=64,
         override=_OVERRIDE,
     )
     neighbors: IntProperty(
-        name="Neighbours",
-        description="View directions of a scattered model that are mixed at run time. 0: the model's default",
+        name="Neighbors",
+        description="Number of sampled views that a per-view model blends. 0: the model's default",
         default=0,
         min=0,
         max=16,
@@ -90,62 +95,61 @@ class VelourMaterialSettings(bpy.types.PropertyGroup):
     )
     use_limit_albedo: BoolProperty(
         name="Limit Albedo",
-        description="Lower the model where the measurement reflects more light than arrives",
+        description="Lower the model where the measurement reflects more light than it receives",
         default=False,
         override=_OVERRIDE,
     )
     use_symmetric: BoolProperty(
         name="Reciprocal",
-        description="Make the model the same with light and view exchanged, for programs that trace light"
-        " from either end. It takes about three times as long to evaluate",
+        description="Make the model invariant to exchanging light and view, for programs that trace light"
+        " from both ends. Evaluation takes about three times as long",
         default=False,
         override=_OVERRIDE,
     )
     use_all_data: BoolProperty(
         name="All Data",
-        description="Hold nothing out for the error estimate: for production, once the fit is trusted",
+        description="Fit to all samples, without holding any out for the error estimate. For final models",
         default=False,
         override=_OVERRIDE,
     )
     use_reference: BoolProperty(
         name="Render from Measurement",
-        description="Evaluate the raw measurement instead of the model: slower, for comparison",
+        description="Evaluate the measurement instead of the model. Slower, for comparison",
         default=False,
         update=changed,
         override=_OVERRIDE,
     )
-    seed: IntProperty(name="Seed", description="Of the fit", default=0, min=0, override=_OVERRIDE)
+    seed: IntProperty(name="Seed", description="Random seed of the fit", default=0, min=0, override=_OVERRIDE)
     btf: PointerProperty(
-        name="Fit of a BTF",
-        description="What a fit of the material's BTF is asked for",
+        name="BTF Fit",
+        description="Settings for fitting the material's BTF",
         type=VelourBtfFitSettings,
         override=_OVERRIDE,
     )
-    job: StringProperty(options={"HIDDEN", "SKIP_SAVE"})  # marks of those whose results come here
+    job: StringProperty(options={"HIDDEN", "SKIP_SAVE"})  # marks of jobs with results for this node
     scene_model: PointerProperty(
-        name="Model for the Scene",
-        description="A smaller model that holds for the views and lights of one scene. The full model stays"
-        " beside it",
+        name="Scene Model",
+        description="Smaller model for the views and lights of one scene. The full model is kept",
         type=bpy.types.Image,
         update=changed,
         override=_OVERRIDE,
     )
     use_scene_model: BoolProperty(
-        name="Use Model for the Scene",
-        description="Render with the model for the scene, in every frame that shows the material no otherwise"
-        " than it was fitted for; other frames take the full model and say so. Off: always the full model",
+        name="Use Scene Model",
+        description="Use the scene model in the frames it was fitted for. Other frames use the full model and"
+        " report it",
         default=False,
         update=changed,
         override=_OVERRIDE,
     )
     structure: PointerProperty(
         name="Structure",
-        description="The object that is one tile of structure, whose outline and holes the material shows",
+        description="Object that is one tile of the structure. The material gets its silhouette and holes",
         type=bpy.types.Object,
     )
     outline_texels: IntProperty(
         name="Texels",
-        description="Of the structure's outline along the tile; its height is as fine",
+        description="Resolution of the silhouette along the tile",
         default=128,
         min=4,
         max=4096,
@@ -153,8 +157,8 @@ class VelourMaterialSettings(bpy.types.PropertyGroup):
     )
     outline_width: FloatProperty(
         name="Tile Width",
-        description="How wide a tile lies on the object, in metres; the height of its structure goes with it."
-        " 0: as the texture coordinates say, on average",
+        description="Width of a tile on the object in meters, which also scales the height of the structure."
+        " 0: mean width from the texture coordinates",
         default=0.0,
         min=0.0,
         subtype="DISTANCE",
@@ -163,7 +167,7 @@ class VelourMaterialSettings(bpy.types.PropertyGroup):
     )
     outline_softness: FloatProperty(
         name="Edge Softness",
-        description="Share of a tile's width over which the outline fades out, as fuzz does; 0: a hard edge",
+        description="Share of the tile width over which the silhouette fades out, as fuzz does. 0: hard edge",
         default=0.0,
         min=0.0,
         max=0.99,
@@ -174,7 +178,7 @@ class VelourMaterialSettings(bpy.types.PropertyGroup):
     )
     tint: FloatVectorProperty(
         name="Tint",
-        description="What the material reflects is multiplied with this colour. White: as it was measured",
+        description="Color that multiplies the reflection. White: as measured",
         subtype="COLOR",
         size=3,
         default=(1.0, 1.0, 1.0),
@@ -185,7 +189,7 @@ class VelourMaterialSettings(bpy.types.PropertyGroup):
     )
     exposure: FloatProperty(
         name="Exposure",
-        description="In stops: each doubles what the material reflects. 0: as it was measured",
+        description="Exposure of the reflection in stops, each of which doubles it. 0: as measured",
         default=0.0,
         soft_min=-4.0,
         soft_max=4.0,
@@ -196,8 +200,8 @@ class VelourMaterialSettings(bpy.types.PropertyGroup):
     )
     roughness: FloatProperty(
         name="Roughness Offset",
-        description="Widens the highlights of a model of a BRDF and keeps their brightness: a mirror gets"
-        " that of a Glossy BSDF of this roughness. 0: as it was measured",
+        description="Widen the highlights of a BRDF model, keeping their brightness; a mirror gets the"
+        " highlight of a Glossy BSDF with this roughness. 0: as measured",
         subtype="FACTOR",
         default=0.0,
         min=0.0,
@@ -207,7 +211,7 @@ class VelourMaterialSettings(bpy.types.PropertyGroup):
     )
     placement: PointerProperty(
         name="Placement",
-        description="Where the tiles of a BTF lie on objects",
+        description="Placement of the tiles of a BTF on objects",
         type=VelourPlacementSettings,
         override=_OVERRIDE,
     )

@@ -1,4 +1,4 @@
-"""How a material lies on the objects that show it: its tiles, or what is anisotropic."""
+"""Placement of a material's tiles, or of its anisotropy, on objects."""
 
 import bpy
 from bpy.props import EnumProperty, FloatProperty, FloatVectorProperty, StringProperty
@@ -8,16 +8,16 @@ from .changed import look_changed
 _OVERRIDE = {"LIBRARY_OVERRIDABLE"}
 
 MODES = (
-    ("REPEATS", "Repeats", "So many tiles over a unit of the texture coordinates", 0),
+    ("REPEATS", "Repeats", "Number of tiles per unit of texture coordinates", 0),
     (
         "REAL_SIZE",
         "Real Size",
-        "Tiles as large as they are, by the median density of the object's texture coordinates",
+        "Tiles in their real size, from the median density of the object's texture coordinates",
         1,
     ),
 )
-KEEP = ("KEEP", "Keeps Size", "Tiles keep their size when the object is scaled: there are more of them", 0)
-STRETCH = ("STRETCH", "Stretches", "Tiles are scaled with the object", 1)
+KEEP = ("KEEP", "Keep Size", "Scaling the object changes the number of tiles, not their size", 0)
+STRETCH = ("STRETCH", "Stretch", "Tiles scale with the object", 1)
 
 
 class VelourPlacementSettings(bpy.types.PropertyGroup):
@@ -25,7 +25,7 @@ class VelourPlacementSettings(bpy.types.PropertyGroup):
 
     mode: EnumProperty(
         name="Placement",
-        description="How large the tiles of the BTF are on objects",
+        description="How the size of the tiles on objects is set",
         items=MODES,
         default="REPEATS",
         update=look_changed,
@@ -33,7 +33,7 @@ class VelourPlacementSettings(bpy.types.PropertyGroup):
     )
     repeats: FloatVectorProperty(
         name="Repeats",
-        description="Tiles over a unit of the texture coordinates, along the tile's own x and y",
+        description="Number of tiles per unit of texture coordinates, along the tile's x and y axes",
         size=2,
         default=(1.0, 1.0),
         min=0.0001,
@@ -44,7 +44,7 @@ class VelourPlacementSettings(bpy.types.PropertyGroup):
     )
     tile_size: FloatVectorProperty(
         name="Tile Size",
-        description="Width and height of a tile in millimetres. 0: as the BTF says",
+        description="Width and height of a tile in millimeters. 0: size stored in the BTF",
         size=2,
         default=(0.0, 0.0),
         min=0.0,
@@ -55,8 +55,8 @@ class VelourPlacementSettings(bpy.types.PropertyGroup):
     )
     uv_density: FloatVectorProperty(
         name="UV Density",
-        description="How much texture coordinates grow a metre along u and v, on objects without their scale."
-        " 0: measured on each object in each frame. Give it where a mesh deforms, or tiles would creep",
+        description="Texture coordinates per meter along u and v, without the object's scale. Set it for"
+        " deforming meshes, where tiles would creep. 0: measured on each object in each frame",
         size=2,
         default=(0.0, 0.0),
         min=0.0,
@@ -67,13 +67,13 @@ class VelourPlacementSettings(bpy.types.PropertyGroup):
     )
     uv_map: StringProperty(
         name="UV Map",
-        description="Of the objects that show the material. Empty: the one that renders",
+        description="Name of the UV map that places the material. Empty: the active render UV map",
         update=look_changed,
         override=_OVERRIDE,
     )
     rotation: FloatProperty(
         name="Rotation",
-        description="Turns tiles, and the direction that the material has, counter-clockwise",
+        description="Counterclockwise rotation of the tiles, or of the direction of anisotropy",
         subtype="ANGLE",
         default=0.0,
         update=look_changed,
@@ -81,16 +81,16 @@ class VelourPlacementSettings(bpy.types.PropertyGroup):
     )
     offset: FloatVectorProperty(
         name="Offset",
-        description="Texture coordinates of the first tile's lower left corner",
+        description="Texture coordinates of the lower left corner of the first tile",
         size=2,
         default=(0.0, 0.0),
         update=look_changed,
         override=_OVERRIDE,
     )
-    # Each mode has its own: a real size that a scale stretches is none, repeats are of the object as it is.
+    # Each mode has its own default: real sizes must not stretch with the object, repeats should.
     real_size_scale: EnumProperty(
         name="Object Scale",
-        description="What scaling an object does to tiles of real size",
+        description="Effect of the object's scale on tiles in real size",
         items=(KEEP, STRETCH),
         default="KEEP",
         update=look_changed,
@@ -98,7 +98,7 @@ class VelourPlacementSettings(bpy.types.PropertyGroup):
     )
     repeats_scale: EnumProperty(
         name="Object Scale",
-        description="What scaling an object does to repeats",
+        description="Effect of the object's scale on repeats",
         items=(KEEP, STRETCH),
         default="STRETCH",
         update=look_changed,

@@ -1,24 +1,24 @@
-"""What the plots of models show. Never saved."""
+"""Settings of a model's plots. Never saved."""
 
 import math
 
 import bpy
 from bpy.props import EnumProperty, FloatProperty
 
-# By name as the library has them, in lower case and with hyphens.
+# The library's names are these in lower case with hyphens.
 PLOTS = (
-    ("LOBES", "Lobes", "What the model is made of: light to one view, from all angles in its plane", 0),
-    ("ORDER", "Size", "Error against the number of lobes (of a BTF: against bytes)", 1),
-    ("VIEW_ERROR", "Error", "Error at five view angles, and the tolerance", 2),
-    ("ALBEDO", "Albedo", "Share of the light from all sides that is reflected, against the view angle", 3),
-    ("OUTLINE", "Outline", "Share of the tile that its structure covers, against the view angle", 4),
+    ("LOBES", "Lobes", "Lobes of the model: reflection toward one view, from all angles in its plane", 0),
+    ("ORDER", "Size", "Error by number of lobes (of a BTF: by size in bytes)", 1),
+    ("VIEW_ERROR", "Error", "Error at five view angles, and Max Error", 2),
+    ("ALBEDO", "Albedo", "Share of light from all directions that is reflected, by view angle", 3),
+    ("OUTLINE", "Silhouette", "Share of the tile that its structure covers, by view angle", 4),
 )
 
 
 def plot_view():
     return FloatProperty(
         name="View",
-        description="Angle between the normal and the view whose lobes are shown",
+        description="Angle between the surface normal and the view whose lobes are shown",
         default=math.radians(30),
         min=0.0,
         max=math.radians(89),
@@ -30,7 +30,7 @@ def plot_view():
 def plot_azimuth():
     return FloatProperty(
         name="Azimuth",
-        description="Of the view, about the normal, from the direction of U. Isotropic materials look alike",
+        description="Azimuth of the view, from the U direction. It has no effect on isotropic materials",
         default=0.0,
         subtype="ANGLE",
         options={"SKIP_SAVE"},

@@ -1,4 +1,4 @@
-"""How a scene is rendered."""
+"""Render settings of a scene."""
 
 import bpy
 from bpy.props import BoolProperty, EnumProperty, FloatProperty, IntProperty, StringProperty
@@ -21,30 +21,30 @@ class VelourRenderSettings(bpy.types.PropertyGroup):
     saved_by: saved_by()
     strategy: EnumProperty(
         name="Strategy",
-        description="How light directions are drawn. All strategies converge to the same picture",
+        description="How light directions are sampled. All strategies converge to the same image",
         items=(
-            ("UNIFORM", "Uniform", "All directions of the hemisphere alike", 0),
-            ("COSINE", "Cosine", "In proportion to the cosine", 1),
-            ("TABLE", "Table", "From a table of the material", 2),
+            ("UNIFORM", "Uniform", "Uniform over the hemisphere", 0),
+            ("COSINE", "Cosine", "Proportional to the cosine", 1),
+            ("TABLE", "Table", "From tables of the material's reflectance", 2),
             ("SRBF", "SRBF Lobes", "From the lobes of the fitted material", 3),
-            ("LIGHT", "Lights", "From the environment and the lamps", 4),
+            ("LIGHT", "Lights", "From the environment and the lights", 4),
             (
                 "MIS",
                 "Lobes and Lights",
-                "Some from the material, some from the lights, weighted by multiple importance sampling",
+                "From the material and the lights, combined by multiple importance sampling",
                 5,
             ),
-            ("GGX", "Fitted GGX", "From a GGX lobe over a diffuse base that is fitted to the material", 6),
+            ("GGX", "Fitted GGX", "From a GGX lobe over a diffuse base, fitted to the material", 6),
             (
                 "MIS_GGX",
                 "Fitted GGX and Lights",
-                "Half from the fitted GGX lobe, half from the lights, weighted by the balance heuristic",
+                "Half from the fitted GGX lobe, half from the lights, combined by the balance heuristic",
                 7,
             ),
             (
                 "PRODUCT",
                 "Products",
-                "Up to three quarters from products of material and environment, the rest as before",
+                "Up to 3/4 from products of material and environment, the rest as Lobes and Lights",
                 8,
             ),
         ),
@@ -53,7 +53,7 @@ class VelourRenderSettings(bpy.types.PropertyGroup):
     )
     share: FloatProperty(
         name="Light Share",
-        description="Share of the directions that the lights draw; the material draws the rest",
+        description="Share of the directions that are sampled from the lights; the rest from the material",
         default=0.5,
         min=0.0,
         max=1.0,
@@ -62,33 +62,33 @@ class VelourRenderSettings(bpy.types.PropertyGroup):
     )
     heuristic: EnumProperty(
         name="Heuristic",
-        description="How the world's light is weighted between directions of material and lights",
+        description="How environment light is weighted between directions sampled from material and lights",
         items=(
-            ("BALANCE", "Balance", "In proportion to the density", 0),
-            ("POWER", "Power", "In proportion to the square of the density", 1),
+            ("BALANCE", "Balance", "Proportional to the density", 0),
+            ("POWER", "Power", "Proportional to the square of the density", 1),
         ),
         default="BALANCE",
         override=_OVERRIDE,
     )
     sequence: EnumProperty(
         name="Sequence",
-        description="Where random numbers come from",
+        description="Source of random numbers",
         items=(
-            ("RANDOM", "Random", "Independent numbers", 0),
-            ("SOBOL", "Sobol", "A scrambled Sobol sequence a pixel: less noise for the same samples", 1),
+            ("RANDOM", "Random", "Independent random numbers", 0),
+            ("SOBOL", "Sobol", "Scrambled Sobol sequence in each pixel; less noise with the same samples", 1),
         ),
         default="SOBOL",
         override=_OVERRIDE,
     )
     use_noise_target: BoolProperty(
         name="Noise Threshold",
-        description="Stop where the picture is good enough; Samples is then the most that a pixel gets",
+        description="Stop sampling where the noise is low enough. Samples is then the maximum per pixel",
         default=False,
         override=_OVERRIDE,
     )
     noise_target: FloatProperty(
         name="Noise Threshold",
-        description="Relative error at which a block of 16 x 16 pixels gets no more samples",
+        description="Relative error below which a block of 16 x 16 pixels gets no more samples",
         default=0.02,
         min=0.0001,
         soft_max=0.2,
@@ -98,7 +98,7 @@ class VelourRenderSettings(bpy.types.PropertyGroup):
     )
     samples: IntProperty(
         name="Samples",
-        description="Light directions a pixel",
+        description="Number of light directions per pixel",
         default=256,
         min=1,
         soft_max=4096,
@@ -107,7 +107,7 @@ class VelourRenderSettings(bpy.types.PropertyGroup):
     )
     preview_samples: IntProperty(
         name="Preview Samples",
-        description="Light directions a pixel in material previews",
+        description="Number of light directions per pixel in material previews",
         default=32,
         min=1,
         soft_max=256,
@@ -116,13 +116,13 @@ class VelourRenderSettings(bpy.types.PropertyGroup):
     )
     viewport_mode: EnumProperty(
         name="Viewport",
-        description="How the rendered viewport shows the scene",
+        description="How the rendered viewport draws the scene",
         items=(
-            ("RAY_TRACED", "Ray Traced", "As the final render, ever less noisy", 0),
+            ("RAY_TRACED", "Ray Traced", "Like the final render, refined progressively", 0),
             (
                 "REAL_TIME",
                 "Real Time",
-                "By the graphics processor at once: lit by world and lamps, without shadows and bounces",
+                "Drawn by the GPU at once, lit by the world and lights, without shadows and bounces",
                 1,
             ),
         ),
@@ -132,7 +132,7 @@ class VelourRenderSettings(bpy.types.PropertyGroup):
     )
     viewport_samples: IntProperty(
         name="Viewport Samples",
-        description="Light directions a pixel in the rendered viewport. 0: as many as there is time for",
+        description="Number of light directions per pixel in the rendered viewport. 0: unlimited",
         default=1024,
         min=0,
         soft_max=4096,
@@ -141,7 +141,7 @@ class VelourRenderSettings(bpy.types.PropertyGroup):
     )
     split: IntProperty(
         name="Split",
-        description="How many light directions share one camera ray. More is faster, fewer smooths edges",
+        description="Number of light directions per camera ray. Higher is faster, lower smooths edges",
         default=8,
         min=1,
         max=48,
@@ -149,7 +149,7 @@ class VelourRenderSettings(bpy.types.PropertyGroup):
     )
     bounces: IntProperty(
         name="Bounces",
-        description="Indirect bounces of light. 0: direct light only",
+        description="Maximum number of indirect light bounces. 0: direct light only",
         default=4,
         min=0,
         soft_max=12,
@@ -159,8 +159,8 @@ class VelourRenderSettings(bpy.types.PropertyGroup):
     use_denoising: BoolProperty(
         name="Denoise Render",
         description=(
-            "Remove noise from final renders with Open Image Denoise. The Noise Threshold then is the error"
-            " of the denoised picture"
+            "Remove noise from final renders with Open Image Denoise. Noise Threshold then applies to the"
+            " error of the denoised image"
         ),
         default=False,
         override=_OVERRIDE,
@@ -175,7 +175,7 @@ class VelourRenderSettings(bpy.types.PropertyGroup):
     clamp_direct: FloatProperty(
         name="Direct Light",
         description=(
-            "Largest value of a sample of direct light. Lower values remove fireflies and darken highlights."
+            "Maximum value of a direct light sample. Lower values remove fireflies but darken highlights."
             " 0: no clamping"
         ),
         default=0.0,
@@ -186,7 +186,7 @@ class VelourRenderSettings(bpy.types.PropertyGroup):
     clamp_indirect: FloatProperty(
         name="Indirect Light",
         description=(
-            "Largest value of a sample of indirect light. Lower values remove fireflies and darken bounced"
+            "Maximum value of an indirect light sample. Lower values remove fireflies but darken bounced"
             " light. 0: no clamping"
         ),
         default=0.0,
@@ -196,7 +196,7 @@ class VelourRenderSettings(bpy.types.PropertyGroup):
     )
     filter_glossy: FloatProperty(
         name="Filter Glossy",
-        description="Blur glossy reflections behind blurry bounces, to reduce noise. 0: off",
+        description="Blur glossy reflections after blurry bounces to reduce noise. 0: off",
         default=0.0,
         min=0.0,
         max=10.0,
@@ -210,24 +210,24 @@ class VelourRenderSettings(bpy.types.PropertyGroup):
     )
     seed: IntProperty(
         name="Seed",
-        description="The same seed gives the same picture, bit by bit. Animate it to vary the noise",
+        description="Random seed. The same seed gives the same image bit by bit; animate it to vary noise",
         default=0,
         min=0,
         override=_OVERRIDE,
     )
     use_cache: BoolProperty(
         name="Cache World",
-        description="Keep what Products fits to an environment image, for the next render",
+        description="Cache the fit of the environment image that Products uses, for later renders",
         default=True,
         override=_OVERRIDE,
     )
     time_limit: FloatProperty(
         name="Time Limit",
-        description="Stop after this time at a whole pass, even if samples are missing. 0: no limit",
+        description="Stop at the end of a pass after this time, even if samples are missing. 0: no limit",
         default=0.0,
         min=0.0,
         subtype="TIME",
         unit="TIME_ABSOLUTE",
         override=_OVERRIDE,
     )
-    jobs: StringProperty(options={"HIDDEN", "SKIP_SAVE"})  # marks of those that look at the scene
+    jobs: StringProperty(options={"HIDDEN", "SKIP_SAVE"})  # marks of jobs that observe the scene

@@ -1,4 +1,4 @@
-"""What makes an object, or a collection, one tile of a mesostructure."""
+"""Settings of an object or a collection as one tile of a mesostructure."""
 
 import bpy
 from bpy.props import (
@@ -15,15 +15,15 @@ from .changed import period_changed
 from .saved_by import saved_by
 
 SIDES = (
-    ("AUTOMATIC", "As Needed", "Both where light can pass through the tile", 0),
-    ("ONE", "Front", "Seen and lit from above alone", 1),
-    ("TWO", "Both", "Seen and lit from above and from below", 2),
+    ("AUTOMATIC", "Automatic", "Both sides if light can pass through the tile, otherwise the front", 0),
+    ("ONE", "Front", "Seen and lit from above only", 1),
+    ("TWO", "Both", "Seen and lit from above and below", 2),
 )
 _OVERRIDABLE = {"LIBRARY_OVERRIDABLE"}
 
 
 class VelourTileSettings(BtfFitSettings, bpy.types.PropertyGroup):
-    """`object.velour`, `collection.velour`; with what a material of the tile is asked for."""
+    """`object.velour`, `collection.velour`; includes the settings of the BTF fit."""
 
     saved_by: saved_by()
     period: FloatVectorProperty(
@@ -32,34 +32,39 @@ class VelourTileSettings(BtfFitSettings, bpy.types.PropertyGroup):
         min=0.0,
         subtype="XYZ",
         unit="LENGTH",
-        description="After this distance along its own x and y the structure repeats. What crosses the border"
-        " of the tile is there once and sticks out. 0: the size of its bounding box along that axis",
+        description="Distance after which the structure repeats along its x and y axes. Geometry beyond the"
+        " border of the tile is kept and overlaps the next tile. 0: size of the bounding box",
         update=period_changed,
         override=_OVERRIDABLE,
     )
     is_repeat: BoolProperty(
-        name="Is a Repeat",
-        description="A copy that shows how a tile goes on; never captured",
+        name="Repeat",
+        description="Copy that shows the repeated tile. Never captured",
         options={"HIDDEN"},
         override=_OVERRIDABLE,
     )
 
-    # Marks of those whose results come here, with blanks between.
+    # Marks of jobs with results for the tile, separated by blanks.
     jobs: StringProperty(options={"HIDDEN", "SKIP_SAVE"})
 
-    # What a capture is asked for.
+    # Settings of a capture.
     directory: StringProperty(
         name="Folder",
-        description="Where the capture goes; empty: beside the .blend, under the tile's name",
+        description="Output folder of the capture. Empty: next to the .blend file, named after the tile",
         subtype="DIR_PATH",
         override=_OVERRIDABLE,
     )
     texels: IntProperty(
-        name="Texels", description="Along each side", min=1, max=4096, default=128, override=_OVERRIDABLE
+        name="Texels",
+        description="Number of texels along each side",
+        min=1,
+        max=4096,
+        default=128,
+        override=_OVERRIDABLE,
     )
     views: IntProperty(
         name="Views",
-        description="Directions it is seen from. 81: rings to 75 degrees, as measured sets have; 105: also a"
+        description="Number of view directions. 81: rings up to 75 degrees, as in measured BTFs; 105: also a"
         " ring at 85 degrees; other numbers: spread evenly over the hemisphere",
         min=1,
         max=4096,
@@ -68,7 +73,7 @@ class VelourTileSettings(BtfFitSettings, bpy.types.PropertyGroup):
     )
     lights: IntProperty(
         name="Lights",
-        description="Directions it is lit from; numbers as of the views",
+        description="Number of light directions, which are placed like the views",
         min=1,
         max=4096,
         default=105,
@@ -76,7 +81,7 @@ class VelourTileSettings(BtfFitSettings, bpy.types.PropertyGroup):
     )
     samples: IntProperty(
         name="Samples",
-        description="Paths a texel and view",
+        description="Number of paths per texel and view",
         min=1,
         max=65536,
         default=16,
@@ -84,7 +89,7 @@ class VelourTileSettings(BtfFitSettings, bpy.types.PropertyGroup):
     )
     bounces: IntProperty(
         name="Bounces",
-        description="Of light within the tile; 0: direct light only",
+        description="Maximum number of light bounces within the tile. 0: direct light only",
         min=0,
         max=64,
         default=1,
@@ -93,13 +98,13 @@ class VelourTileSettings(BtfFitSettings, bpy.types.PropertyGroup):
     sides: EnumProperty(name="Sides", items=SIDES, default="AUTOMATIC", override=_OVERRIDABLE)
     use_approximate: BoolProperty(
         name="Approximate",
-        description="Also capture materials that Velour does not render as they are",
+        description="Also capture materials that Velour can only approximate",
         override=_OVERRIDABLE,
     )
     held_out: IntProperty(
-        name="Pairs to Judge By",
-        description="So many pairs of a view and a light are captured beside the BTF, where no model looks:"
-        " they tell how well a model does between the directions it was fitted to. 0: none",
+        name="Held-Out Pairs",
+        description="Number of view-light pairs to capture in addition to the BTF. They are not fitted, but"
+        " measure the error between the fitted directions. 0: none",
         min=0,
         max=4096,
         default=0,
@@ -108,7 +113,7 @@ class VelourTileSettings(BtfFitSettings, bpy.types.PropertyGroup):
 
     model: PointerProperty(
         name="Model",
-        description="That was made of the tile last",
+        description="Model that was last fitted to the tile",
         type=bpy.types.Image,
         override=_OVERRIDABLE,
     )

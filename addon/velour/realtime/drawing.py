@@ -102,7 +102,7 @@ class Drawing:
             self._targets = Targets(gpu, size)
             self.count = 0
         if self.count < PICTURES:
-            with asking_for(f"a picture of {size[0]} x {size[1]} pixels", LOST):
+            with asking_for(f"an image of {size[0]} x {size[1]} pixels", LOST):
                 with self._targets.drawn.bind():
                     self._draw_scene(gpu, scene, view, exposure, shows_world)
                 self._targets.average(gpu, 1 / (self.count + 1))

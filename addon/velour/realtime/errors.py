@@ -21,8 +21,8 @@ def asking_for(what, errors=Exception):
     except UnshownError:
         raise
     except errors as error:
-        log.error("the graphics processor refuses %s", what, exc_info=error)
+        log.error("the GPU cannot create %s", what, exc_info=error)
         raise UnshownError(
-            f"the graphics processor refuses {what}, so the ray tracer shows the scene; close what else uses"
-            " it or choose smaller images, then choose Real Time again"
+            f"the GPU cannot create {what}, so the ray tracer shows the scene; close other programs that use"
+            " the GPU or use smaller images, then choose Real Time again"
         ) from error

@@ -145,7 +145,7 @@ class RealtimeScene(Scene):
         elif info["model"] == "srbf-btf" and info["coefficients"] <= MOST_TERMS:
             parts = [self._part(content, BtfTables, lambda: btf_maps_job(model))]
         else:
-            raise UnshownError("BTFs that are not made of SRBFs are shown by the ray tracer alone")
+            raise UnshownError("BTF models other than SRBF are supported by the ray tracer only")
         aspect = None
         if "shell" in info:
             aspect = info["shell"]["points"][1] / info["shell"]["points"][0]
@@ -153,10 +153,10 @@ class RealtimeScene(Scene):
         return self._add_look(Look(tuple(parts), shell_aspect=aspect))
 
     def add_measurement_material(self, measurement, proposal=None, neighbors=0):
-        raise UnshownError("measurements themselves are shown by the ray tracer alone")
+        raise UnshownError("measurements are supported by the ray tracer only")
 
     def add_btf_material(self, btf, most_bytes=0):
-        raise UnshownError("measured BTFs themselves are shown by the ray tracer alone")
+        raise UnshownError("BTFs without a model are supported by the ray tracer only")
 
     def texture(self, pixels, **options):
         return GpuTexture.from_pixels(pixels, **options)
@@ -248,11 +248,13 @@ class RealtimeScene(Scene):
     def check(self):
         """Raises UnshownError if the scene exceeds the limits."""
         if self.draws > _MOST_DRAWS:
-            raise UnshownError(f"more than {_MOST_DRAWS:,} instances are shown by the ray tracer alone")
+            raise UnshownError(f"more than {_MOST_DRAWS:,} instances are supported by the ray tracer only")
         if len(self.lamps) > _MOST_LAMPS and any(
             look.parts[0].tables.func is BtfTables for look in self.looks
         ):
-            raise UnshownError(f"BTFs under more than {_MOST_LAMPS} lamps are shown by the ray tracer alone")
+            raise UnshownError(
+                f"BTFs with more than {_MOST_LAMPS} lights are supported by the ray tracer only"
+            )
 
     @property
     def draws(self):

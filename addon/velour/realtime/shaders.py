@@ -36,8 +36,8 @@ def _tried(make, arguments):
 def _check(shader):
     if shader is None:
         raise UnshownError(
-            "the graphics driver does not compile Velour's shaders, so the ray tracer shows the scene; update"
-            " the driver, then start Blender again"
+            "the graphics driver cannot compile Velour's shaders, so the ray tracer shows the scene; update"
+            " the driver and restart Blender"
         )
 
 

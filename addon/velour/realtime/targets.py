@@ -9,7 +9,7 @@ class Targets:
 
     def __init__(self, gpu, size):
         self.size = size
-        with asking_for(f"pictures of {size[0]} x {size[1]} pixels to draw into"):
+        with asking_for(f"images of {size[0]} x {size[1]} pixels"):
             self.drawn = gpu.types.GPUOffScreen(*size, format="RGBA16F")
             self._means = [gpu.types.GPUOffScreen(*size, format="RGBA32F") for _ in range(2)]
 

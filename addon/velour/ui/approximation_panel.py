@@ -1,4 +1,4 @@
-"""What other programs see of a measured material, and how far that is from the model."""
+"""Panel of a measured material's approximation for other programs, and its error."""
 
 import bpy
 
@@ -27,20 +27,27 @@ class VELOUR_MATERIAL_PT_approximation(MaterialPanel, bpy.types.Panel):
             return
         state = group.node_tree.velour
         if state.relative_l2 >= 0.0:
-            draw_rows(layout, (("Relative error", f"{state.relative_l2:.3g}, against the model as fitted"),))
+            draw_rows(
+                layout, (("Relative error", f"{state.relative_l2:.3g}, compared with the fitted model"),)
+            )
             errors = (error if error >= 0.0 else None for error in state.by_view_angle)
             draw_error_by_angle(layout.box(), dict(zip(VIEW_ANGLES, errors, strict=True)))
         digest = _digest(velour_node(context.material).image)
         if digest and digest != state.model:
-            draw_sentence(context, layout, "It is not of this model: refresh it.", icon="ERROR")
+            draw_sentence(
+                context, layout, "The approximation is of another model. Press Refresh.", icon="ERROR"
+            )
         elif not state.fitted:
             draw_sentence(
-                context, layout, "An older Velour made it: refresh it, so that it follows Tint and Placement."
+                context,
+                layout,
+                "The approximation is from an older Velour. Press Refresh, so that it follows Tint and"
+                " Placement.",
             )
         layout.operator(VELOUR_OT_approximate.bl_idname, text="Refresh", icon="FILE_REFRESH")
 
 
 def _digest(image):
-    """SHA-256 of a model's file, also where nobody has said which it should be; "" until it is read."""
+    """SHA-256 of a model's file, even if none is expected of it; "" until it is read."""
     info = model_summary(image)
     return info["file_sha256"] if isinstance(info, dict) else image.velour.sha256

@@ -1,4 +1,4 @@
-"""The library of a material: a folder of measurements and models, as pictures of balls."""
+"""Browser panel of a material: a folder of measurements and models, as thumbnails of balls."""
 
 import os
 
@@ -20,18 +20,18 @@ from .text import draw_sentence
 from .units import button_height
 
 _ROWS = 3
-_PICTURE = 5.0  # as high as so many buttons
-_BESIDE = 2.0  # buttons that panel and editor need to the left and right
-_USES = {"measurement": "Use and Fit", "btf": "Use and Compress"}
+_PICTURE = 5.0  # height in buttons
+_BESIDE = 2.0  # width of the panel's and editor's margins in buttons
+_USES = {"measurement": "Use and Fit", "btf": "Use and Fit"}
 
 
 class VELOUR_MATERIAL_PT_browser(MaterialPanel, bpy.types.Panel):
-    bl_label = "Library of Measurements"
+    bl_label = "Measurement Library"
     bl_options = {"DEFAULT_CLOSED"}
 
     @classmethod
     def poll(cls, context):
-        return super().poll(context) and context.object is not None  # whose slot is filled
+        return super().poll(context) and context.object is not None  # the material goes into its slot
 
     def draw(self, context):
         layout, preferences = self.layout, addon_preferences(context)
@@ -49,7 +49,7 @@ class VELOUR_MATERIAL_PT_browser(MaterialPanel, bpy.types.Panel):
         settings = context.window_manager.velour.browser
         found = browser.found(folder, settings.visits)
         if found is None:
-            layout.label(text="Looking through the folder...", icon="TIME")
+            layout.label(text="Searching the folder...", icon="TIME")
             return
         for problem in found.problems:
             draw_sentence(context, layout, problem, icon="ERROR")
@@ -67,11 +67,11 @@ def _draw_files(context, layout, settings, files):
     page, pages = _page(settings.page, len(matching), columns * _ROWS)
     first = page * columns * _ROWS
     shown = matching[first : first + columns * _ROWS]
-    browser.ask(matching[first : first + 2 * columns * _ROWS])  # the next page, too, after this one
+    browser.ask(matching[first : first + 2 * columns * _ROWS])  # this page, then the next one
     grid = layout.grid_flow(row_major=True, columns=columns, even_columns=True, even_rows=True)
     for file in shown:
         _draw_cell(grid.column(align=True), settings, file)
-    for _ in range(columns - len(shown)):  # a few pictures are no larger than many
+    for _ in range(columns - len(shown)):  # keeps the size of pictures if there are few
         grid.column()
     row = layout.row()
     row.prop(settings, "page")
@@ -84,9 +84,9 @@ def _draw_files(context, layout, settings, files):
 
 def _nothing(files):
     if files:
-        return "No name has all of these words."
+        return "No file name contains all of these words."
     measurements, models = ", ".join(MEASUREMENTS), ", ".join(MODELS)
-    return f"No measurements ({measurements}) or models ({models}) are in this folder or below it."
+    return f"This folder and its subfolders contain no measurements ({measurements}) or models ({models})."
 
 
 def _columns(context):
@@ -95,14 +95,14 @@ def _columns(context):
 
 
 def _page(asked, count, a_page):
-    """From 0, and how many there are."""
+    """Page index from 0, and number of pages."""
     pages = -(-count // a_page)
     return min(asked, pages) - 1, pages
 
 
 def _draw_cell(column, settings, file):
     picture = browser.picture(file)
-    column.template_icon(picture.icon if picture else 0, scale=_PICTURE)  # as high while there is none
+    column.template_icon(picture.icon if picture else 0, scale=_PICTURE)  # keeps the height without an icon
     column.operator(
         VELOUR_OT_choose_measurement.bl_idname,
         text=os.path.basename(file.name),
@@ -115,7 +115,7 @@ def _draw_chosen(context, box, file):
     picture = browser.picture(file)
     box.label(text=file.name)
     if picture is None:
-        box.label(text="Its picture is being made...", icon="TIME")
+        box.label(text="Rendering the thumbnail...", icon="TIME")
     elif picture.sentence:
         draw_sentence(context, box, picture.sentence, icon="ERROR")
         return
@@ -128,7 +128,7 @@ def _draw_chosen(context, box, file):
 
 
 def _described(facts):
-    """With a comma after it."""
+    """Description of a file, with a trailing comma."""
     kind = facts.get("kind")
     if kind is None:
         return ""

@@ -30,7 +30,7 @@ class MaterialPanel:
 
     @classmethod
     def poll(cls, context):
-        is_there = context.object is not None or context.material is not None  # pinned, it is on no object
+        is_there = context.object is not None or context.material is not None  # pinned ones have no object
         return context.engine in cls.COMPAT_ENGINES and is_there
 
 
@@ -45,7 +45,7 @@ class VELOUR_MATERIAL_PT_measured(MaterialPanel, bpy.types.Panel):
         if node is None:
             row = layout.row()
             row.operator(VELOUR_OT_add_material.bl_idname)
-            if context.object is not None:  # whose slot it fills
+            if context.object is not None:  # the import goes into its slot
                 row.operator(VELOUR_OT_load_material.bl_idname, text="Import...")
             return
         settings = node.velour
@@ -59,7 +59,7 @@ class VELOUR_MATERIAL_PT_measured(MaterialPanel, bpy.types.Panel):
         info = info if isinstance(info, dict) else {}
         if settings.measurement is not None and is_btf(settings.measurement):
             _draw_btf(context, layout, settings)
-        elif "texels" in info:  # of which there is no BTF to fit
+        elif "texels" in info:  # there is no BTF to fit
             draw_progress(context, layout)
         else:
             _draw_brdf(context, layout, settings, info)
@@ -68,7 +68,7 @@ class VELOUR_MATERIAL_PT_measured(MaterialPanel, bpy.types.Panel):
 
 
 def _draw_measurement(context, layout, settings):
-    """Why it is refused: where it is another file, or is to be rendered."""
+    """Draws why the measurement is refused, if its file has changed or it is rendered."""
     image = settings.measurement
     if not image.velour.sha256 and not settings.use_reference:
         return
@@ -78,7 +78,7 @@ def _draw_measurement(context, layout, settings):
 
 
 def draw_refusal(context, layout, image, sentence):
-    """Why a file is refused, and the button where that helps."""
+    """Draws why a file is refused, and the button to accept it if that helps."""
     draw_sentence(context, layout, sentence, icon="ERROR")
     if is_changed(image):
         layout.operator(VELOUR_OT_accept_file.bl_idname)
@@ -113,7 +113,7 @@ def _draw_fit_settings(column, settings):
 
 
 def _draw_look(context, layout, settings, info):
-    """What an artist changes of a measured material."""
+    """Draws the settings of a measured material's look."""
     column = layout.column(align=True)
     column.prop(settings, "tint")
     column.prop(settings, "exposure")
@@ -129,7 +129,7 @@ def _draw_look(context, layout, settings, info):
 
 
 class VELOUR_MATERIAL_PT_surface(MaterialPanel, bpy.types.Panel):
-    """Blender's own panel would stand above ours. For a measured material it edits the approximation."""
+    """Replaces Blender's panel, which would be above Velour's. Edits a measured material's approximation."""
 
     bl_label = "Surface"
 
@@ -152,9 +152,9 @@ class VELOUR_MATERIAL_PT_surface(MaterialPanel, bpy.types.Panel):
 
 
 class VELOUR_MATERIAL_PT_notes(MaterialPanel, bpy.types.Panel):
-    """What a material that is not measured loses in Velour: said before the render."""
+    """Features of a material that Velour does not support, listed before the render."""
 
-    bl_label = "Not Supported by Velour"
+    bl_label = "Unsupported Features"
 
     @classmethod
     def poll(cls, context):

@@ -1,4 +1,4 @@
-"""What a material's model is, in numbers."""
+"""Statistics of a material's model."""
 
 import bpy
 
@@ -42,11 +42,11 @@ class VELOUR_MATERIAL_PT_model(MaterialPanel, bpy.types.Panel):
 def _draw_numbers(layout, info):
     rows = (
         ("Source", info["source"]["name"]),
-        ("Kind", info["model"].capitalize()),
+        ("Model", {"scattered": "Per-View"}.get(info["model"], info["model"].capitalize())),
         ("Lobes", _lobes(info)),
         ("Size", data_size(info["bytes"])),
         ("Relative error", _number(info["relative_l2"])),
-        ("Largest albedo", _number(info["albedo_max"])),
+        ("Max albedo", _number(info["albedo_max"])),
         ("Reciprocity error", _number(info["reciprocity"])),
     )
     draw_rows(layout, rows)
@@ -57,21 +57,21 @@ def _btf_rows(info):
     unseen, tile = info["psnr_held_out"], info["tile_metres"]
     return (
         ("Source", info["source"]["name"]),
-        ("Kind", f"BTF, {info['method']}"),
+        ("Model", f"BTF, {info['method']}"),
         ("Texels", "{} x {}".format(*info["texels"])),
-        ("Tile", "size not known" if tile is None else "{:.4g} x {:.4g} mm".format(*(1e3 * t for t in tile))),
+        ("Tile", "unknown size" if tile is None else "{:.4g} x {:.4g} mm".format(*(1e3 * t for t in tile))),
         ("Directions", f"{info['views']} views, {info['lights']} lights"),
         *_btf_terms(info),
         ("Size", f"{data_size(info['bytes'])}, 1:{info['raw_bytes'] / info['bytes']:.0f}"),
         ("PSNR", f"{info['psnr']:.1f} dB"),
         ("Error", _relative_error(info["relative_l2"])),
-        ("Unseen pairs", "not measured" if unseen is None else f"{unseen:.1f} dB"),
+        ("Held-out pairs", "not measured" if unseen is None else f"{unseen:.1f} dB"),
         ("Speed", _evaluations(info["evaluations_per_second"])),
     )
 
 
 def _btf_terms(info):
-    """What a texel is a sum of, and of which sides of the surface."""
+    """Rows on the terms of a texel, and on the sides of the surface."""
     if "components" in info:
         return (("Components", str(info["components"])),)
     first = _lobe_terms(info) if "lobes" in info else _cluster_terms(info["sides"][0])
@@ -82,14 +82,14 @@ def _btf_terms(info):
 
 
 def _lobe_terms(info):
-    return (("Lobes", f"{info['lobes']}, {info['coefficients']} coefficients a texel"),)
+    return (("Lobes", f"{info['lobes']}, {info['coefficients']} coefficients per texel"),)
 
 
 def _cluster_terms(side):
-    """Of clustered tensors; the side above is the first where there is one."""
+    """Rows for clustered tensors. `side`: the first one, which is above if there is such a side."""
     ranks, members = side["ranks"], side["members"]
     return (
-        ("Clusters", f"{side['clusters']}, of which a texel has {members}"),
+        ("Clusters", f"{side['clusters']}, {members} per texel"),
         (
             "Ranks",
             f"texel {ranks['texel']}, view {ranks['view']}, light {ranks['light']}, color {ranks['color']}",
@@ -98,9 +98,9 @@ def _cluster_terms(side):
 
 
 def _side_text(side, sides):
-    """Where it is seen and lit from, and what it costs."""
+    """Directions from which the side is seen and lit, and its memory."""
     if side["as"] is not None:
-        return f"{_side_name(side)}: looks as {_side_name(sides[side['as']])}, costs nothing"
+        return f"{_side_name(side)}: same as {_side_name(sides[side['as']])}, no extra memory"
     return f"{_side_name(side)}: {data_size(side['parameter_bytes'])} in memory"
 
 
@@ -114,11 +114,11 @@ def _relative_error(error):
 
 
 def _evaluations(rate):
-    return "not measured" if rate is None else f"{rate / 1e6:.2g} million a second, one core"
+    return "not measured" if rate is None else f"{rate / 1e6:.2g} million/s on one core"
 
 
 def draw_rows(layout, rows):
-    """Names on the left, values on the right."""
+    """Draws names on the left, values on the right."""
     split = layout.split(factor=0.4)
     names, values = split.column(align=True), split.column(align=True)
     names.alignment = "RIGHT"

@@ -1,4 +1,4 @@
-"""The outline of a material: what it is asked for, what it will take, and what it is."""
+"""Silhouette (VOTF) of a material: parameters, estimate and statistics."""
 
 import bpy
 
@@ -17,7 +17,7 @@ from .text import draw_sentence
 
 
 class VELOUR_MATERIAL_PT_outline(MaterialPanel, bpy.types.Panel):
-    bl_label = "Outline (VOTF)"
+    bl_label = "Silhouette (VOTF)"
     bl_parent_id = "VELOUR_MATERIAL_PT_measured"
     bl_options = {"DEFAULT_CLOSED"}
 
@@ -72,6 +72,6 @@ def outline_rows(shell):
     return (
         ("Structure", shell["source"]),
         ("In Memory", f"{data_size(shell['bytes'])}, {' x '.join(map(str, shell['points']))} points"),
-        ("Height", f"{low:.3g} to {high:.3g} of the tile's width"),
-        ("Rays wrong", "not measured" if wrong is None else f"{wrong:.2%}"),
+        ("Height", f"{low:.3g} to {high:.3g} of the tile width"),
+        ("Wrong rays", "not measured" if wrong is None else f"{wrong:.2%}"),
     )

@@ -1,4 +1,4 @@
-"""How tiles, and what is anisotropic, lie on objects."""
+"""Placement of tiles and anisotropy on objects."""
 
 import bpy
 
@@ -42,7 +42,7 @@ class VELOUR_MATERIAL_PT_placement(MaterialPanel, bpy.types.Panel):
 
 
 def _info(context):
-    """Of the active material's model; empty where there is none yet."""
+    """Info of the active material's model; empty if there is none yet."""
     node = velour_node(context.material)
     info = model_summary(node.image) if node is not None and node.image is not None else None
     return info if isinstance(info, dict) else {}
@@ -53,7 +53,7 @@ def _has_tiles(info):
 
 
 def _draw_uv_map(layout, settings, obj):
-    """To be chosen where there is something to choose from."""
+    """Draws the UV map, with a search field for meshes."""
     if obj is not None and obj.type == "MESH":
         layout.prop_search(settings, "uv_map", obj.data, "uv_layers", icon="GROUP_UVS")
     else:
@@ -64,13 +64,16 @@ def _draw_real_size(layout, settings, own_metres, obj):
     column = layout.column()
     column.prop(settings, "tile_size", text="Tile Size (mm)")
     if min(settings.tile_size) == 0:
-        icon, text = ("ERROR", "It is not known: enter it")
+        icon, text = ("ERROR", "Unknown; enter the tile size")
         if own_metres:
-            icon, text = "INFO", "Of the BTF: {:.4g} x {:.4g} mm".format(*(1e3 * side for side in own_metres))
+            icon, text = (
+                "INFO",
+                "From the BTF: {:.4g} x {:.4g} mm".format(*(1e3 * side for side in own_metres)),
+            )
         column.label(text=text, icon=icon)
     column = layout.column()
     column.prop(settings, "uv_density", text="UV Density (1/m)")
-    if obj is not None:  # whose density it is
+    if obj is not None:  # the operator reads its density
         column.operator(VELOUR_OT_keep_uv_density.bl_idname, icon="PINNED")
 
 

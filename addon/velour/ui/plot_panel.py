@@ -12,7 +12,7 @@ from .material_panel import MaterialPanel
 from .summaries import model_summary
 from .text import draw_sentence
 
-_COMPARISON_UNITS = 10.0  # as high as so many buttons
+_COMPARISON_UNITS = 10.0  # height in buttons
 
 
 class VELOUR_MATERIAL_PT_plots(MaterialPanel, bpy.types.Panel):
@@ -30,11 +30,11 @@ class VELOUR_MATERIAL_PT_plots(MaterialPanel, bpy.types.Panel):
         settings = context.window_manager.velour.plot
         kind = settings.kind
         if "texels" in info:
-            kind = "ORDER"  # a BTF has no other
+            kind = "ORDER"  # the only plot of a BTF
         else:
             row = layout.row(align=True)
             for item in PLOTS:
-                if item[0] != "OUTLINE":  # stands with the outline
+                if item[0] != "OUTLINE":  # drawn in the silhouette's panel
                     row.prop_enum(settings, "kind", item[0])
             _draw_view(layout, settings, info)
         draw_plot(context, layout, node.image, measurement_for(kind, node.velour), kind)
@@ -46,12 +46,12 @@ class VELOUR_MATERIAL_PT_plots(MaterialPanel, bpy.types.Panel):
 
 
 def _draw_comparison(context, layout, node):
-    """Measured and model above the difference, if that is of this model and this measurement."""
+    """Draws measurement and model above their difference, if they are the current ones."""
     image = find_comparison(node)
     if image is not None and image.preview is not None:
         layout.template_icon(image.preview.icon_id, scale=_COMPARISON_UNITS)
     elif find_made(comparison_name(context.material.name)) is not None:
-        sentence = "The last comparison is of another model or measurement; compare again."
+        sentence = "The last comparison shows another model or measurement. Compare again."
         draw_sentence(context, layout, sentence, icon="INFO")
     layout.operator(VELOUR_OT_compare.bl_idname)
 

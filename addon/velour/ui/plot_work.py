@@ -1,4 +1,4 @@
-"""One plot of a panel on its way, by jobs that the main thread only looks at."""
+"""One plot in progress, made by jobs that the main thread only polls."""
 
 import bpy
 
@@ -8,11 +8,11 @@ from ..operators.model_plots import PlotSource, PlotSteps
 _source = (
     None,
     None,
-)  # what was asked for last, open: (identities, PlotSource); a slider asks for it many times
+)  # latest source, kept open for sliders: (identities, PlotSource)
 
 
 class PlotWork:
-    """`wanted`: as plot_preview has it. `model`, `measurement`: names of images; the second may be None."""
+    """`wanted`: see plot_preview. `model`, `measurement`: image names; the second may be None."""
 
     def __init__(self, wanted, model, measurement):
         self._wanted, self._names = wanted, (model, measurement)
@@ -21,25 +21,25 @@ class PlotWork:
 
     @property
     def missing(self):
-        """Why the measurement is not in the plot although it should be, or None."""
+        """Why an expected measurement is missing in the plot, or None."""
         return self._steps.source.missing
 
     @property
     def fraction(self):
-        """How far the job is that runs; None: there is none yet."""
+        """Progress of the running job; None if there is none yet."""
         return None if self._job is None else self._job.poll().fraction
 
     def cancel(self):
-        """Returns at once; a later step says that the work has ended: by an error, or by what is done.
+        """Returns immediately; a later step ends the work, with an error or with the finished plot.
 
-        A measurement is read to its end: the next plot needs it, too.
+        Reading a measurement is not canceled, since the next plot needs it, too.
         """
         self.cancelled = True
         if self._job is not None and self._steps.source.reading is None:
             self._job.cancel()
 
     def step(self):
-        """The pixels, once they are there. Raises ExportError and VelourError where there will be none."""
+        """The pixels, or None until they are done. Raises ExportError or VelourError on failure."""
         if self._steps is None:
             self._steps = PlotSteps(self._opened(), self._wanted.kind, *self._wanted.angles)
             return self._begin_next()
@@ -54,14 +54,14 @@ class PlotWork:
             return plot.draw(**dict(self._wanted.style))
 
     def _opened(self):
-        """The source that is open already, or another one in its place."""
+        """The source that is already open, or a new one that replaces it."""
         global _source
         known = self._wanted.model, self._wanted.measurement
         if _source[0] != known:
             close_source()
             images, (model, measurement) = bpy.data.images, self._names
             if model not in images:
-                raise ExportError("The model is gone.")
+                raise ExportError("The model no longer exists.")
             measured = images.get(measurement) if measurement else None
             _source = known, PlotSource(images[model], measured, f"Model '{images[model].name}'")
         return _source[1]

@@ -1,4 +1,4 @@
-"""The add-on's preferences: is the library there, and which; the presets; the folder of measurements."""
+"""The add-on's preferences: state of the library, presets, and the folder of measurements."""
 
 import bpy
 from bpy.props import StringProperty
@@ -14,7 +14,7 @@ class VelourPreferences(bpy.types.AddonPreferences):
 
     measurements: StringProperty(
         name="Measurements",
-        description="The folder of measurements and models that the material's library shows",
+        description="Folder of measurements and models that the Measurement Library panel shows",
         subtype="DIR_PATH",
     )
 

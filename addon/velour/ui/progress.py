@@ -1,4 +1,4 @@
-"""The job that runs in the background: in panels and in the status bar."""
+"""Progress of the background job, in panels and in the status bar."""
 
 import bpy
 
@@ -14,13 +14,13 @@ def detach():
 
 
 def draw_progress(context, layout):
-    """What runs, how far it is, and a cross, with one for those that wait; nothing where none runs."""
+    """Draws the running job's progress, and buttons to cancel it and queued jobs; nothing if none runs."""
     job = context.window_manager.velour
     if not job.running:
         return
     has_progress = hasattr(layout, "progress")  # 4.0 and newer
     if not has_progress:
-        layout.label(text=_text(job), icon="TIME")  # beside a slider there is no room for the time left
+        layout.label(text=_text(job), icon="TIME")  # no room for the remaining time beside a slider
     row = layout.row(align=True)
     if has_progress:
         row.progress(factor=job.fraction, text=_text(job))
@@ -28,13 +28,13 @@ def draw_progress(context, layout):
         row.prop(job, "fraction", text="", slider=True)
     row.operator(VELOUR_OT_cancel_fit.bl_idname, text="", icon="CANCEL")
     if job.waiting:
-        layout.operator(VELOUR_OT_cancel_waiting.bl_idname, text=f"{job.waiting} Waiting", icon="CANCEL")
+        layout.operator(VELOUR_OT_cancel_waiting.bl_idname, text=f"{job.waiting} Queued", icon="CANCEL")
 
 
 def _draw_in_status_bar(header, context):
     state = context.window_manager.velour
     if state.reading:
-        header.layout.label(text=f"{state.reading}: reading", icon="TIME")
+        header.layout.label(text=f"Reading {state.reading}", icon="TIME")
     if state.running:
         header.layout.separator()
         draw_progress(context, header.layout)
@@ -48,7 +48,7 @@ def _text(job):
 
 
 def time_left(seconds):
-    """As coarse as such an estimate is."""
+    """Remaining time as text, rounded to the accuracy of such estimates."""
     if seconds < 100:
         return f"{seconds:.0f} s left"
     return f"{seconds / 60:.0f} min left" if seconds < 6000 else f"{seconds / 3600:.1f} h left"

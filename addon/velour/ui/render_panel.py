@@ -10,7 +10,7 @@ from ..operators.copy_cycles_settings import VELOUR_OT_copy_cycles_settings
 from . import library_state
 from .text import draw_sentence
 
-_COMPOSITOR = (  # 4.3 and newer; those of denoising 5.2
+_COMPOSITOR = (  # 4.3 and newer; denoising: 5.2 and newer
     "compositor_device",
     "compositor_precision",
     "compositor_denoise_device",
@@ -31,7 +31,7 @@ class _RenderPanel:
 
 
 class VELOUR_RENDER_PT_library(_RenderPanel, bpy.types.Panel):
-    """Only there when something is wrong: said before the render, not by it."""
+    """Shown only if the library cannot be used, before a render fails."""
 
     bl_label = "Velour Cannot Render"
 
@@ -44,9 +44,9 @@ class VELOUR_RENDER_PT_library(_RenderPanel, bpy.types.Panel):
 
 
 class VELOUR_RENDER_PT_newer(_RenderPanel, bpy.types.Panel):
-    """Only there when a later release has saved the scene."""
+    """Shown only if a later release has saved the scene."""
 
-    bl_label = "From a Newer Velour"
+    bl_label = "Saved by a Newer Velour"
 
     @classmethod
     def poll(cls, context):
@@ -122,7 +122,7 @@ class VELOUR_RENDER_PT_light_paths(_RenderPanel, bpy.types.Panel):
 
 
 class VELOUR_RENDER_PT_simplify(_RenderPanel, bpy.types.Panel):
-    """Blender's own would stand above Sampling: panels that give no order stand as they were registered."""
+    """Replaces Blender's own panel, whose earlier registration would place it above Sampling."""
 
     bl_label = "Simplify"
     bl_options = {"DEFAULT_CLOSED"}
@@ -153,7 +153,7 @@ class VELOUR_RENDER_PT_film(_RenderPanel, bpy.types.Panel):
 
 
 class VELOUR_RENDER_PT_check(_RenderPanel, bpy.types.Panel):
-    bl_label = "What Is Left Out"
+    bl_label = "Unsupported Features"
 
     def draw(self, context):
         layout, checked = self.layout, context.window_manager.velour.checked
@@ -163,7 +163,7 @@ class VELOUR_RENDER_PT_check(_RenderPanel, bpy.types.Panel):
         for sentence in checked.sentences:
             draw_sentence(context, layout, sentence.text, icon="ERROR" if sentence.is_refusal else "INFO")
         if not checked.sentences:
-            layout.label(text=f"Nothing, in frame {checked.frame}.", icon="CHECKMARK")
+            layout.label(text=f"None in frame {checked.frame}", icon="CHECKMARK")
 
 
 class VELOUR_RENDER_PT_performance(_RenderPanel, bpy.types.Panel):

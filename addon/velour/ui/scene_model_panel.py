@@ -1,4 +1,4 @@
-"""The second model of a material: the smaller one, for what a scene shows of it."""
+"""Panel of a material's scene model: a second, smaller model for the scene's usage of the material."""
 
 import bpy
 
@@ -14,7 +14,7 @@ from .text import draw_sentence
 
 
 class VELOUR_MATERIAL_PT_scene_model(MaterialPanel, bpy.types.Panel):
-    bl_label = "Model for the Scene"
+    bl_label = "Scene Model"
     bl_parent_id = "VELOUR_MATERIAL_PT_measured"
 
     @classmethod
@@ -45,7 +45,7 @@ def _draw_model(context, layout, image):
         draw_refusal(context, layout, image, info)
         return
     if info.get("scene") is None:
-        sentence = "This model was not fitted for a scene; every frame takes it."
+        sentence = "This model was not fitted for a scene, so all frames use it."
         draw_sentence(context, layout, sentence, icon="INFO")
         return
     draw_rows(layout, _rows(info))
@@ -53,7 +53,7 @@ def _draw_model(context, layout, image):
 
 
 def _draw_served(context, layout, material, image):
-    """Whether the model serves in the frame that was looked at last, and what helps where it does not."""
+    """Draws whether the model was valid in the frame last checked, and the remedy if not."""
     found = context.window_manager.velour.checked.of_model(context.scene, material, image)
     for text, is_inside in dict.fromkeys((each.text, each.is_inside) for each in found):
         draw_sentence(context, layout, text, icon="CHECKMARK" if is_inside else "ERROR")
@@ -63,19 +63,19 @@ def _draw_served(context, layout, material, image):
 def _rows(info):
     own, full = info["parameter_bytes"], info["scene"]["full_parameter_bytes"]
     more = _rows_of_btf if "full_texels" in info["scene"] else _rows_of_brdf
-    return (("Parameters", f"{own} bytes, full model {full}: {full / own:.1f} times"), *more(info))
+    return (("Parameters", f"{own} bytes, full model {full} ({full / own:.1f} times as many)"), *more(info))
 
 
 def _rows_of_brdf(info):
     scene, (begin, end) = info["scene"], info["view_range"]
     return (
-        ("Picture error", f"{scene['picture_error']:.3g}, full model {scene['full_picture_error']:.3g}"),
+        ("Image error", f"{scene['picture_error']:.3g}, full model {scene['full_picture_error']:.3g}"),
         ("Views", f"{begin:.0f} to {end:.0f}\N{DEGREE SIGN}, {_pictures(scene)}"),
     )
 
 
 def _pictures(scene):
-    return "1 picture" if scene["frames"] == 1 else f"{scene['frames']} pictures"
+    return "1 image" if scene["frames"] == 1 else f"{scene['frames']} images"
 
 
 def _rows_of_btf(info):
@@ -84,9 +84,9 @@ def _rows_of_btf(info):
     finest = scene["surface"]["finest"] * max(full_width, full_height)
     rows = (
         ("Texels", f"{width} x {height}, full model {full_width} x {full_height}"),
-        ("Pixels", f"from {finest:.1f} of those on, {_pictures(scene)}"),
+        ("Pixels", f"at least {finest:.1f} texels of the full model, {_pictures(scene)}"),
     )
     if not scene["seen_views_alone"]:
         return rows
     errors = f"{scene['picture_error']:.3g}, full model {scene['full_picture_error']:.3g}"
-    return (*rows, ("Picture error", errors))
+    return (*rows, ("Image error", errors))

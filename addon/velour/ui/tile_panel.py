@@ -1,4 +1,4 @@
-"""Tiles of mesostructure: what repeats, and its capture."""
+"""Tiles of mesostructure: period and capture."""
 
 import bpy
 
@@ -31,7 +31,7 @@ class TilePanel:
         layout.use_property_split = True
         layout.use_property_decorate = False
         layout.column().prop(settings, "period")
-        text = "Hide Repeats" if is_repeated(owner) else "Show Repeated"
+        text = "Hide Repeats" if is_repeated(owner) else "Show Repeats"
         layout.operator(VELOUR_OT_repeat_tile.bl_idname, text=text).collection = collection_name
         column = layout.column(align=True)
         for name in ("directory", "texels", "views", "lights", "samples", "bounces", "sides", "held_out"):
@@ -51,7 +51,7 @@ class TilePanel:
         self._draw_material(context, layout, owner, collection_name)
 
     def _draw_material(self, context, layout, owner, collection_name):
-        """What a material of the capture is asked for, and what the last one was."""
+        """Draws the parameters of the capture's material, and the last result."""
         settings, button = owner.velour, (VELOUR_OT_compress_btf.bl_label, "MATERIAL")
         key = captured_and_fitted_as(owner)
         draw_btf_fit(context, layout, settings, key, button, collection=collection_name)
@@ -87,7 +87,7 @@ class VELOUR_COLLECTION_PT_tile(TilePanel, bpy.types.Panel):
 
 
 def _size(settings):
-    """Of two sides all four pairs of hemispheres; with the pairs to judge by."""
+    """Size of the capture with held-out pairs; two sides have all four pairs of hemispheres."""
     front, pairs = capture_bytes(settings), pairs_bytes(settings)
     one, both = data_size(front + pairs), data_size(4 * front + pairs)
-    return {"ONE": one, "TWO": both, "AUTOMATIC": f"{one}, with holes {both}"}[settings.sides]
+    return {"ONE": one, "TWO": both, "AUTOMATIC": f"{one}, or {both} with holes"}[settings.sides]

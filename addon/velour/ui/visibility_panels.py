@@ -1,4 +1,4 @@
-"""From which rays an object or a world is hidden: Blender has panels for that with Cycles alone."""
+"""Ray visibility of objects and worlds; Blender has panels for it only with Cycles."""
 
 import bpy
 
@@ -33,7 +33,10 @@ class VELOUR_OBJECT_PT_ray_visibility(_VisibilityPanel, bpy.types.Panel):
         column.prop(obj, "visible_shadow", text="Shadow")
         if obj.visible_diffuse != obj.visible_glossy:
             draw_sentence(
-                context, layout, "Velour hides objects from diffuse and glossy rays together.", icon="INFO"
+                context,
+                layout,
+                "Velour can hide objects only from diffuse and glossy rays together, so this is ignored.",
+                icon="INFO",
             )
 
 
@@ -43,7 +46,7 @@ class VELOUR_WORLD_PT_ray_visibility(_VisibilityPanel, bpy.types.Panel):
 
     @classmethod
     def poll(cls, context):
-        has_switch = hasattr(context.world, "cycles_visibility")  # kept with Cycles, while that is enabled
+        has_switch = hasattr(context.world, "cycles_visibility")  # stored with Cycles, while it is enabled
         return context.engine in cls.COMPAT_ENGINES and has_switch
 
     def draw(self, context):

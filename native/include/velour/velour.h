@@ -133,7 +133,7 @@ VLR_API vlr_status vlr_file_info_json(const char* path, const char** json);
 
 /* ---- bidirectional texture functions ------------------------------------------------------------------------- */
 
-/* Meaning of the values in images and .btf files (docs/reference/btf_formats.md). */
+/* Meaning of the values in images and .btf files (docs/engine/btf_models.md). */
 enum {
   VLR_BTF_AUTOMATIC = 0,   /* as the file says; otherwise radiance for images, BRDF for .btf files */
   VLR_BTF_BRDF = 1,        /* apparent BRDF, 1/sr */

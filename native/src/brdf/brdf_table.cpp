@@ -17,7 +17,9 @@ constexpr char kVersion[] = "1";
 
 const std::string& attribute(const TensorFile& file, const std::string& key, const std::string& path) {
   const auto found = file.attributes.find(key);
-  if (found == file.attributes.end()) throw Error(Status::bad_data, path + ": attribute " + key + " is missing.");
+  if (found == file.attributes.end())
+    throw Error(Status::bad_data,
+                path + ": attribute " + key + " is missing; this is not a complete BRDF table. Write it again.");
   return found->second;
 }
 
@@ -41,23 +43,25 @@ double number_attribute(const TensorFile& file, const std::string& key, double l
 void check_kind(const TensorFile& file, const std::string& path) {
   if (attribute(file, "velour.kind", path) != kKind)
     throw Error(Status::bad_data,
-                path + ": velour.kind is '" + file.attributes.at("velour.kind") + "', not a BRDF table.");
+                path + ": velour.kind is '" + file.attributes.at("velour.kind") + "'; a BRDF table has 'brdf_table'.");
   const std::string version = attribute(file, "velour.format_version", path);
   if (version != kVersion)
-    throw Error(Status::unsupported,
-                path + ": velour.format_version is '" + version + "'; this Velour reads version 1, use a newer one.");
+    throw Error(Status::unsupported, path + ": velour.format_version is '" + version +
+                                         "'; this Velour reads version 1. Use a newer Velour.");
 }
 
 const Tensor& table_tensor(const TensorFile& file, const std::string& path) {
   const auto found = file.tensors.find("f");
-  if (found == file.tensors.end()) throw Error(Status::bad_data, path + ": tensor f is missing.");
+  if (found == file.tensors.end())
+    throw Error(Status::bad_data, path + ": tensor f is missing; this is not a complete BRDF table. Write it again.");
   const Tensor& tensor = found->second;
   if (tensor.shape.size() != 5 || tensor.shape[4] != 3)
     throw Error(Status::bad_data, path + ": tensor f has " + std::to_string(tensor.shape.size()) +
                                       " dimensions; it must be theta_h x phi_h x theta_d x phi_d x 3.");
   for (const uint64_t extent : tensor.shape)
     if (extent > 100000)
-      throw Error(Status::bad_data, path + ": tensor f has an extent of " + std::to_string(extent) + ".");
+      throw Error(Status::bad_data,
+                  path + ": tensor f has an extent of " + std::to_string(extent) + "; at most 100000 is allowed.");
   return tensor;
 }
 
@@ -92,7 +96,7 @@ TableMeasurement::Details describe(const BrdfTableLayout& layout) {
                         " phi_diff, 3 channels of float32"},
           {"holds", "f without cosine, 1/sr, linear Rec. 709"},
           {"folds", std::to_string(layout.folds)},
-          {"invalid", "a node that is not finite or of negative luminance"},
+          {"invalid", "nodes that are not finite or have negative luminance"},
           {"interpolation",
            "multilinear over valid nodes, theta_half warped by power " + number_text(layout.theta_h_power)}};
 }
@@ -103,8 +107,8 @@ void write_brdf_table(const std::string& path, const BrdfTable& table) {
   const BrdfTableLayout& layout = table.layout;
   if (layout.theta_h < 1 || layout.phi_h < 1 || layout.theta_d < 1 || layout.phi_d < 1 || layout.folds < 1 ||
       table.f.size() != layout.size())
-    throw Error(Status::invalid_argument,
-                path + ": a BRDF table of " + std::to_string(table.f.size()) + " nodes does not fit its layout.");
+    throw Error(Status::invalid_argument, path + ": the BRDF table has " + std::to_string(table.f.size()) +
+                                              " numbers, which does not match its layout.");
   Tensor tensor;
   for (const int extent : {layout.theta_h, layout.phi_h, layout.theta_d, layout.phi_d, 3})
     tensor.shape.push_back(static_cast<uint64_t>(extent));

@@ -24,11 +24,11 @@ std::string text_of(const pugi::xml_node& node) {
 BsdfXml::BsdfXml(std::span<const uint8_t> bytes, const std::string& path) : path_(path) {
   const pugi::xml_parse_result parsed = xml_.load_buffer(bytes.data(), bytes.size());
   if (!parsed) {
-    fail("is no whole XML document: " + std::string(parsed.description()) + " at byte " +
-         std::to_string(parsed.offset) + ".");
+    fail("is not a valid XML document: " + std::string(parsed.description()) + " at byte " +
+         std::to_string(parsed.offset) + "; it may be truncated. Download or export it again.");
   }
   layer_ = xml_.child("WindowElement").child("Optical").child("Layer");
-  if (!layer_) fail("has no WindowElement/Optical/Layer; it is no BSDF.");
+  if (!layer_) fail("has no WindowElement/Optical/Layer element; it is not a BSDF file.");
   read_structure();
   read_bases();
 }
@@ -50,7 +50,8 @@ const KlemsBasis& BsdfXml::basis(const pugi::xml_node& block, const char* field)
   const auto own = bases_.find(name);
   if (own != bases_.end()) return own->second;
   const KlemsBasis* known = KlemsBasis::standard(name);
-  if (known == nullptr) fail(std::string(field) + " '" + name + "' is not defined in it.");
+  if (known == nullptr)
+    fail(std::string(field) + " '" + name + "' is neither defined in the file nor a standard basis of LBNL.");
   return *known;
 }
 
@@ -60,10 +61,10 @@ std::vector<float> BsdfXml::numbers(const pugi::xml_node& block, size_t count) c
   values.reserve(std::min(count, rest.size() / 2 + 1));
   while (const auto value = next_number(rest)) values.push_back(*value);
   if (!rest.empty()) {
-    fail("ScatteringData has '" + std::string(rest.substr(0, 12)) + "' where a number is due.");
+    fail("ScatteringData has '" + std::string(rest.substr(0, 12)) + "' where a number is expected.");
   }
   if (values.size() != count) {
-    fail("ScatteringData has " + std::to_string(values.size()) + " values, its angle bases make " +
+    fail("ScatteringData has " + std::to_string(values.size()) + " values, but its angle bases require " +
          std::to_string(count) + ".");
   }
   return values;
@@ -72,8 +73,8 @@ std::vector<float> BsdfXml::numbers(const pugi::xml_node& block, size_t count) c
 std::string_view BsdfXml::tree(const pugi::xml_node& block) const {
   const std::string basis = text_of(block.child("AngleBasis"));
   if (basis != "LBNL/Shirley-Chiu") {
-    throw Error(Status::unsupported, path_ + ": AngleBasis '" + basis +
-                                         "' of a tensor tree is not LBNL/Shirley-Chiu, the one that Velour reads.");
+    throw Error(Status::unsupported,
+                path_ + ": AngleBasis '" + basis + "' of a tensor tree is not supported; use LBNL/Shirley-Chiu.");
   }
   return block.child("ScatteringData").text().get();
 }
@@ -88,7 +89,7 @@ void BsdfXml::read_structure() {
                                                      {"TensorTree4", Structure::tree4}};
   const auto found = std::ranges::find(known, name, [](const auto& one) { return one.first; });
   if (found == std::end(known)) {
-    fail("has the IncidentDataStructure '" + name + "', not Columns, Rows, TensorTree3 or TensorTree4.");
+    fail("IncidentDataStructure is '" + name + "'; it must be Columns, Rows, TensorTree3 or TensorTree4.");
   }
   structure_ = found->second;
 }
@@ -106,15 +107,16 @@ void BsdfXml::read_bases() {
       if (!(std::abs(least - expected) < 1e-3 && most > least && most < 90.001) || count == 0 ||
           (patches += count) > kMostPatches) {
         fail("AngleBasis '" + text_of(basis.child("AngleBasisName")) + "': ring " + std::to_string(rings.size() + 1) +
-             " is from " + std::to_string(least) + " to " + std::to_string(most) + " degrees with " +
-             std::to_string(count) + " patches; rings follow each other to 90, with 4096 patches at most.");
+             " spans " + std::to_string(least) + " to " + std::to_string(most) + " degrees with " +
+             std::to_string(count) +
+             " patches; rings must follow each other up to 90 degrees and have at most 4096 patches in all.");
       }
       rings.push_back({expected, most, count});
     }
     if (rings.empty()) continue;  // a standard basis
     if (rings.back().most_theta < 89.999) {
       fail("AngleBasis '" + text_of(basis.child("AngleBasisName")) + "' ends at " +
-           std::to_string(rings.back().most_theta) + " degrees; its rings have to go on to 90.");
+           std::to_string(rings.back().most_theta) + " degrees; its rings must reach 90 degrees.");
     }
     bases_.emplace(text_of(basis.child("AngleBasisName")), KlemsBasis(rings));
   }

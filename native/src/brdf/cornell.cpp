@@ -72,7 +72,7 @@ std::vector<double> read_numbers(std::span<const uint8_t> bytes, const std::stri
     const auto result = in.next(value);
     if (result == NumberReader::Result::end) return numbers;
     if (result == NumberReader::Result::not_a_number)
-      fail(path, "number " + std::to_string(numbers.size() + 1) + " is '" + in.word() + "', which is no number.");
+      fail(path, "number " + std::to_string(numbers.size() + 1) + " is '" + in.word() + "', which is not a number.");
     numbers.push_back(value);
   }
 }
@@ -92,13 +92,13 @@ CornellText split(std::span<const double> numbers, const std::string& path) {
   const auto count = static_cast<size_t>(numbers[0]);
   if (numbers.size() < 1 + count)
     fail(path, "has " + std::to_string(numbers.size() - 1) + " of " + std::to_string(count) +
-                   " wavelengths; it is truncated.");
+                   " wavelengths; the file is truncated.");
   const CornellText text{numbers.subspan(1, count), numbers.subspan(1 + count), 4 + count};
   check_wavelengths(text.wavelengths, path + ": wavelengths");
   if (text.rows.size() % text.row_size != 0)
     fail(path, "sample " + std::to_string(text.rows.size() / text.row_size + 1) + " has " +
-                   std::to_string(text.rows.size() % text.row_size) + " numbers of " + std::to_string(text.row_size) +
-                   "; the file is truncated.");
+                   std::to_string(text.rows.size() % text.row_size) + " of " + std::to_string(text.row_size) +
+                   " numbers; the file is truncated or damaged.");
   return text;
 }
 
@@ -163,11 +163,11 @@ class ScatteredMeasurement : public TableMeasurement {
       if (!held_out_sample(i)) kept.push_back(samples_[i]);
     }
     if (kept.size() < ScatteredInterpolant::kNeighbours)
-      fail(provenance().path, "has " + std::to_string(samples_.size()) + " valid samples, " +
+      fail(provenance().path, "has " + std::to_string(samples_.size()) + " valid samples, of which " +
                                   std::to_string(kept.size()) +
-                                  " of them left when one in eight is held out to judge the fit; at least " +
+                                  " remain when one in eight is held out to measure the error; at least " +
                                   std::to_string(ScatteredInterpolant::kNeighbours) +
-                                  " are needed. Measure more, or fit all data and hold nothing out.");
+                                  " are needed. Measure more directions, or fit all data.");
     return std::make_shared<ScatteredMeasurement>(std::move(kept), provenance(), counts(), details(), progress);
   }
 
@@ -188,8 +188,8 @@ TableMeasurement::Details describe(const CornellText& text) {
       {"table", std::to_string(text.rows.size() / text.row_size) + " irregular samples of " +
                     std::to_string(text.wavelengths.size()) + " wavelengths, " + whole(text.wavelengths.front()) +
                     " to " + whole(text.wavelengths.back()) + " nm"},
-      {"holds", "f without cosine, 1/sr, spectral; seen by the CIE 1931 observer as linear Rec. 709"},
-      {"invalid", "a sample that is not finite or of negative luminance"},
+      {"holds", "f without cosine, 1/sr, spectral; converted to linear Rec. 709 with the CIE 1931 observer"},
+      {"invalid", "samples that are not finite or have negative luminance"},
       {"interpolation", "local linear regression over 16 samples in half and difference angles, tabulated at " +
                             std::to_string(kCornellLayout.theta_h) + " x " + std::to_string(kCornellLayout.theta_d) +
                             " x " + std::to_string(kCornellLayout.phi_d) + " nodes"}};

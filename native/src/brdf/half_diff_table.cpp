@@ -35,8 +35,8 @@ HorizonTest::HorizonTest(const BrdfTableLayout& layout) {
 HalfDiffTable::HalfDiffTable(const BrdfTableLayout& layout, std::vector<TableNode> nodes)
     : layout_(layout), nodes_(std::move(nodes)) {
   if (nodes_.size() != layout_.size())
-    throw Error(Status::invalid_argument, "A BRDF table of " + std::to_string(layout_.size()) + " nodes was given " +
-                                              std::to_string(nodes_.size()) + ".");
+    throw Error(Status::invalid_argument, "A BRDF table of " + std::to_string(layout_.size()) + " nodes cannot have " +
+                                              std::to_string(nodes_.size()) + " values.");
 }
 
 HalfDiffTable::Step HalfDiffTable::clamped(float position, int count) {

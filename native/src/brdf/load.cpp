@@ -69,21 +69,19 @@ struct OtherFormat {
 
 constexpr OtherFormat kOtherFormats[] = {
     {"\x89HDF\r\n\x1a\n", "",
-     "is an HDF5 file, as X-Rite's AxF is. Velour does not read AxF, which needs X-Rite's own library; export a table "
-     "of "
-     "BRDF values (MERL or CSV) or pictures by view and light from the software that made it."},
+     "is an HDF5 file, for example X-Rite's AxF. Velour cannot read AxF, which requires X-Rite's library; export a "
+     "table of BRDF values (MERL), or images per view and light direction, from the software that created it."},
     {"7z\xbc\xaf\x27\x1c", "",
-     "is an archive, as Substance's .sbsar is: a procedural material, not a measurement. Export its textures, and use "
-     "them in a Principled BSDF."},
+     "is an archive, for example Substance's .sbsar: a procedural material, not a measurement. Export its textures and "
+     "use them in a Principled BSDF."},
     {"PK\x03\x04", "",
-     "is a ZIP archive, as Chaos's .vrscan and packages of measurements are. Velour does not read VRscans, which only "
-     "Chaos's own library decodes; unpack other archives and give the file inside."},
+     "is a ZIP archive. Unpack it and load the file inside. Velour cannot read Chaos's .vrscan, which only Chaos's "
+     "library can decode."},
     {"", "<materialx",
-     "is a MaterialX document: parameters of a material, not a measurement. Import it in Blender, or use its values in "
-     "a "
+     "is a MaterialX document: material parameters, not a measurement. Import it in Blender, or use its values in a "
      "Principled BSDF."},
     {"", "ASTM",
-     "looks like an ASTM E1392 file, which Velour does not read; convert it to a list of directions and values "
+     "looks like an ASTM E1392 file, which Velour cannot read; convert it to a list of directions and values "
      "(Cornell's format, docs/reference/measurement_formats.md)."},
 };
 
@@ -95,7 +93,7 @@ constexpr OtherFormat kOtherFormats[] = {
       throw Error(Status::unsupported, path + ": " + other.sentence);
   }
   throw Error(Status::unsupported, path +
-                                       ": is no measurement that Velour reads; use MERL .binary, RGL .bsdf, "
+                                       ": is not a measurement in a supported format; use MERL .binary, RGL .bsdf, "
                                        "Cornell .brdf, BSDF .xml or a Velour table.");
 }
 

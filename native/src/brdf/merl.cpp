@@ -62,7 +62,7 @@ MerlStorage storage_of(ByteReader& in) {
     const std::string field = std::string(kFields[i]) + " is " + std::to_string(counts[i]);
     if (counts[i] < 2 || counts[i] > kMostNodes)
       throw Error(Status::bad_data, in.name() + ": MERL dimension " + field + "; it must be 2 to " +
-                                        std::to_string(kMostNodes) + ", 90, 90 and 180 in the database's own files.");
+                                        std::to_string(kMostNodes) + " (90, 90 and 180 in the MERL database).");
     names += (i == 0 ? "" : ", ") + field;
   }
   const BrdfTableLayout layout{.theta_h = counts[0], .phi_h = 1, .theta_d = counts[1], .phi_d = counts[2]};
@@ -70,16 +70,16 @@ MerlStorage storage_of(ByteReader& in) {
     if (in.remaining() != 3 * number_bytes * layout.size()) continue;
     if (layout.phi_d > MerlGrid::phi_d)
       throw Error(Status::bad_data, in.name() + ": MERL dimension phi_diff is " + std::to_string(layout.phi_d) +
-                                        ", and whether that covers half a turn, as MERL's 180 do, or a whole one, no "
-                                        "header says. Write half a turn in at most 180 steps.");
+                                        ", and the header does not say whether that covers 180 degrees, as in the MERL "
+                                        "database, or 360. Write 180 degrees in at most 180 steps.");
     return {layout, is_big_endian, number_bytes};
   }
   const size_t of_float64 = kHeaderBytes + 3 * sizeof(double) * layout.size();
   const size_t of_float32 = kHeaderBytes + 3 * sizeof(float) * layout.size();
   throw Error(Status::bad_data, in.name() + ": holds " + std::to_string(kHeaderBytes + in.remaining()) +
-                                    " bytes where a MERL table whose " + names + " has " + std::to_string(of_float64) +
+                                    " bytes, but a MERL table whose " + names + " has " + std::to_string(of_float64) +
                                     " (float64) or " + std::to_string(of_float32) +
-                                    " (float32); download it or write it again.");
+                                    " (float32). Download or write it again.");
 }
 
 /// Reads the planes by copying: their doubles lie at odd multiples of four bytes.
@@ -126,7 +126,7 @@ TableMeasurement::Details describe(const MerlStorage& storage) {
                         (storage.is_big_endian ? ", big-endian" : "")},
           {"holds", "f without cosine, stored value x scale, 1/sr"},
           {"scales", "1/1500, 1.15/1500, 1.66/1500"},
-          {"invalid", "a node with any channel negative"},
+          {"invalid", "nodes with a negative channel"},
           {"interpolation", "trilinear over valid nodes, node i of theta_half at 90 (i/" + theta_h + ")^2 degrees"}};
 }
 

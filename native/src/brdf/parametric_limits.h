@@ -19,11 +19,11 @@ struct ParameterRange {
 constexpr ParameterRange parameter_range(int parameter) {
   switch (parameter) {
     case ParametricBrdf::kLogBandwidth:
-      return {-11.5f, 20.72f, "logarithm of a bandwidth"};
+      return {-11.5f, 20.72f, "logarithm of the bandwidth"};
     case ParametricBrdf::kLogRed:
     case ParametricBrdf::kLogGreen:
     case ParametricBrdf::kLogBlue:
-      return {-40.0f, 27.6f, "logarithm of a coefficient"};
+      return {-40.0f, 27.6f, "logarithm of the coefficient"};
     case ParametricBrdf::kTiltX:
     case ParametricBrdf::kTiltY:
       return {-kPi, kPi, "tilt in radians"};

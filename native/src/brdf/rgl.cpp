@@ -24,7 +24,7 @@ void check_extent(const TensorContainer& file, const std::string& field, size_t 
                   const std::string& other) {
   if (file.shape(field)[axis] != expected)
     file.fail(field, "has an extent of " + std::to_string(file.shape(field)[axis]) + " in dimension " +
-                         std::to_string(axis) + " where " + other + " has " + std::to_string(expected) + ".");
+                         std::to_string(axis) + ", but " + other + " has " + std::to_string(expected) + ".");
 }
 
 std::vector<float> angles(const TensorContainer& file, const std::string& field, float low, float high) {
@@ -32,8 +32,8 @@ std::vector<float> angles(const TensorContainer& file, const std::string& field,
   for (size_t i = 0; i < values.size(); ++i) {
     const bool rises = i == 0 || values[i] > values[i - 1];
     if (!(values[i] >= low && values[i] <= high) || !rises)
-      file.fail(field, "has " + std::to_string(values[i]) + " at " + std::to_string(i) + "; angles must rise from " +
-                           std::to_string(low) + " to " + std::to_string(high) + ".");
+      file.fail(field, "has " + std::to_string(values[i]) + " at index " + std::to_string(i) +
+                           "; angles must increase from " + std::to_string(low) + " to " + std::to_string(high) + ".");
   }
   return values;
 }
@@ -43,7 +43,7 @@ std::vector<float> densities(const TensorContainer& file, const std::string& fie
   auto values = file.floats(field, rank);
   for (size_t i = 0; i < values.size(); ++i)
     if (!(values[i] >= 0.0f && std::isfinite(values[i])))
-      file.fail(field, "has " + std::to_string(values[i]) + " at " + std::to_string(i) +
+      file.fail(field, "has " + std::to_string(values[i]) + " at index " + std::to_string(i) +
                            "; it must be finite and not negative.");
   return values;
 }
@@ -71,7 +71,7 @@ void read_warp(const TensorContainer& file, RglTables& tables) {
 /// Weights of the channels of the color field: the unit matrix for "rgb", the observer for "spectra".
 std::vector<Vec3d> channel_weights(const TensorContainer& file, const std::string& field) {
   if (field == "rgb") {
-    check_extent(file, field, 2, 3, "a colour");
+    check_extent(file, field, 2, 3, "a color");
     return {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
   }
   const auto read = file.floats("wavelengths", 1);

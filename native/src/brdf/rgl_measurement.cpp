@@ -36,7 +36,7 @@ int sectors_of(const std::vector<float>& phi_v, const std::string& path) {
   const float sectors = std::round(2.0f * kPi / (phi_v.back() - phi_v.front()));
   if (sectors != 1.0f && sectors != 2.0f && sectors != 4.0f)
     throw Error(Status::unsupported, path + ": field phi_i spans " + std::to_string(phi_v.back() - phi_v.front()) +
-                                         " radians; it must span a whole turn, a half or a quarter.");
+                                         " radians; it must span 2 pi, pi or pi/2.");
   return static_cast<int>(sectors);
 }
 
@@ -173,8 +173,8 @@ std::vector<std::pair<std::string, std::string>> RglMeasurement::details() const
                         size(tables_.height) + " x " + size(tables_.width) + " of float32"},
           {"holds", tables_.microfacet_scale ? "f cos = value x D / (4 sigma); f is given without cosine, 1/sr"
                                              : "f cos; f is given without cosine, 1/sr"},
-          {"invalid", "an entry that is not finite or of negative luminance"},
-          {"interpolation", "bilinear in warped half vectors, linear between views; the file's own"}};
+          {"invalid", "entries that are not finite or have negative luminance"},
+          {"interpolation", "bilinear in warped half vectors, linear between views, as defined by the file format"}};
 }
 
 }  // namespace velour

@@ -84,7 +84,7 @@ ScatteredInterpolant::Index::Index(std::span<const ScatteredSample> samples) {
 ScatteredInterpolant::ScatteredInterpolant(std::span<const ScatteredSample> samples) {
   if (samples.size() < kNeighbours)
     throw Error(Status::invalid_argument, std::to_string(samples.size()) +
-                                              " valid samples are too few to interpolate; " +
+                                              " valid samples are too few to interpolate; at least " +
                                               std::to_string(kNeighbours) + " are needed.");
   index_ = std::make_unique<const Index>(samples);
 }

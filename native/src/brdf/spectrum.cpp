@@ -74,7 +74,7 @@ void check_wavelengths(std::span<const double> wavelengths, const std::string& w
   for (const double lambda : wavelengths) {
     if (!(lambda > previous && lambda <= 5000.0))
       throw Error(Status::bad_data, where + " has " + std::to_string(lambda) + " after " + std::to_string(previous) +
-                                        "; wavelengths must rise within 100 to 5000 nm.");
+                                        "; wavelengths must increase and lie between 100 and 5000 nm.");
     previous = lambda;
   }
 }

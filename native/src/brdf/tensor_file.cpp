@@ -20,11 +20,12 @@ uint64_t type_size(uint8_t code) {
 uint32_t read_header(ByteReader& in) {
   const auto magic = in.take(sizeof kMagic, "magic number");
   if (std::memcmp(magic.data(), kMagic, sizeof kMagic) != 0)
-    throw Error(Status::bad_data, in.name() + ": is not a tensor file.");
+    throw Error(Status::bad_data, in.name() + ": is not a tensor file (RGL .bsdf).");
   const auto major = in.number<uint8_t>("version");
   in.number<uint8_t>("version");
   if (major != 1)
-    throw Error(Status::unsupported, in.name() + ": tensor file version is " + std::to_string(major) + ", not 1.");
+    throw Error(Status::unsupported,
+                in.name() + ": tensor file version is " + std::to_string(major) + "; only version 1 is supported.");
   const auto count = in.number<uint32_t>("number of fields");
   if (count > in.remaining() / kMinFieldBytes)
     throw Error(Status::bad_data, in.name() + ": number of fields is " + std::to_string(count) +
@@ -48,10 +49,10 @@ void TensorContainer::read_entry(ByteReader& in) {
   const auto rank = in.number<uint16_t>("rank of field " + field);
   const auto code = in.number<uint8_t>("type of field " + field);
   const auto offset = in.number<uint64_t>("offset of field " + field);
-  if (type_size(code) == 0) fail(field, "has type " + std::to_string(code) + ", which does not exist.");
-  if (rank > kMaxRank) fail(field, "has " + std::to_string(rank) + " dimensions, more than 16.");
+  if (type_size(code) == 0) fail(field, "has type " + std::to_string(code) + ", which is unknown.");
+  if (rank > kMaxRank) fail(field, "has " + std::to_string(rank) + " dimensions; at most 16 are supported.");
   const auto [place, is_new] = fields_.try_emplace(field);
-  if (!is_new) fail(field, "occurs twice.");
+  if (!is_new) fail(field, "occurs more than once.");
   TensorField& entry = place->second;
   entry.type = static_cast<TensorType>(code);
   uint64_t size = type_size(code);

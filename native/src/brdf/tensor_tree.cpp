@@ -22,16 +22,16 @@ class TensorTree::Reader {
   void read() {
     tree_.root_ = node(0);
     skip_separators(rest_);
-    if (!rest_.empty()) fail("goes on after the tree's last brace");
+    if (!rest_.empty()) fail("continues after the last brace of the tree");
   }
 
  private:
   int32_t node(int level) {
     if (level > kMostLevels) fail("is deeper than " + std::to_string(kMostLevels) + " levels");
-    if (!take('{')) fail("lacks a '{'");
+    if (!take('{')) fail("lacks '{'");
     skip_separators(rest_);
     const int32_t made = rest_.starts_with('{') ? branches(level) : grid(level);
-    if (!take('}')) fail("lacks a '}'");
+    if (!take('}')) fail("lacks '}'");
     return made;
   }
 
@@ -50,8 +50,8 @@ class TensorTree::Reader {
     const size_t count = tree_.values_.size() - first;
     const int bits = static_cast<int>(std::bit_width(count)) - 1;
     if (!std::has_single_bit(count) || bits % tree_.dimensions_ != 0) {
-      fail("has a cell of " + std::to_string(count) + " values, where 1, " + std::to_string(1 << tree_.dimensions_) +
-           ", " + std::to_string(1 << 2 * tree_.dimensions_) + " and so on are due");
+      fail("has a cell of " + std::to_string(count) + " values instead of 1, " +
+           std::to_string(1 << tree_.dimensions_) + ", " + std::to_string(1 << 2 * tree_.dimensions_) + ", ...");
     }
     const int own = bits / tree_.dimensions_;
     tree_.finest_level_ = std::max(tree_.finest_level_, level + own);
@@ -67,7 +67,8 @@ class TensorTree::Reader {
   }
 
   [[noreturn]] void fail(const std::string& what) const {
-    const std::string found = rest_.empty() ? " at its end" : " at '" + std::string(rest_.substr(0, 12)) + "'";
+    const std::string found =
+        rest_.empty() ? " at the end of the data" : " at '" + std::string(rest_.substr(0, 12)) + "'";
     throw Error(Status::bad_data, where_ + " " + what + found + ".");
   }
 

@@ -55,11 +55,11 @@ class KlemsMeasurement final : public Measurement {
   bool covers_view(float /*theta_v*/) const override { return true; }
 
   std::vector<std::pair<std::string, std::string>> details() const override {
-    return {{"table", std::to_string(light_.patches()) + " directions of light x " + std::to_string(view_.patches()) +
-                          " of view, in rings"},
+    return {{"table", std::to_string(light_.patches()) + " light directions x " + std::to_string(view_.patches()) +
+                          " view directions, in rings"},
             {"holds", "f without cosine, 1/sr, " + side_},
-            {"invalid", "an entry that is not finite or of negative luminance"},
-            {"interpolation", "linear between the centres of patches, in the angle from the normal and in azimuth"}};
+            {"invalid", "entries that are not finite or have negative luminance"},
+            {"interpolation", "linear between patch centers, in polar angle and azimuth"}};
   }
 
  private:
@@ -111,9 +111,10 @@ class TreeMeasurement final : public Measurement {
 
   std::vector<std::pair<std::string, std::string>> details() const override {
     return {{"table", "a tree of " + std::to_string(trees_.y.values().size()) + " cells, the smallest 1/" +
-                          std::to_string(1 << trees_.y.finest_level()) + " of the hemisphere's square wide"},
+                          std::to_string(1 << trees_.y.finest_level()) +
+                          " of the side of the square that maps to the hemisphere"},
             {"holds", "f without cosine, 1/sr, " + side_},
-            {"invalid", "a cell that is not finite or negative"},
+            {"invalid", "cells that are negative or not finite"},
             {"interpolation", "none: constant within a cell, as in Radiance"}};
   }
 
@@ -147,8 +148,8 @@ std::vector<float> matrix(const BsdfXml& in, const pugi::xml_node& block, size_t
 }
 
 std::string said(const char* side, bool in_color) {
-  return std::string(side == kSides[0] ? "of the front" : "of the back") +
-         (in_color ? ", in colour" : ", of visible light: grey");
+  return std::string(side == kSides[0] ? "front side" : "back side") +
+         (in_color ? ", color" : ", visible light only (gray)");
 }
 
 std::shared_ptr<const Measurement> read_matrix(const BsdfXml& in, const char* side, Provenance provenance) {
@@ -198,7 +199,9 @@ std::shared_ptr<const Measurement> read_window_bsdf(std::span<const uint8_t> byt
   const BsdfXml in(bytes, provenance.path);
   const char* side = in.block("Visible", kSides[0]) ? kSides[0] : kSides[1];
   if (!in.block("Visible", side))
-    in.fail("has no reflection of visible light; what lets light through alone is no BRDF.");
+    in.fail(
+        "has no reflection data for visible light; Velour does not read transmission data. Use a file with a "
+        "reflection block.");
   provenance.format = "window-bsdf";
   provenance.description = in.name();
   using enum BsdfXml::Structure;

@@ -71,8 +71,8 @@ class Export {
   void make_folder() const {
     std::error_code failure;
     fs::create_directories(path_, failure);
-    if (failure) throw Error(Status::io, path_ + ": cannot make the folder: " + failure.message() + ".");
-    if (!fs::is_empty(path_)) throw Error(Status::io, path_ + ": is not empty; give the name of a new folder.");
+    if (failure) throw Error(Status::io, path_ + ": cannot create the folder: " + failure.message() + ".");
+    if (!fs::is_empty(path_)) throw Error(Status::io, path_ + ": the folder is not empty; choose a new folder.");
   }
 
   std::string file_name(uint64_t pair) const {
@@ -126,7 +126,7 @@ class Export {
 
 BtfExportReport export_btf(const BtfMeasurement& btf, const std::string& path, Progress& progress) {
   const auto start = std::chrono::steady_clock::now();
-  progress.stage("writing pictures", 0, 1);
+  progress.stage("writing images", 0, 1);
   BtfExportReport report = Export(btf, path).write(progress);
   progress.update(1);
   report.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();

@@ -64,9 +64,9 @@ class BtfFolder : public BtfMeasurement {
 
   BtfFolder(const std::string& path, DecodedBtfIndex decoded) : path_(path), index_(std::move(decoded.index)) {
     if (!decoded.content) {
-      throw Error(Status::bad_data, path +
-                                        ": the BTF is not complete: its capture was stopped. Resume it with the "
-                                        "same command and '--resume'.");
+      throw Error(
+          Status::bad_data,
+          path + ": the BTF is incomplete: its capture was stopped. Run the same capture command with '--resume'.");
     }
     content_ = std::move(*decoded.content);
     layout_ = index_.layout;

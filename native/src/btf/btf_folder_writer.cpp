@@ -31,19 +31,21 @@ void write_index(const std::string& folder, const BtfIndex& index, const std::op
 void make_folder(const std::string& path) {
   std::error_code failure;
   fs::create_directories(path, failure);
-  if (failure) throw Error(Status::io, path + ": cannot make the folder: " + failure.message() + ".");
+  if (failure) throw Error(Status::io, path + ": cannot create the folder: " + failure.message() + ".");
   if (fs::is_empty(path, failure) && !failure) return;
-  throw Error(Status::io, path + ": holds files that are no BTF; give the name of a new folder.");
+  throw Error(Status::io, path + ": the folder contains files that do not belong to a BTF; choose a new folder.");
 }
 
 void check_same(const std::string& path, const BtfIndex& index, bool resume) {
   const auto field = difference(read_index(path).index, index);
   if (field) {
-    throw Error(Status::io,
-                path + ": holds another BTF, whose '" + *field + "' differs; give another folder, or remove this one.");
+    throw Error(Status::io, path + ": the folder contains another BTF, with different '" + *field +
+                                "'; choose another folder, or delete this one.");
   }
   if (!resume) {
-    throw Error(Status::io, path + ": holds this BTF or a part of it; resume it, or give another folder.");
+    throw Error(
+        Status::io,
+        path + ": the folder already contains this BTF or a part of it; resume the capture, or choose another folder.");
   }
 }
 
@@ -99,11 +101,11 @@ bool BtfFolderWriter::has(uint32_t view) const {
 }
 
 void BtfFolderWriter::write(uint32_t view, const BtfView& content, const Progress& progress) const {
-  if (view >= index_.layout.views().size()) throw Error(Status::invalid_argument, "The BTF has no such view.");
+  if (view >= index_.layout.views().size())
+    throw Error(Status::invalid_argument, "The BTF has no view " + std::to_string(view) + ".");
   if (index_.structure != (content.structure != nullptr) || (!index_.errors && !content.errors.empty())) {
-    throw Error(Status::invalid_argument, path_ +
-                                              ": a view comes with errors and structure exactly where the index "
-                                              "says so.");
+    throw Error(Status::invalid_argument,
+                path_ + ": a view must have errors and structure exactly if the index of the BTF says so.");
   }
   const std::vector<ImageStack> stacks = view_stacks(index_, view);
   if (stacks.empty()) return;
@@ -120,7 +122,7 @@ void BtfFolderWriter::finish(const Progress& progress) const {
   for (uint32_t v = 0; v < views; ++v) {
     if (!has(v)) {
       throw Error(Status::invalid_state,
-                  path_ + ": view " + std::to_string(v) + " is missing or damaged; write it first.");
+                  path_ + ": view " + std::to_string(v) + " is missing or damaged; write it before the index.");
     }
   }
   BtfContent content;

@@ -43,17 +43,17 @@ void check(const BtfIndex& index) {
   const TexelGrid& grid = index.grid;
   const auto refuse = [](const char* sentence) { throw Error(Status::invalid_argument, sentence); };
   if (grid.width == 0 || grid.height == 0 || grid.width > kMaxTexelsAlong || grid.height > kMaxTexelsAlong) {
-    refuse("A BTF has 1 to 16384 texels along a side.");
+    refuse("A BTF must have 1 to 16384 texels along each side.");
   }
   if (index.layout.views().size() > kMaxDirections || index.layout.lights().size() > kMaxDirections) {
-    refuse("A BTF has at most 4096 views and 4096 lights.");
+    refuse("A BTF can have at most 4096 views and 4096 lights.");
   }
   if (grid.tile_metres && !(is_positive(grid.tile_metres->x) && is_positive(grid.tile_metres->y))) {
-    refuse("The size of a BTF's tile must be two positive numbers of metres.");
+    refuse("The tile size of a BTF must be two positive numbers, in meters.");
   }
   if (index.shell && !(index.shell->thickness >= 0 && std::isfinite(index.shell->thickness) &&
                        std::isfinite(index.shell->reference_height))) {
-    refuse("The shell of a BTF must be of finite numbers, its thickness at least 0.");
+    refuse("The shell of a BTF must have a finite reference height and a finite thickness of at least 0.");
   }
 }
 
@@ -88,13 +88,14 @@ Json content_json(const BtfContent& content) {
 
 const Json& list_at(const JsonFields& fields, const char* key, size_t most) {
   const Json& list = fields.at(key);
-  if (!list.is_array() || list.size() > most) fields.fail(key, "a list of at most " + std::to_string(most));
+  if (!list.is_array() || list.size() > most)
+    fields.fail(key, "a list of at most " + std::to_string(most) + " entries");
   return list;
 }
 
 std::array<double, 2> two(const JsonFields& fields, const char* key, const Json& json) {
   if (!json.is_array() || json.size() != 2 || !json[0].is_number() || !json[1].is_number()) {
-    fields.fail(key, "two numbers each");
+    fields.fail(key, "a pair of numbers");
   }
   return {json[0].get<double>(), json[1].get<double>()};
 }
@@ -111,11 +112,12 @@ std::vector<PolarAngles> read_directions(const JsonFields& fields, const char* k
 std::vector<std::vector<uint32_t>> read_pairs(const JsonFields& fields) {
   std::vector<std::vector<uint32_t>> pairs;
   for (const Json& entry : list_at(fields, "pairs", kMaxDirections)) {
-    if (!entry.is_array() || entry.size() > kMaxDirections) fields.fail("pairs", "a list of lights for each view");
+    if (!entry.is_array() || entry.size() > kMaxDirections)
+      fields.fail("pairs", "a list of light indices for each view");
     std::vector<uint32_t>& lights = pairs.emplace_back();
     for (const Json& light : entry) {
       const bool number = light.is_number_unsigned() && light.get<uint64_t>() < kMaxDirections;
-      if (!number) fields.fail("pairs", "numbers of lights");
+      if (!number) fields.fail("pairs", "light indices below 4096");
       lights.push_back(light.get<uint32_t>());
     }
   }
@@ -163,16 +165,16 @@ BtfContent read_content(const JsonFields& fields, size_t views, const JsonSource
 Json parsed(std::span<const uint8_t> bytes, const std::string& name) {
   Json json = parse_json(bytes);
   if (is_of_format(json, kFormat)) return json;
-  throw Error(Status::bad_data, name + ": is not the index of a BTF, which is JSON of the format '" + kFormat +
-                                    "'; it may be cut short. Capture the BTF anew, or copy the whole folder again.");
+  throw Error(Status::bad_data, name + ": is not the index of a BTF (JSON with format '" + kFormat +
+                                    "'); it may be truncated. Copy the whole folder again, or capture the BTF again.");
 }
 
 void check_version(const JsonFields& fields, const std::string& name) {
   const uint64_t version = fields.whole("version", std::numeric_limits<uint64_t>::max());
   if (version == kVersion) return;
-  throw Error(Status::version_mismatch, name + ": is a BTF of format version " + std::to_string(version) +
-                                            ", this library reads version " + std::to_string(kVersion) +
-                                            "; use a newer Velour.");
+  throw Error(Status::version_mismatch, name + ": the BTF has format version " + std::to_string(version) +
+                                            "; this Velour reads version " + std::to_string(kVersion) +
+                                            ". Use a newer Velour.");
 }
 
 BtfIndex read_index(const JsonFields& fields) {
@@ -196,7 +198,7 @@ std::string encode_btf_index(const BtfIndex& index, const std::optional<BtfConte
 
 DecodedBtfIndex decode_btf_index(std::span<const uint8_t> bytes, const std::string& name) {
   const Json json = parsed(bytes, name);
-  const JsonSource source{name, "the file is damaged; capture the BTF anew, or copy the whole folder again."};
+  const JsonSource source{name, "the file is damaged. Copy the whole folder again, or capture the BTF again."};
   const JsonFields fields(json, source);
   check_version(fields, name);
   try {

@@ -9,8 +9,8 @@ namespace velour {
 void BtfMeasurement::check_range(uint64_t first, uint64_t count) const {
   if (first <= layout().pairs() && count <= layout().pairs() - first) return;
   throw Error(Status::invalid_argument, provenance_.path + ": has " + std::to_string(layout().pairs()) +
-                                            " pairs of directions; " + std::to_string(count) + " from number " +
-                                            std::to_string(first) + " on are not among them.");
+                                            " view-light pairs; " + std::to_string(count) + " pairs from index " +
+                                            std::to_string(first) + " are out of range.");
 }
 
 std::optional<std::vector<float>> BtfMeasurement::read_coverage(uint32_t view) const {

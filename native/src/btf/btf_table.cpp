@@ -21,10 +21,9 @@ std::string gigabytes(uint64_t bytes) {
 void require_room(const BtfMeasurement& btf, uint64_t most_bytes) {
   const uint64_t bytes = btf.layout().pairs() * pyramid_texels(btf.grid()) * 3 * sizeof(HalfBits);
   if (bytes <= most_bytes) return;
-  throw Error(Status::unsupported, btf.provenance().path + ": takes " + gigabytes(bytes) +
-                                       " of memory uncompressed, with mip levels; the limit is " +
-                                       gigabytes(most_bytes) +
-                                       ". Raise it, compress the BTF, or capture fewer texels or directions.");
+  throw Error(Status::unsupported, btf.provenance().path + ": the uncompressed BTF with its mip levels takes " +
+                                       gigabytes(bytes) + " of memory; the limit is " + gigabytes(most_bytes) +
+                                       ". Raise the limit, compress the BTF, or capture fewer texels or directions.");
 }
 
 void size_levels(const BtfMeasurement& btf, BtfTable& table) {

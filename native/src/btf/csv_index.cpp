@@ -77,25 +77,25 @@ class CsvIndex {
     for (const char* name : kNeeded) {
       if (column(name) == columns_.size()) {
         fail(std::string("the first line has no column '") + name +
-             "'; it must name file, theta_l, phi_l, theta_v and phi_v, separated by commas");
+             "'; it must contain file, theta_l, phi_l, theta_v and phi_v, separated by commas");
       }
     }
     numbered_ = column("view") < columns_.size();
-    if (numbered_ != (column("light") < columns_.size())) fail("the columns 'view' and 'light' must be there together");
+    if (numbered_ != (column("light") < columns_.size())) fail("the columns 'view' and 'light' must be given together");
   }
 
   std::vector<PairPicture> pictures() {
     std::vector<PairPicture> pictures;
     std::set<std::tuple<double, double, double, double>> pairs;
     for (std::string line; lines_.next(line);) {
-      if (pictures.size() == kMostRows) fail("there are more than 4096 x 4096 pictures");
+      if (pictures.size() == kMostRows) fail("there are more than 4096 x 4096 images");
       PairPicture p = picture(split(line), pictures.size());
       if (!pairs.emplace(p.view.theta, p.view.phi, p.light.theta, p.light.phi).second) {
-        fail("these angles stand on an earlier line already; keep one of the two");
+        fail("an earlier line has the same angles; remove one of the two");
       }
       pictures.push_back(std::move(p));
     }
-    if (pictures.empty()) fail("there are no pictures");
+    if (pictures.empty()) fail("the file lists no images");
     return pictures;
   }
 
@@ -106,8 +106,8 @@ class CsvIndex {
 
   PairPicture picture(const Fields& fields, size_t row) const {
     if (fields.size() != columns_.size()) {
-      fail("there are " + std::to_string(fields.size()) + " fields where the first line names " +
-           std::to_string(columns_.size()));
+      fail("the line has " + std::to_string(fields.size()) + " fields, but the first line names " +
+           std::to_string(columns_.size()) + " columns");
     }
     const std::string& file = fields[column("file")];
     if (file.empty()) fail("'file' is empty");
@@ -128,9 +128,10 @@ class CsvIndex {
     double value = 0;
     const auto [end, failure] = std::from_chars(text.data(), text.data() + text.size(), value);
     const bool whole = failure == std::errc() && end == text.data() + text.size();
-    if (!whole || !(value >= -1e6 && value <= 1e6)) fail(std::string("'") + name + "' is '" + text + "', not a number");
+    if (!whole || !(value >= -1e6 && value <= 1e6))
+      fail(std::string("'") + name + "' is '" + text + "'; it must be a number");
     const bool signs = std::string_view(name).starts_with("phi");
-    if (value < 0 && !signs) fail(std::string("'") + name + "' is negative");
+    if (value < 0 && !signs) fail(std::string("'") + name + "' is negative; it must be at least 0");
     return value;
   }
 
@@ -164,9 +165,9 @@ std::string text_of(const std::vector<uint8_t>& bytes) { return {bytes.begin(), 
 std::vector<PairPicture> read_csv_index(const std::string& path, BtfAngles angles) {
   std::vector<PairPicture> pictures = CsvIndex(path, text_of(read_file(path, kMostBytes))).pictures();
   if (angles == BtfAngles::automatic && look_like_radians(pictures)) {
-    throw Error(Status::bad_data, path +
-                                      ": all angles are below 6.3, as radians are; say which they are: --angles "
-                                      "degrees or --angles radians.");
+    throw Error(
+        Status::bad_data,
+        path + ": all angles are below 6.3, so they may be in radians. Give --angles degrees or --angles radians.");
   }
   if (angles == BtfAngles::radians) {
     for (PairPicture& p : pictures)

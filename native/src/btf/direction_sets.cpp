@@ -20,8 +20,9 @@ std::vector<PolarAngles> named_directions(const std::string& name) {
   const auto [end, problem] = std::from_chars(name.data(), name.data() + name.size(), count);
   const bool whole = problem == std::errc() && end == name.data() + name.size();
   if (!whole || count < 1 || count > static_cast<int>(kMaxDirections)) {
-    throw Error(Status::invalid_argument, "There is no set of directions " + name + ": use 81, 105, or a number from " +
-                                              "1 to " + std::to_string(kMaxDirections) + ".");
+    throw Error(Status::invalid_argument, "Unknown direction set '" + name +
+                                              "'; use 81, 105, or a number of directions from 1 to " +
+                                              std::to_string(kMaxDirections) + ".");
   }
   std::vector<PolarAngles> set = even_directions(count);
   for (PolarAngles& d : set) d.theta = std::min(d.theta, kMaxTheta);

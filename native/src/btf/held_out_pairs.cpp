@@ -25,8 +25,8 @@ PolarAngles drawn_direction(RandomStream& random, bool two_sided) {
 
 PairLayout held_out_pairs(uint32_t count, bool two_sided) {
   if (count < 1 || count > kMaxDirections) {
-    throw Error(Status::invalid_argument, "There are no " + std::to_string(count) + " held-out pairs; ask for 1 to " +
-                                              std::to_string(kMaxDirections) + ".");
+    throw Error(Status::invalid_argument, "The number of held-out pairs is " + std::to_string(count) +
+                                              "; it must be 1 to " + std::to_string(kMaxDirections) + ".");
   }
   std::vector<PolarAngles> views, lights;
   std::vector<std::vector<uint32_t>> light_of_view;

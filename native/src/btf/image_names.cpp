@@ -90,17 +90,19 @@ std::vector<NamedPicture> list_pictures(const std::string& folder) {
     if (path.filename().string().starts_with('.') || !is_picture_name(path) || !at->is_regular_file()) continue;
     const auto angles = angles_of_name(path.stem().string());
     if (!angles) {
-      throw Error(Status::bad_data, path.string() + ": its name does not give the angles as in '00081 tl015 pl000 " +
-                                        "tv000 pv000.jpg'; rename it, or take it out of the folder.");
+      throw Error(Status::bad_data, path.string() +
+                                        ": the file name does not contain the angles, as in '00081 tl015 pl000 tv000 "
+                                        "pv000.jpg'. Rename the file, or remove it from the folder.");
     }
     if (pictures.size() == kMaxPictures)
-      throw Error(Status::bad_data, folder + ": holds more than 4096 x 4096 pictures.");
+      throw Error(Status::bad_data, folder + ": the folder contains more than 4096 x 4096 images.");
     pictures.push_back({path.string(), *angles});
   }
   if (failure) throw Error(Status::io, folder + ": cannot be read: " + failure.message() + ".");
   if (pictures.empty()) {
-    throw Error(Status::bad_data, folder + ": holds no pictures that are named for their angles, as in '00081 tl015 " +
-                                      "pl000 tv000 pv000.jpg', and no index of others, btf.csv.");
+    throw Error(Status::bad_data, folder +
+                                      ": the folder contains neither images named by their angles, as in '00081 tl015 "
+                                      "pl000 tv000 pv000.jpg', nor an index of images, btf.csv.");
   }
   return pictures;
 }
@@ -113,7 +115,7 @@ void refuse_twins(const std::vector<NamedPicture>& sorted) {
   const auto twin = std::ranges::adjacent_find(sorted, same);
   if (twin == sorted.end()) return;
   throw Error(Status::bad_data, twin->path + ": has the same angles as " + std::next(twin)->path +
-                                    "; take one of the two out of the folder.");
+                                    "; remove one of the two from the folder.");
 }
 
 void refuse_gaps(const std::string& folder, const std::vector<NamedPicture>& sorted) {
@@ -132,8 +134,8 @@ void refuse_gaps(const std::string& folder, const std::vector<NamedPicture>& sor
       const NamedAngles gap{{std::get<0>(light), std::get<1>(light)}, {std::get<0>(view), std::get<1>(view)}, {}};
       throw Error(Status::bad_data, folder + ": " + std::to_string(missing) + " of " +
                                         std::to_string(views.size() * lights.size()) +
-                                        " pictures are missing, first '" + name_of_angles(gap) +
-                                        "'; copy the set again, or list what is there in a CSV " + "index.");
+                                        " images are missing, the first is '" + name_of_angles(gap) +
+                                        "'. Copy the set again, or list the existing images in a CSV index, btf.csv.");
     }
   }
 }

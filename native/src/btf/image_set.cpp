@@ -109,8 +109,8 @@ std::string pictures_elsewhere(const ImageSetSource& source) {
   const auto first = std::ranges::find_if(source.pictures, outside);
   if (first == source.pictures.end()) return {};
   return source.path + ": " + std::to_string(std::ranges::count_if(source.pictures, outside)) + " of " +
-         std::to_string(source.pictures.size()) + " pictures lie outside the folder of the index, the first " +
-         first->path + "; make sure that they are meant.";
+         std::to_string(source.pictures.size()) + " images are outside the folder of the index, the first is " +
+         first->path + ". Check that these are the intended files.";
 }
 
 class ImageSet : public BtfMeasurement {
@@ -140,7 +140,8 @@ class ImageSet : public BtfMeasurement {
     const Picture picture = read_picture(paths_[first], picture_options());
     check_size(picture, first);
     if (!has_alpha(picture)) {
-      throw Error(Status::bad_data, paths_[first] + ": has no alpha, which " + paths_[0] + " has.");
+      throw Error(Status::bad_data, paths_[first] + ": has no alpha channel, but " + paths_[0] +
+                                        " has one. Save all images of the set in the same way.");
     }
     const auto channels = static_cast<size_t>(picture.channels);
     std::vector<float> coverage;
@@ -154,7 +155,7 @@ class ImageSet : public BtfMeasurement {
   std::vector<std::pair<std::string, std::string>> details() const override {
     std::vector<std::pair<std::string, std::string>> details = {
         {"values", scale_.text()},
-        {"curve", curve_text(options_.curve) + " for pictures of whole numbers, none for floats"},
+        {"curve", curve_text(options_.curve) + " for integer images, none for float images"},
         {"colors", colors_text()},
         {"first_picture", paths_[0]}};
     if (!elsewhere_.empty()) details.emplace_back("warning", elsewhere_);
@@ -173,7 +174,7 @@ class ImageSet : public BtfMeasurement {
   }
 
   std::string colors_text() const {
-    return options_.colors == BtfColors::xyz ? "CIE XYZ, made linear Rec. 709" : "linear Rec. 709";
+    return options_.colors == BtfColors::xyz ? "CIE XYZ, converted to linear Rec. 709" : "linear Rec. 709";
   }
 
   static bool has_alpha(const Picture& picture) { return picture.channels == 2 || picture.channels == 4; }
@@ -181,7 +182,8 @@ class ImageSet : public BtfMeasurement {
   void check_sizes() {
     const Picture first = read_picture_header(paths_[0], picture_options());
     if (first.width > static_cast<int>(kMaxTexelsAlong) || first.height > static_cast<int>(kMaxTexelsAlong)) {
-      throw Error(Status::bad_data, paths_[0] + ": has more than 16384 pixels along a side.");
+      throw Error(Status::bad_data,
+                  paths_[0] + ": has more than 16384 pixels along a side. Crop or scale the images of the set.");
     }
     grid_ = {static_cast<uint32_t>(first.width), static_cast<uint32_t>(first.height)};
     tbb::parallel_for(size_t{1}, paths_.size(),
@@ -192,9 +194,9 @@ class ImageSet : public BtfMeasurement {
     if (static_cast<uint32_t>(picture.width) == grid_.width && static_cast<uint32_t>(picture.height) == grid_.height)
       return;
     throw Error(Status::bad_data, paths_[pair] + ": has " + std::to_string(picture.width) + " x " +
-                                      std::to_string(picture.height) + " pixels where " + paths_[0] + " has " +
+                                      std::to_string(picture.height) + " pixels, but " + paths_[0] + " has " +
                                       std::to_string(grid_.width) + " x " + std::to_string(grid_.height) +
-                                      "; bring all pictures of the set to one size.");
+                                      ". All images of the set must have the same size.");
   }
 
   /// The hash covers all names, sizes and angles; hashing the images themselves would take too long.
@@ -212,7 +214,7 @@ class ImageSet : public BtfMeasurement {
     provenance_ = {source.path,
                    folder.stem().string(),
                    source.format,
-                   std::to_string(paths_.size()) + " pictures",
+                   std::to_string(paths_.size()) + " images",
                    sha256_hex({reinterpret_cast<const uint8_t*>(text.data()), text.size()}),
                    bytes};
   }

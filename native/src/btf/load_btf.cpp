@@ -30,10 +30,10 @@ bool is_file(const fs::path& path) {
 void check(const BtfLoadOptions& options) {
   const auto refuse = [](const char* sentence) { throw Error(Status::invalid_argument, sentence); };
   if (options.curve.gamma && !(*options.curve.gamma >= 0.1f && *options.curve.gamma <= 10.0f)) {
-    refuse("The gamma of a BTF's pictures must be from 0.1 to 10.");
+    refuse("The gamma of the images of a BTF must be between 0.1 and 10.");
   }
   if (options.tile_metres && !is_tile_size(*options.tile_metres)) {
-    refuse("The size of a BTF's tile must be two positive numbers of metres.");
+    refuse("The tile size of a BTF must be two positive numbers, in meters.");
   }
 }
 
@@ -64,9 +64,10 @@ std::shared_ptr<const BtfMeasurement> load_btf(const std::string& path, const Bt
   if (fs::path(path).filename() == "btf.json") return load_folder(fs::absolute(path).parent_path(), options);
   if (is_ubo_file(path)) return load_ubo_file(path, options);
   if (is_csv(path)) return load_csv(path, options);
-  if (is_archive(path)) throw Error(Status::unsupported, path + ": is an archive; unpack it and give its folder.");
-  throw Error(Status::bad_data, path + ": is no BTF: neither a .btf file of Bonn, nor a CSV index of pictures, nor a " +
-                                    "folder; see docs/reference/btf_formats.md for what is read.");
+  if (is_archive(path)) throw Error(Status::unsupported, path + ": is an archive; unpack it and give the folder.");
+  throw Error(Status::bad_data, path +
+                                    ": is not a BTF in a supported format; use a .btf file of the University of Bonn, "
+                                    "a CSV index of images, or a folder (docs/reference/btf_formats.md).");
 }
 
 bool is_btf(const std::string& path) {

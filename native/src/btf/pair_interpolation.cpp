@@ -31,7 +31,7 @@ PairInterpolation::PairInterpolation(const PairLayout& layout) : views_(layout.v
   if (layout.complete()) return;
   throw Error(Status::unsupported, "The BTF has " + std::to_string(layout.pairs()) + " of " +
                                        std::to_string(layout.views().size() * layout.lights().size()) +
-                                       " pairs of its views and lights; it must have all of them to be interpolated.");
+                                       " view-light pairs; interpolation requires all of them.");
 }
 
 }  // namespace velour

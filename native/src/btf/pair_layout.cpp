@@ -21,8 +21,8 @@ void check_directions(const std::vector<PolarAngles>& set, const std::string& wh
   for (const PolarAngles& d : set) {
     const bool inside = std::isfinite(d.phi) && d.theta >= 0 && d.theta <= 180;  // false for NaN
     if (!inside || std::abs(d.theta - 90.0) < kLeastElevation) {
-      refuse("The " + what + " direction " + text_of(d) + " degrees is not one: theta must be 0 to 180 and at least " +
-             "0.1 degrees away from 90.");
+      refuse("The " + what + " direction " + text_of(d) +
+             " degrees is invalid: theta must be between 0 and 180 degrees and differ from 90 by at least 0.1.");
     }
   }
   std::vector<PolarAngles> sorted = set;
@@ -31,7 +31,8 @@ void check_directions(const std::vector<PolarAngles>& set, const std::string& wh
   };
   std::sort(sorted.begin(), sorted.end(), order);
   const auto twin = std::adjacent_find(sorted.begin(), sorted.end());
-  if (twin != sorted.end()) refuse("The " + what + " direction " + text_of(*twin) + " degrees is there twice.");
+  if (twin != sorted.end())
+    refuse("The " + what + " direction " + text_of(*twin) + " degrees occurs more than once; remove one.");
 }
 
 std::vector<std::vector<uint32_t>> all_lights(size_t views, size_t lights) {
@@ -59,12 +60,13 @@ PairLayout::PairLayout(std::vector<PolarAngles> views, std::vector<PolarAngles> 
 
 void PairLayout::check() const {
   const auto refuse = [](const char* sentence) { throw Error(Status::invalid_argument, sentence); };
-  if (first_.size() != views_.size() + 1) refuse("A BTF's lists of lights must be as many as its views.");
-  if (pairs() == 0) refuse("A BTF needs at least one pair of directions.");
+  if (first_.size() != views_.size() + 1) refuse("A BTF must have one list of lights per view.");
+  if (pairs() == 0) refuse("A BTF must have at least one view-light pair.");
   for (size_t v = 0; v < views_.size(); ++v) {
     for (uint64_t p = first(v); p < first(v + 1); ++p) {
-      if (light_of_pair_[p] >= lights_.size()) refuse("A view of a BTF names a light that is not there.");
-      if (p > first(v) && light_of_pair_[p] <= light_of_pair_[p - 1]) refuse("A view's lights must rise.");
+      if (light_of_pair_[p] >= lights_.size()) refuse("A view of a BTF has a light index that does not exist.");
+      if (p > first(v) && light_of_pair_[p] <= light_of_pair_[p - 1])
+        refuse("The light indices of each view of a BTF must increase.");
     }
   }
 }

@@ -106,7 +106,7 @@ class UboFile : public BtfMeasurement {
     return {{"values", scale_.text()},
             {"components", components},
             {"channels", name_of(header_.colors)},
-            {"compression_error", "not known: the file does not say"},
+            {"compression_error", "unknown: not stored in the file"},
             {"sensor", header_.sensor},
             {"light_source", header_.light_source}};
   }

@@ -25,7 +25,7 @@ class Cursor {
   void skip(uint64_t bytes, const std::string& field) {
     if (bytes > file_.size() - position_) {
       fail(field + " needs " + std::to_string(bytes) + " bytes at byte " + std::to_string(position_) +
-           ", but the file holds " + std::to_string(file_.size()) + "; it is truncated or damaged");
+           ", but the file holds " + std::to_string(file_.size()) + "; it is truncated or damaged. Download it again");
     }
     position_ += bytes;
   }
@@ -61,8 +61,8 @@ class Cursor {
 void check_signature(Cursor& in, const std::string& path) {
   const std::string signature = in.text(kSignature.size(), "the signature");
   if (signature == kSignature) return;
-  throw Error(Status::unsupported, path + ": is a BTF of Bonn in the form '" + signature + "'; only '" +
-                                       std::string(kSignature) + "' of UBO2014 is read.");
+  throw Error(Status::unsupported, path + ": is a BTF file of the University of Bonn with signature '" + signature +
+                                       "'; only '" + std::string(kSignature) + "' (UBO2014) is supported.");
 }
 
 void read_meta(Cursor& in, UboHeader& header) {
@@ -72,18 +72,18 @@ void read_meta(Cursor& in, UboHeader& header) {
   header.setup = in.text(80, "the measurement setup");
   header.sensor = in.text(80, "the image sensor");
   header.light_source = in.text(80, "the light source");
-  header.pixels_per_mm = in.number<float>("the pixels per millimetre");
-  in.skip(12, "the scale of the colours");
-  if (header.version > 1) header.cosine = in.number<uint32_t>("the flag of the cosine") != 0;
+  header.pixels_per_mm = in.number<float>("the number of pixels per millimeter");
+  in.skip(12, "the color scale");
+  if (header.version > 1) header.cosine = in.number<uint32_t>("the cosine flag") != 0;
   if (header.version > 2) in.skip(in.number<uint32_t>("the size of the XML"), "the XML");
   const auto channels = header.version > 3 ? in.number<uint32_t>("the number of channels") : 3;
-  if (channels != 3) in.fail("has " + std::to_string(channels) + " channels; only red, green and blue are read");
+  if (channels != 3) in.fail("has " + std::to_string(channels) + " channels; only red, green and blue are supported");
   for (uint32_t c = 0; header.version > 3 && c < channels; ++c) {
-    in.skip(in.number<uint32_t>("the size of a channel's name"), "a channel's name");
+    in.skip(in.number<uint32_t>("the length of a channel name"), "a channel name");
   }
   if (in.position() != begin + size) {
-    in.fail("the description is of " + std::to_string(in.position() - begin) + " bytes and not of " +
-            std::to_string(size) + ", as it says; the file is damaged or of another version");
+    in.fail("the description has " + std::to_string(in.position() - begin) + " bytes instead of " +
+            std::to_string(size) + "; the file is damaged or has another version");
   }
 }
 
@@ -100,11 +100,12 @@ struct Sampling {
 Sampling read_sampling(Cursor& in) {
   Sampling sampling;
   const auto views = in.number<uint32_t>("the number of views");
-  if (views == 0 || views > kMaxDirections) in.fail("has " + std::to_string(views) + " views, not 1 to 4096");
+  if (views == 0 || views > kMaxDirections) in.fail("has " + std::to_string(views) + " views; it must have 1 to 4096");
   for (uint32_t v = 0; v < views; ++v) {
     const std::vector<float> view = in.numbers<float>(2, "a view");
     const auto count = in.number<uint32_t>("the number of lights");
-    if (count > kMaxDirections) in.fail("has " + std::to_string(count) + " lights, more than 4096");
+    if (count > kMaxDirections)
+      in.fail("has " + std::to_string(count) + " lights for a view; at most 4096 are supported");
     const std::vector<float> lights = in.numbers<float>(2 * uint64_t{count}, "lights");
     sampling.views.push_back(degrees_of(view[0], view[1]));
     sampling.lights.emplace_back();
@@ -126,7 +127,7 @@ void lay_out(Cursor& in, const Sampling& sampling, UboHeader& header) {
       if (is_new) lights.push_back(of_view[i]);
       row_of_light.emplace(at->second, first_row + i);
     }
-    if (row_of_light.size() != of_view.size()) in.fail("has a light twice for one view; the file is damaged");
+    if (row_of_light.size() != of_view.size()) in.fail("a view has the same light more than once; the file is damaged");
     lights_of_view.emplace_back();
     for (const auto& [light, row] : row_of_light) {
       lights_of_view.back().push_back(light);
@@ -146,8 +147,8 @@ void read_size(Cursor& in, UboHeader& header) {
   header.height = in.number<uint32_t>("the height");
   const auto is_size = [](uint32_t n) { return n > 0 && n <= kMaxTexelsAlong; };
   if (!is_size(header.width) || !is_size(header.height)) {
-    in.fail("is of " + std::to_string(header.width) + " x " + std::to_string(header.height) +
-            " texels, not of 1 to 16384 along a side");
+    in.fail("has " + std::to_string(header.width) + " x " + std::to_string(header.height) +
+            " texels; it must have 1 to 16384 along each side");
   }
   const auto rotations = in.number<uint32_t>("the number of rotations");
   in.skip(uint64_t{rotations} * 9 * sizeof(float), "the rotations");
@@ -155,14 +156,14 @@ void read_size(Cursor& in, UboHeader& header) {
 
 UboColors read_colors(Cursor& in, const std::string& path) {
   in.skip(4, "the number of components");  // the maximum over the channels
-  const auto model = in.number<int32_t>("the colour model");
-  in.skip(12 * sizeof(float), "the colour's mean and matrix");
+  const auto model = in.number<int32_t>("the color model");
+  in.skip(12 * sizeof(float), "the mean and matrix of the color model");
   for (const UboColors known :
        {UboColors::rgb, UboColors::yuv, UboColors::log_y_uv, UboColors::log_y_ratios, UboColors::log_rgb}) {
     if (model == static_cast<int32_t>(known)) return known;
   }
-  throw Error(Status::unsupported, path + ": its colour model is number " + std::to_string(model) +
-                                       "; numbers 0, 1, 9, 11 and 12 are read.");
+  throw Error(Status::unsupported,
+              path + ": has color model " + std::to_string(model) + "; only 0, 1, 9, 11 and 12 are supported.");
 }
 
 UboMatrix read_matrix(Cursor& in, uint64_t rows, const UboChannel& channel, const std::string& field) {
@@ -173,20 +174,20 @@ UboMatrix read_matrix(Cursor& in, uint64_t rows, const UboChannel& channel, cons
 
 UboChannel read_channel(Cursor& in, uint64_t pairs, uint64_t texels) {
   UboChannel channel;
-  channel.scalar_bytes = in.number<uint8_t>("the size of a number");
+  channel.scalar_bytes = in.number<uint8_t>("the number of bytes per value");
   channel.components = in.number<uint32_t>("the number of components");
   const uint64_t left = in.number<uint32_t>("the number of rows");
   const uint64_t right = in.number<uint32_t>("the number of columns");
   if (channel.scalar_bytes != 2 && channel.scalar_bytes != 4 && channel.scalar_bytes != 8) {
-    in.fail("has numbers of " + std::to_string(channel.scalar_bytes) + " bytes, not of 2, 4 or 8");
+    in.fail("has values of " + std::to_string(channel.scalar_bytes) + " bytes; it must be 2, 4 or 8");
   }
   if (channel.components == 0 || channel.components > kMostComponents) {
-    in.fail("has " + std::to_string(channel.components) + " components, not 1 to 4096");
+    in.fail("has " + std::to_string(channel.components) + " components; it must have 1 to 4096");
   }
   const bool pairs_first = left == pairs && right == texels;
   if (!pairs_first && !(left == texels && right == pairs)) {
-    in.fail("has factors of " + std::to_string(left) + " and " + std::to_string(right) + " rows where there are " +
-            std::to_string(pairs) + " pairs of directions and " + std::to_string(texels) + " texels");
+    in.fail("has factors of " + std::to_string(left) + " and " + std::to_string(right) + " rows, but there are " +
+            std::to_string(pairs) + " view-light pairs and " + std::to_string(texels) + " texels");
   }
   in.skip(channel.components * channel.scalar_bytes, "the singular values");
   UboMatrix& first = pairs_first ? channel.pairs : channel.texels;

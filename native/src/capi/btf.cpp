@@ -12,8 +12,8 @@ namespace {
 
 void require_enum(const char* field, int32_t value, int32_t last) {
   if (value >= 0 && value <= last) return;
-  throw Error(Status::invalid_argument,
-              std::string("vlr_btf_options.") + field + " is " + std::to_string(value) + ", not one of its values.");
+  throw Error(Status::invalid_argument, std::string("vlr_btf_options.") + field + " is " + std::to_string(value) +
+                                            ", which is not a valid value.");
 }
 
 BtfLoadOptions converted(const vlr_btf_options& given) {
@@ -34,7 +34,7 @@ BtfLoadOptions converted(const vlr_btf_options& given) {
 void require_count(const char* what, uint64_t given, uint64_t needed) {
   if (given == needed) return;
   throw Error(Status::invalid_argument, std::string("The array for ") + what + " has " + std::to_string(given) +
-                                            " numbers where " + std::to_string(needed) + " are needed.");
+                                            " numbers; it must have " + std::to_string(needed) + ".");
 }
 
 }  // namespace
@@ -84,7 +84,8 @@ vlr_status vlr_btf_read(const vlr_btf* btf, uint64_t first, uint64_t pairs, uint
     require(btf, "btf");
     require(halves, "halves");
     const auto source = kept(btf->btf);
-    if (pairs > source->layout().pairs()) throw Error(Status::invalid_argument, "There are not so many pairs.");
+    if (pairs > source->layout().pairs())
+      throw Error(Status::invalid_argument, "pairs is " + std::to_string(pairs) + ", more than the pairs of the BTF.");
     require_count("halves", count, pairs * source->grid().texels() * 3);
     source->read_pairs(first, pairs, {halves, static_cast<size_t>(count)});
   });

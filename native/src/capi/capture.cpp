@@ -29,7 +29,8 @@ void initialize(vlr_capture_options* options) {
 std::vector<PolarAngles> directions_from(const double* angles, uint64_t count, const char* what) {
   if (count > kMaxDirections) {
     throw Error(Status::invalid_argument, "A capture cannot have " + std::to_string(count) + " " + what +
-                                              " directions; it takes up to " + std::to_string(kMaxDirections) + ".");
+                                              " directions; at most " + std::to_string(kMaxDirections) +
+                                              " are supported.");
   }
   std::vector<PolarAngles> set;
   for (uint64_t i = 0; i < count; ++i) set.push_back({angles[2 * i], angles[2 * i + 1]});
@@ -76,8 +77,9 @@ vlr_status vlr_directions(const char* name, double* angles, uint64_t* count) {
     require(count, "count");
     const std::vector<PolarAngles> set = named_directions(name);
     if (angles && *count != set.size()) {
-      throw Error(Status::invalid_argument, "The set " + std::string(name) + " has " + std::to_string(set.size()) +
-                                                " directions, not " + std::to_string(*count) + ".");
+      throw Error(Status::invalid_argument, "The direction set " + std::string(name) + " has " +
+                                                std::to_string(set.size()) + " directions, but count is " +
+                                                std::to_string(*count) + ".");
     }
     *count = set.size();
     if (!angles) return;

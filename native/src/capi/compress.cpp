@@ -29,9 +29,8 @@ CompressOptions converted(const vlr_compress_options& given) {
                                               ", not a VLR_COMPAND value.");
   }
   if (!(given.tolerance >= 0 && given.tolerance < 1)) {
-    throw Error(Status::invalid_argument,
-                "vlr_compress_options.tolerance is " + std::to_string(given.tolerance) +
-                    "; it must be from 0 (none) to below 1, where a model is worse than none.");
+    throw Error(Status::invalid_argument, "vlr_compress_options.tolerance is " + std::to_string(given.tolerance) +
+                                              "; it must be at least 0 (none) and below 1.");
   }
   CompressOptions options;
   options.tolerance = given.tolerance;
@@ -86,7 +85,7 @@ vlr_status vlr_btf_compare_create_job(const vlr_btf* btf, const vlr_model* model
     require(model, "model");
     require(out, "out");
     if (!is_btf(*model->model)) {
-      throw Error(Status::invalid_argument, "The model is of a BRDF; a BTF is compared with a model of a BTF.");
+      throw Error(Status::invalid_argument, "The model is a BRDF model; a BTF can only be compared with a BTF model.");
     }
     auto output = std::make_shared<JobOutput>();
     *out = new vlr_job(output, [output, source = btf->btf, fitted = model->model](Progress& progress) {

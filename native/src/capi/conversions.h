@@ -19,7 +19,7 @@ inline constexpr uint32_t kRays = VLR_HIDDEN_FROM_CAMERA | VLR_HIDDEN_FROM_BOUNC
 inline void require_hidden(uint32_t hidden_from, uint32_t known) {
   if ((hidden_from & ~known) == 0) return;
   throw Error(Status::invalid_argument,
-              "hidden_from is " + std::to_string(hidden_from) + ", which has bits that are no VLR_HIDDEN value.");
+              "hidden_from is " + std::to_string(hidden_from) + ", which has bits other than the VLR_HIDDEN values.");
 }
 
 inline Rgb color_from(const float* c) { return {c[0], c[1], c[2]}; }

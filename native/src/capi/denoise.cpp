@@ -26,14 +26,16 @@ vlr_status vlr_denoise_create_job(vlr_job* render, uint32_t threads, vlr_job** o
     require(out, "out");
     const std::shared_ptr<Film> film = render->output->film;
     if (!film || !film->options().has(pass::kHalves)) {
-      throw Error(Status::invalid_argument, "This job's picture cannot be denoised: set vlr_render_options.denoise.");
+      throw Error(
+          Status::invalid_argument,
+          "The image of this job cannot be denoised: the job was created without vlr_render_options.denoise. Set it.");
     }
     if (render->job.poll().state == Job::State::running) {
-      throw Error(Status::invalid_state, "The render is running; its picture is denoised when it has ended.");
+      throw Error(Status::invalid_state, "The render is still running; wait for its end before denoising.");
     }
     auto output = std::make_shared<JobOutput>();
     *out = new vlr_job(output, [output, film, threads](Progress& progress) {
-      progress.stage("denoise", 0.0, 1.0);
+      progress.stage("denoising", 0.0, 1.0);
       denoise(*film, static_cast<int>(threads), progress);
       output->set(denoised_json(*film));
     });

@@ -74,7 +74,7 @@ MicrosurfaceOptions converted(const vlr_microsurface_options& given) {
 
 Peer checked_peer(int32_t peer) {
   if (peer < VLR_PEER_GGX || peer > VLR_PEER_PLAIN_PRINCIPLED) {
-    throw Error(Status::invalid_argument, "The peer is " + std::to_string(peer) + ", not a VLR_PEER value.");
+    throw Error(Status::invalid_argument, "peer is " + std::to_string(peer) + ", not a VLR_PEER value.");
   }
   return static_cast<Peer>(peer);
 }
@@ -96,8 +96,9 @@ vlr_status vlr_fit_create_job(const vlr_measurement* measurement, const vlr_fit_
     const ModelKind kind = kind_of(given);
     const FitOptions fit = converted(given);
     if (kind == ModelKind::parametric && fit.kernel != Kernel::gaussian) {
-      throw Error(Status::invalid_argument,
-                  "Parametric models have Gaussian lobes only: fit a scattered model for other kernels.");
+      throw Error(
+          Status::invalid_argument,
+          "Parametric models support only the Gaussian kernel; fit a per-view model (scattered) for other kernels.");
     }
     auto output = std::make_shared<JobOutput>();
     *out = new vlr_job(output, [output, kind, fit, source = measurement->measurement](Progress& progress) {

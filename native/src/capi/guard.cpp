@@ -25,11 +25,11 @@ vlr_status status_of_current_exception() {
   } catch (const Error& error) {
     return remember(error.status(), error.what());
   } catch (const std::bad_alloc&) {
-    return remember(Status::out_of_memory, "Not enough memory.");
+    return remember(Status::out_of_memory, "Out of memory.");
   } catch (const std::exception& error) {
     return remember(Status::unknown, error.what());
   } catch (...) {
-    return remember(Status::unknown, "An unknown exception reached the C boundary.");
+    return remember(Status::unknown, "Internal error: an exception of unknown type.");
   }
 }
 
@@ -39,8 +39,8 @@ void require(const void* pointer, const char* argument) {
 
 void require_choice(int32_t value, int32_t last, const char* field) {
   if (value >= 0 && value <= last) return;
-  throw Error(Status::invalid_argument, std::string(field) + " is " + std::to_string(value) + "; it is one of 0 to " +
-                                            std::to_string(last) + ".");
+  throw Error(Status::invalid_argument,
+              std::string(field) + " is " + std::to_string(value) + "; it must be 0 to " + std::to_string(last) + ".");
 }
 
 }  // namespace velour::capi

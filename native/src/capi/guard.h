@@ -38,9 +38,9 @@ Options read_options(const Options* given, void (*initialize)(Options*), const c
   if (!given) return options;
   if (given->struct_size < sizeof(uint32_t) || given->struct_size > sizeof(Options)) {
     throw Error(Status::version_mismatch,
-                std::string(name) + ".struct_size is " + std::to_string(given->struct_size) + ", this library knows " +
-                    std::to_string(sizeof(Options)) +
-                    "; initialise the struct with its _init function, or update the library.");
+                std::string(name) + ".struct_size is " + std::to_string(given->struct_size) +
+                    ", but this library expects at most " + std::to_string(sizeof(Options)) +
+                    ". Initialize the struct with its _init function, or update the library.");
   }
   std::memcpy(&options, given, given->struct_size);
   options.struct_size = sizeof(Options);
@@ -54,8 +54,8 @@ void write_struct(const Struct& values, Struct* out, const char* name) {
   const uint32_t size = out->struct_size;
   if (size < sizeof(uint32_t) || size > sizeof(Struct)) {
     throw Error(Status::version_mismatch, std::string(name) + ".struct_size is " + std::to_string(size) +
-                                              ", this library knows " + std::to_string(sizeof(Struct)) +
-                                              "; set it to the struct's size, or update the library.");
+                                              ", but this library expects at most " + std::to_string(sizeof(Struct)) +
+                                              ". Set it to the size of the struct, or update the library.");
   }
   std::memcpy(out, &values, size);
   out->struct_size = size;

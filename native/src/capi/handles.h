@@ -106,10 +106,9 @@ struct JobOutput {
   /// Prepares for a new run; none may be running.
   void prepare() {
     if (onto_film && rendered) {
-      throw Error(
-          Status::invalid_state,
-          "The job's picture holds sums that were added and camera rays of its own, which a new run would count "
-          "twice; make a new job.");
+      throw Error(Status::invalid_state,
+                  "This job has both added sums and rendered its own samples, so a new run would count them twice. "
+                  "Create a new job.");
     }
     stop = false;
   }

@@ -13,8 +13,10 @@ namespace {
 Picture checked_picture(uint32_t width, uint32_t height, uint32_t channels) {
   constexpr uint32_t kLargest = 65536;
   if (width == 0 || height == 0 || channels == 0 || width > kLargest || height > kLargest || channels > 64) {
-    throw Error(Status::invalid_argument, "A picture of " + std::to_string(width) + " x " + std::to_string(height) +
-                                              " pixels and " + std::to_string(channels) + " channels cannot be made.");
+    throw Error(Status::invalid_argument,
+                "An image cannot have " + std::to_string(width) + " x " + std::to_string(height) + " pixels and " +
+                    std::to_string(channels) +
+                    " channels; 1 to 65536 pixels along each side and 1 to 64 channels are supported.");
   }
   return {static_cast<int>(width), static_cast<int>(height), static_cast<int>(channels), {}};
 }
@@ -26,10 +28,10 @@ PictureFrame converted(const vlr_image_frame& given, const Picture& part) {
   const bool inside = frame.x >= 0 && frame.y >= 0 && frame.x <= static_cast<int64_t>(frame.width) - part.width &&
                       frame.y <= static_cast<int64_t>(frame.height) - part.height;
   if (!inside) {
-    throw Error(Status::invalid_argument, "A part of " + std::to_string(part.width) + " x " +
-                                              std::to_string(part.height) + " pixels at " + std::to_string(frame.x) +
-                                              ", " + std::to_string(frame.y) + " does not lie in a picture of " +
-                                              std::to_string(frame.width) + " x " + std::to_string(frame.height) + ".");
+    throw Error(Status::invalid_argument,
+                "An image part of " + std::to_string(part.width) + " x " + std::to_string(part.height) + " pixels at " +
+                    std::to_string(frame.x) + ", " + std::to_string(frame.y) + " does not fit into an image of " +
+                    std::to_string(frame.width) + " x " + std::to_string(frame.height) + " pixels.");
   }
   return {static_cast<int>(frame.width), static_cast<int>(frame.height), frame.x, frame.y};
 }
@@ -46,7 +48,7 @@ void hand_out(const Picture& picture, const PictureOutput& to) {
   *to.channels = static_cast<uint32_t>(picture.channels);
   if (!to.pixels) return;
   if (to.count != picture.pixels.size()) {
-    throw Error(Status::invalid_argument, "count is " + std::to_string(to.count) + ", the picture has " +
+    throw Error(Status::invalid_argument, "count is " + std::to_string(to.count) + ", but the image has " +
                                               std::to_string(picture.pixels.size()) + " values.");
   }
   std::copy(picture.pixels.begin(), picture.pixels.end(), to.pixels);
@@ -149,7 +151,7 @@ vlr_status vlr_image_compare(uint64_t pixel_count, uint32_t channels, const floa
     require(rmse, "rmse");
     require(relmse, "relmse");
     if (pixel_count == 0 || channels < 3) {
-      throw Error(Status::invalid_argument, "Pictures need at least one pixel and three channels to be compared.");
+      throw Error(Status::invalid_argument, "Only images with at least one pixel and three channels can be compared.");
     }
     const PictureDifference d =
         compare_pictures(pixels, reference, static_cast<size_t>(pixel_count), static_cast<int>(channels));

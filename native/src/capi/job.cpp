@@ -45,7 +45,8 @@ vlr_status vlr_job_poll(const vlr_job* job, vlr_job_state* state) {
     require(state, "state");
     if (state->struct_size != sizeof(vlr_job_state)) {
       throw Error(Status::version_mismatch, "vlr_job_state.struct_size is " + std::to_string(state->struct_size) +
-                                                ", this library knows " + std::to_string(sizeof(vlr_job_state)) + ".");
+                                                ", but this library expects " + std::to_string(sizeof(vlr_job_state)) +
+                                                ".");
     }
     const Job::Snapshot s = job->job.poll();
     state->state = static_cast<int32_t>(s.state);
@@ -67,7 +68,7 @@ vlr_status vlr_job_cancel(vlr_job* job) {
 vlr_status vlr_job_wait(vlr_job* job, double timeout_seconds, vlr_progress_fn progress, void* user, int32_t* finished) {
   return guard([&] {
     require(job, "job");
-    if (std::isnan(timeout_seconds)) throw Error(Status::invalid_argument, "timeout_seconds is not a number.");
+    if (std::isnan(timeout_seconds)) throw Error(Status::invalid_argument, "timeout_seconds is NaN.");
     const bool ended =
         progress ? wait_with_callback(*job, timeout_seconds, progress, user) : job->job.wait_for(timeout_seconds);
     if (finished) *finished = ended ? 1 : 0;
@@ -92,7 +93,7 @@ vlr_status vlr_job_result_model(const vlr_job* job, vlr_model** out) {
     require(out, "out");
     job->job.rethrow();
     const std::lock_guard lock(job->output->mutex);
-    if (!job->output->model) throw Error(Status::invalid_state, "This job makes no model.");
+    if (!job->output->model) throw Error(Status::invalid_state, "This job does not produce a model.");
     *out = new vlr_model{job->output->model, {}, {}};
   });
 }

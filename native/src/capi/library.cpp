@@ -45,11 +45,13 @@ vlr_status vlr_select_simd(const char* target) {
   return guard([&] {
     require(target, "target");
     if (Job::running_count() > 0) {
-      throw Error(Status::invalid_state, "The instruction set cannot change while a job runs.");
+      throw Error(Status::invalid_state, "The instruction set cannot be changed while a job is running.");
     }
     if (!select_simd_target(target)) {
-      throw Error(Status::invalid_argument, "This processor or build has no instruction set '" + std::string(target) +
-                                                "'; vlr_system_json lists the choices.");
+      throw Error(
+          Status::invalid_argument,
+          "The instruction set '" + std::string(target) +
+              "' is not available on this processor or in this build; vlr_system_json lists the available ones.");
     }
   });
 }

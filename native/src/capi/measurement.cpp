@@ -60,7 +60,7 @@ vlr_status vlr_job_result_measurement(const vlr_job* job, vlr_measurement** out)
     require(out, "out");
     job->job.rethrow();
     const std::lock_guard lock(job->output->mutex);
-    if (!job->output->measurement) throw Error(Status::invalid_state, "This job reads no measurement.");
+    if (!job->output->measurement) throw Error(Status::invalid_state, "This job does not read a measurement.");
     *out = new vlr_measurement{job->output->measurement, {}};
   });
 }

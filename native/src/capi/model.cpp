@@ -20,7 +20,7 @@ const std::vector<uint8_t>& encoded(vlr_model& handle) {
 Vec3 checked_view(const float* wv) {
   const Vec3 view(wv[0], wv[1], wv[2]);
   if (!(view.z > 0.0f) || !(std::abs(glm::length(view) - 1.0f) < 1e-3f)) {
-    throw Error(Status::invalid_argument, "wv must be a unit direction above the surface (z > 0).");
+    throw Error(Status::invalid_argument, "wv must be a unit vector above the surface (z > 0).");
   }
   return view;
 }

@@ -113,7 +113,8 @@ vlr_status vlr_job_result_observation(const vlr_job* job, vlr_observation** out)
     require(out, "out");
     job->job.rethrow();
     const std::lock_guard lock(job->output->mutex);
-    if (!job->output->observation) throw Error(Status::invalid_state, "This job makes no observation.");
+    if (!job->output->observation)
+      throw Error(Status::invalid_state, "This job does not produce a scene usage (observation).");
     *out = new_handle(job->output->observation);
   });
 }

@@ -57,7 +57,7 @@ Rgb checked_color(const float (&from)[3], const char* name) {
   for (const float channel : from) {
     if (channel >= 0 && channel <= 1) continue;
     throw Error(Status::invalid_argument, std::string("vlr_plot_style.") + name + " has a channel of " +
-                                              std::to_string(channel) + "; 0 to 1 is meant.");
+                                              std::to_string(channel) + "; it must be 0 to 1.");
   }
   return {from[0], from[1], from[2]};
 }
@@ -123,7 +123,7 @@ vlr_status vlr_job_result_plot(const vlr_job* job, vlr_plot** out) {
     require(out, "out");
     job->job.rethrow();
     const std::lock_guard lock(job->output->mutex);
-    if (!job->output->plot) throw Error(Status::invalid_state, "This job makes no plot.");
+    if (!job->output->plot) throw Error(Status::invalid_state, "This job does not produce a plot.");
     *out = new vlr_plot{*job->output->plot, {}};
   });
 }
@@ -160,7 +160,7 @@ vlr_status vlr_plot_draw(const vlr_plot* plot, const vlr_plot_style* style, floa
     require(rgba, "rgba");
     const std::vector<float> pixels = rasterized(lay_out(plot->plot, converted(style)));
     if (count != pixels.size()) {
-      throw Error(Status::invalid_argument, "count is " + std::to_string(count) + ", the picture has " +
+      throw Error(Status::invalid_argument, "count is " + std::to_string(count) + ", but the image has " +
                                                 std::to_string(pixels.size()) + " values.");
     }
     std::copy(pixels.begin(), pixels.end(), rgba);
@@ -174,7 +174,7 @@ vlr_status vlr_plot_save(const vlr_plot* plot, const vlr_plot_style* style, cons
     const std::string extension = std::filesystem::path(path).extension().string();
     if (extension == ".csv") return write_text(path, csv_text(plot->plot));
     if (extension != ".png" && extension != ".svg") {
-      throw Error(Status::unsupported, std::string(path) + ": plots are written as .png, .svg or .csv.");
+      throw Error(Status::unsupported, std::string(path) + ": plots can only be written as .png, .svg or .csv.");
     }
     const Drawing drawing = lay_out(plot->plot, converted(style));
     extension == ".svg" ? write_text(path, svg_text(drawing)) : write_png(path, drawing);

@@ -102,7 +102,7 @@ vlr_status vlr_lobe_rows_create_job(const vlr_model* model, uint32_t threads, vl
     require(model, "model");
     require(out, "out");
     if (is_btf(*model->model)) {
-      throw Error(Status::invalid_argument, "The model of a BTF has no rows of lobes; models of BRDFs have.");
+      throw Error(Status::invalid_argument, "BTF models have no lobe table; only BRDF models do.");
     }
     *out = rows_job([model = model->model, count = static_cast<int>(threads)](Progress& progress) {
       return lobe_rows(*model, count, progress);
@@ -125,7 +125,7 @@ vlr_status vlr_btf_maps_create_job(const vlr_model* model, vlr_job** out) {
     require(model, "model");
     require(out, "out");
     if (!std::holds_alternative<SrbfBtf>(model->model->body)) {
-      throw Error(Status::invalid_argument, "Only the models of BTFs that are made of SRBFs have maps.");
+      throw Error(Status::invalid_argument, "Only BTF models of method SRBF have texture maps.");
     }
     auto output = std::make_shared<JobOutput>();
     *out = new vlr_job(output, [output, model = model->model](Progress&) {
@@ -141,7 +141,7 @@ vlr_status vlr_shell_maps_create_job(const vlr_model* model, vlr_job** out) {
   return guard([&] {
     require(model, "model");
     require(out, "out");
-    if (!model->model->shell) throw Error(Status::invalid_argument, "The model has no outline.");
+    if (!model->model->shell) throw Error(Status::invalid_argument, "The model has no silhouette (VOTF).");
     auto output = std::make_shared<JobOutput>();
     *out = new vlr_job(output, [output, volume = model->model->shell->volume](Progress&) {
       const OcclusionVolume& v = *volume;
@@ -166,7 +166,7 @@ vlr_status vlr_job_result_table(const vlr_job* job, const float** rgba, uint32_t
     job->job.rethrow();
     const std::lock_guard lock(job->output->mutex);
     const auto& table = job->output->table;
-    if (!table) throw Error(Status::invalid_state, "This job makes no table.");
+    if (!table) throw Error(Status::invalid_state, "This job does not produce a table.");
     *rgba = table->rgba.data();
     *width = table->width;
     *height = table->height;

@@ -38,9 +38,9 @@ RenderOptions converted(const vlr_render_options& given) {
   }
   constexpr uint32_t kLargest = 65536;
   if (given.width == 0 || given.height == 0 || given.width > kLargest || given.height > kLargest) {
-    throw Error(Status::invalid_argument,
-                "A film of " + std::to_string(given.width) + " x " + std::to_string(given.height) +
-                    " pixels cannot be made; sides go from 1 to " + std::to_string(kLargest) + ".");
+    throw Error(Status::invalid_argument, "An image cannot have " + std::to_string(given.width) + " x " +
+                                              std::to_string(given.height) + " pixels; each side must be 1 to " +
+                                              std::to_string(kLargest) + ".");
   }
   RenderOptions options;
   options.width = static_cast<int>(given.width);
@@ -99,7 +99,8 @@ vlr_status vlr_render_create_job(const vlr_scene* scene, const vlr_render_option
 vlr_status vlr_job_stop(vlr_job* job) {
   return guard([&] {
     require(job, "job");
-    if (!job->output->film) throw Error(Status::invalid_state, "This job makes no picture that it could end with.");
+    if (!job->output->film)
+      throw Error(Status::invalid_state, "This job is not a render, so it cannot be stopped with a result; cancel it.");
     job->output->stop = true;
   });
 }
@@ -108,7 +109,7 @@ namespace {
 
 Film& film_of(const vlr_job* job) {
   require(job, "job");
-  if (!job->output->film) throw Error(Status::invalid_state, "This job makes no picture.");
+  if (!job->output->film) throw Error(Status::invalid_state, "This job does not render an image.");
   return *job->output->film;
 }
 
@@ -127,7 +128,7 @@ vlr_status vlr_job_add_sums(vlr_job* job, const float* sums, uint64_t count) {
     Film& film = film_of(job);
     require(sums, "sums");
     if (job->job.poll().state == Job::State::running) {
-      throw Error(Status::invalid_state, "The job is running; what earlier ones have is added before or after.");
+      throw Error(Status::invalid_state, "The job is running; add sums before it starts or after it has ended.");
     }
     add_sums({sums, static_cast<size_t>(count)}, film);
     job->output->onto_film = true;
@@ -152,7 +153,7 @@ namespace {
 
 ProgressiveRender& progressive_of(const vlr_job* job) {
   require(job, "job");
-  if (!job->output->progressive) throw Error(Status::invalid_state, "This job makes no progressive picture.");
+  if (!job->output->progressive) throw Error(Status::invalid_state, "This job is not a progressive render.");
   return *job->output->progressive;
 }
 
@@ -162,7 +163,7 @@ vlr_status vlr_progressive_restart(vlr_job* job) {
   return guard([&] {
     ProgressiveRender& progressive = progressive_of(job);
     if (job->job.poll().state == Job::State::running) {
-      throw Error(Status::invalid_state, "The job is running; cancel it and wait for its end first.");
+      throw Error(Status::invalid_state, "The job is running; cancel it and wait for it to end first.");
     }
     progressive.restart();
   });
@@ -186,8 +187,8 @@ vlr_status vlr_job_read_pass(const vlr_job* job, const char* pass, float* pixels
     const uint64_t expected = static_cast<uint64_t>(film.width()) * static_cast<uint64_t>(film.height()) *
                               static_cast<uint64_t>(Film::channels(pass));
     if (count != expected) {
-      throw Error(Status::invalid_argument, std::string("Pass '") + pass + "' holds " + std::to_string(expected) +
-                                                " values, not " + std::to_string(count) + ".");
+      throw Error(Status::invalid_argument, std::string("Pass '") + pass + "' has " + std::to_string(expected) +
+                                                " values, but count is " + std::to_string(count) + ".");
     }
     film.read_pass(pass, {pixels, static_cast<size_t>(count)});
   });

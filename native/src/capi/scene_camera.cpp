@@ -14,8 +14,8 @@ Aperture aperture_from(const vlr_camera_desc& desc) {
   constexpr uint32_t kMostBlades = 1024;
   if (!(desc.aperture >= 0.0f) || !(desc.focus > 0.0f) || !(desc.aperture_ratio > 0.0f) || desc.blades > kMostBlades) {
     throw Error(Status::invalid_argument,
-                "vlr_camera_desc: aperture must not be negative, focus and aperture_ratio must be positive and blades "
-                "at most 1024.");
+                "vlr_camera_desc: aperture must be at least 0, focus and aperture_ratio must be positive, and blades "
+                "must be at most 1024.");
   }
   return {.radius = desc.aperture,
           .focus = desc.focus,

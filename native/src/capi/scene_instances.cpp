@@ -52,7 +52,7 @@ vlr_status vlr_scene_soften_terminator(vlr_scene* scene, float offset) {
     require(scene, "scene");
     if (!(offset >= 0.0f && offset <= 1.0f)) {
       throw Error(Status::invalid_argument,
-                  "The offset of the shadow terminator is " + std::to_string(offset) + "; it must be 0 to 1.");
+                  "The shadow terminator offset is " + std::to_string(offset) + "; it must be 0 to 1.");
     }
     scene->terminator = offset;
   });

@@ -22,12 +22,12 @@ MeshArrays arrays_of(const vlr_mesh_desc& desc) {
   if (desc.more_uv_sets >= VLR_MOST_UV_SETS) {
     throw Error(Status::invalid_argument, "vlr_mesh_desc.more_uv_sets is " + std::to_string(desc.more_uv_sets) +
                                               "; a mesh has at most " + std::to_string(VLR_MOST_UV_SETS - 1) +
-                                              " sets of texture coordinates beside the first.");
+                                              " UV sets in addition to the first.");
   }
   if (desc.color_sets > VLR_MOST_COLOR_SETS) {
     throw Error(Status::invalid_argument, "vlr_mesh_desc.color_sets is " + std::to_string(desc.color_sets) +
                                               "; a mesh has at most " + std::to_string(VLR_MOST_COLOR_SETS) +
-                                              " sets of corner colours.");
+                                              " corner color sets.");
   }
   const size_t triangles = desc.triangle_count, corners = desc.corner_vertices ? desc.corner_count : 3 * triangles;
   return {.positions = array_of<Vec3>(desc.positions, desc.vertex_count),
@@ -57,7 +57,7 @@ std::vector<Mesh> meshes_of(const vlr_mesh_desc* descs, uint64_t count) {
     const auto* bytes = reinterpret_cast<const char*>(descs) + i * descs->struct_size;
     const auto* desc = reinterpret_cast<const vlr_mesh_desc*>(bytes);
     if (desc->struct_size != descs->struct_size) {
-      throw Error(Status::invalid_argument, "vlr_mesh_desc.struct_size is not the same of all meshes.");
+      throw Error(Status::invalid_argument, "vlr_mesh_desc.struct_size must be the same for all meshes.");
     }
     arrays.push_back(arrays_of(read_options(desc, initialize, "vlr_mesh_desc")));
   }

@@ -121,7 +121,7 @@ vlr_status vlr_shader_weigh_layer(vlr_shader* shader, const vlr_factor_desc* des
     if (!std::isfinite(factor.value)) throw Error(Status::invalid_argument, "vlr_factor_desc.value is not finite.");
     if (shader->last == nullptr) {
       throw Error(Status::invalid_state,
-                  "A shader without layers has nothing to weigh; add a layer before its factors.");
+                  "The shader has no layer that the factor could weight; add a layer before its factors.");
     }
     const auto texture = number_slot(factor.texture, factor.map, factor.set, "vlr_factor_desc.texture");
     shader->last->factors.push_back({static_cast<LayerFactor::Kind>(factor.kind), factor.value, texture});

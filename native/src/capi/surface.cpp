@@ -8,15 +8,15 @@ namespace velour::capi {
 namespace {
 
 [[noreturn]] void refuse_kind(const char* field, const char* needed) {
-  throw Error(Status::invalid_argument, std::string(field) + " needs a texture of " + needed + ".");
+  throw Error(Status::invalid_argument, std::string(field) + " requires a texture of " + needed + ".");
 }
 
 static_assert(VLR_MOST_UV_SETS == SurfaceSite::kMostSets);
 
 size_t known_set(uint32_t set, const char* field) {
   if (set < SurfaceSite::kMostSets) return set;
-  throw Error(Status::invalid_argument, std::string(field) + " is on set " + std::to_string(set) +
-                                            " of texture coordinates; a material has sets 0 to " +
+  throw Error(Status::invalid_argument, std::string(field) + " uses UV set " + std::to_string(set) +
+                                            "; a material has UV sets 0 to " +
                                             std::to_string(SurfaceSite::kMostSets - 1) + ".");
 }
 
@@ -25,14 +25,14 @@ size_t known_set(uint32_t set, const char* field) {
 TextureSlot<Rgb> color_slot(const vlr_texture* texture, const float* map, uint32_t set, const char* field) {
   if (texture == nullptr) return {};
   if (texture->corner_colors) return TextureSlot<Rgb>::colors_of_corners(*texture->corner_colors);
-  if (!texture->color) refuse_kind(field, "colours (channel -1)");
+  if (!texture->color) refuse_kind(field, "colors (channel -1)");
   return {texture->color, map_from(map), known_set(set, field)};
 }
 
 TextureSlot<float> number_slot(const vlr_texture* texture, const float* map, uint32_t set, const char* field) {
   if (texture == nullptr) return {};
   if (texture->corner_colors) return TextureSlot<float>::colors_of_corners(*texture->corner_colors);
-  if (!texture->number) refuse_kind(field, "numbers (a channel)");
+  if (!texture->number) refuse_kind(field, "numbers (channel 0 or higher)");
   return {texture->number, map_from(map), known_set(set, field)};
 }
 

@@ -28,7 +28,8 @@ struct Pixels {
 vlr_texture* texture_of(const Pixels& pixels, const vlr_texture_options& options) {
   if (options.channel < -1 || options.channel >= pixels.channels) {
     throw Error(Status::invalid_argument, "vlr_texture_options.channel is " + std::to_string(options.channel) +
-                                              "; the picture has " + std::to_string(pixels.channels) + ".");
+                                              ", but the image has " + std::to_string(pixels.channels) +
+                                              " channels; use -1 (colors) or an existing channel.");
   }
   const TextureOptions converted_options = converted(options);
   auto texture = std::make_unique<vlr_texture>();
@@ -66,9 +67,10 @@ vlr_status vlr_texture_create(uint32_t width, uint32_t height, uint32_t channels
     constexpr uint32_t kLargest = 65536, kMostChannels = 64;
     if (width == 0 || height == 0 || channels == 0 || width > kLargest || height > kLargest ||
         channels > kMostChannels) {
-      throw Error(Status::invalid_argument, "A texture of " + std::to_string(width) + " x " + std::to_string(height) +
-                                                " pixels and " + std::to_string(channels) +
-                                                " channels cannot be used; sides go to 65536, channels to 64.");
+      throw Error(Status::invalid_argument,
+                  "A texture cannot have " + std::to_string(width) + " x " + std::to_string(height) + " pixels and " +
+                      std::to_string(channels) +
+                      " channels; 1 to 65536 pixels along each side and 1 to 64 channels are supported.");
     }
     const auto given = read_options(options, vlr_texture_options_init, "vlr_texture_options");
     *out = texture_of({static_cast<int>(width), static_cast<int>(height), static_cast<int>(channels), pixels}, given);
@@ -80,8 +82,8 @@ vlr_status vlr_texture_of_corners(uint32_t set, vlr_texture** out) {
     require(out, "out");
     static_assert(VLR_MOST_COLOR_SETS == SurfaceSite::kMostColorSets);
     if (set >= VLR_MOST_COLOR_SETS) {
-      throw Error(Status::invalid_argument, "There is no set " + std::to_string(set) +
-                                                " of corner colours; a material looks at sets 0 to " +
+      throw Error(Status::invalid_argument, "There is no corner color set " + std::to_string(set) +
+                                                "; a material has sets 0 to " +
                                                 std::to_string(VLR_MOST_COLOR_SETS - 1) + ".");
     }
     auto texture = std::make_unique<vlr_texture>();

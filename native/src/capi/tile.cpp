@@ -92,7 +92,7 @@ vlr_status vlr_tile_material(const vlr_tile* tile, uint32_t slot, vlr_principled
     const auto& materials = tile->tile.parts.materials;
     if (slot >= materials.size()) {
       throw Error(Status::invalid_argument, "The tile " + tile->tile.kind + " has " + std::to_string(materials.size()) +
-                                                " material slots; there is no " + std::to_string(slot) + ".");
+                                                " material slots; slot " + std::to_string(slot) + " does not exist.");
     }
     write_struct(described(materials[slot].parameters), material, "vlr_principled_desc");
   });

@@ -27,12 +27,12 @@ void check_counts(const BtfCaptureOptions& options) {
   const auto check = [](uint32_t value, uint32_t low, uint32_t high, const char* what) {
     if (value >= low && value <= high) return;
     throw Error(Status::invalid_argument, std::string("A capture cannot have ") + std::to_string(value) + " " + what +
-                                              "; it takes " + std::to_string(low) + " to " + std::to_string(high) +
-                                              ".");
+                                              "; the number must be " + std::to_string(low) + " to " +
+                                              std::to_string(high) + ".");
   };
   check(options.texels[0], 1, kMaxTexelsAlong, "texels along x");
   check(options.texels[1], 1, kMaxTexelsAlong, "texels along y");
-  check(options.sampling.samples, 1, kMostSamples, "samples a texel");
+  check(options.sampling.samples, 1, kMostSamples, "samples per texel");
   check(options.sampling.bounces, 0, kMostBounces, "bounces");
 }
 
@@ -61,7 +61,7 @@ class BtfCapturer {
     find_reference_plane();
     const BtfFolderWriter writer(path_, index(), options_.resume);
     capture_views(writer);
-    progress_.stage("checking", 0.97, 1);
+    progress_.stage("checking the tile", 0.97, 1);
     writer.finish(progress_);
     report_.bytes = writer.bytes();
     return report_;
@@ -79,7 +79,9 @@ class BtfCapturer {
     if (const auto warning = seam_warning(tile_)) report_.warnings.push_back(*warning);
     for (const SurfaceMaterial& m : scene_.materials()) {
       if (m.emission == Rgb(0)) continue;
-      report_.warnings.push_back("A material of the tile emits light; a BTF holds reflected light alone.");
+      report_.warnings.push_back(
+          "A material of the tile emits light. Its emission is not captured, because a BTF contains only reflected "
+          "light.");
       break;
     }
   }
@@ -99,13 +101,13 @@ class BtfCapturer {
   }
 
   void find_reference_plane() {
-    progress_.stage("reference plane", 0, 0.03);
+    progress_.stage("finding the reference plane", 0, 0.03);
     height_ = options_.reference_height ? static_cast<float>(*options_.reference_height)
                                         : least_variance_height(tile_, any_below(layout_->views()), progress_);
     if (height_ < tile_.bottom()) {
-      throw Error(Status::invalid_argument, "The reference plane at z = " + std::to_string(height_) +
-                                                " lies below the tile's lowest point, " +
-                                                std::to_string(tile_.bottom()) + ".");
+      throw Error(Status::invalid_argument,
+                  "The reference plane at z = " + std::to_string(height_) +
+                      " is below the lowest point of the tile, z = " + std::to_string(tile_.bottom()) + ". Raise it.");
     }
     report_.thickness = static_cast<double>(tile_.thickness()) * length_unit();
     report_.reference_height = static_cast<double>(height_ - tile_.bottom()) * length_unit();
@@ -141,7 +143,7 @@ class BtfCapturer {
   }
 
   void capture_views(const BtfFolderWriter& writer) {
-    progress_.stage("views", 0.03, 0.97);
+    progress_.stage("capturing views", 0.03, 0.97);
     const BtfIndex index = this->index();
     ViewCapture capture(tile_, index.grid, height_, sampling());
     RayShare share(options_.measure_ray_share, static_cast<int>(layout_->lights().size()));
@@ -187,8 +189,9 @@ class BtfCapturer {
     const auto warn = [&](uint64_t count, const char* what) {
       if (count > 0) report_.warnings.push_back(std::to_string(count) + what);
     };
-    warn(counts.lost, " rays never left the shell and count as meeting nothing.");
-    warn(counts.broken, " values of paths were not finite and count as 0: a material is at fault.");
+    warn(counts.lost, " rays never left the shell and were counted as misses.");
+    warn(counts.broken,
+         " path values were not finite and were counted as 0. Check the materials of the tile for invalid values.");
   }
 
   const Scene& scene_;

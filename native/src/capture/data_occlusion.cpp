@@ -41,10 +41,10 @@ class DataOcclusion {
     } else {
       lay_out_hull();
     }
-    progress_.stage("views", 0.2, 0.7);
+    progress_.stage("reading views", 0.2, 0.7);
     fill(fused(volume()));
     result_.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-    progress_.stage("checking", 0.8, 1);
+    progress_.stage("checking the silhouette", 0.8, 1);
     if (options_.check_views > 0) result_.errors = errors();
     return std::move(result_);
   }
@@ -63,9 +63,10 @@ class DataOcclusion {
   void look_through() {
     if (!btf_.has_coverage()) {
       refuse(Status::unsupported,
-             "says nowhere what its structure covers; a capture of Velour's does, and so do pictures with alpha.");
+             "contains no coverage, which a silhouette (VOTF) requires. Use a BTF captured with Velour, or images with "
+             "alpha.");
     }
-    progress_.stage("coverage", 0, 0.1);
+    progress_.stage("reading coverage", 0, 0.1);
     volume().closed = true;
     for (uint32_t v = 0; v < views() && volume().closed; ++v) {
       progress_.check();
@@ -75,7 +76,8 @@ class DataOcclusion {
     }
     if (volume().closed && !heights_) {
       refuse(Status::unsupported,
-             "no view sees through its structure, and it holds no heights; a capture of Velour's does.");
+             "no view sees through the structure, and the BTF contains no heights, so its silhouette (VOTF) is "
+             "unknown. Use a BTF captured with Velour.");
     }
   }
 
@@ -92,7 +94,7 @@ class DataOcclusion {
   /// Without heights: computes a coarse hull over the whole search range, then lays out the range that it fills.
   void lay_out_hull() {
     const OcclusionVolume coarse = empty_shell(std::min(kCoarse, texels_.width), texels_.aspect, -kFar, kFar);
-    progress_.stage("extent", 0.1, 0.2);
+    progress_.stage("finding the height range", 0.1, 0.2);
     const std::vector<float> level = fused(coarse);
     const size_t layer = size_t{coarse.width} * coarse.height;
     uint32_t first = coarse.depth, last = 0;
@@ -102,9 +104,13 @@ class DataOcclusion {
       first = std::min(first, z);
       last = z;
     }
-    if (first > last) refuse(Status::unsupported, "its views leave nothing that all of them show covered.");
+    if (first > last)
+      refuse(Status::unsupported,
+             "no part of the structure is covered in all views, so its silhouette (VOTF) is unknown. Check the alpha "
+             "of the images and the directions of the views.");
     if (first <= 1 || last + 2 >= coarse.depth) {
-      refuse(Status::unsupported, "its views do not tell how high its structure is; they need to look from lower.");
+      refuse(Status::unsupported,
+             "the height of the structure cannot be determined from its views. Use a BTF with more grazing views.");
     }
     // Heights over the plane of the pictures.
     const float low = coarse.bottom + (static_cast<float>(first) - 1) * coarse.step();
@@ -136,7 +142,7 @@ class DataOcclusion {
 
   void fill(const std::vector<float>& level) {
     OcclusionVolume& v = volume();
-    progress_.stage("distances", 0.7, 0.8);
+    progress_.stage("computing distances", 0.7, 0.8);
     const std::vector<float> distance = level_distances(level, grid_of(v), progress_);
     v.distance.resize(distance.size());
     for (size_t i = 0; i < distance.size(); ++i) {

@@ -65,7 +65,7 @@ const Metal& metal_named(const std::string& name) {
   }
   std::string known;
   for (const std::string& n : metal_names()) known += (known.empty() ? "" : ", ") + n;
-  throw Error(Status::invalid_argument, "Metal \"" + name + "\" is not known: take one of " + known + ".");
+  throw Error(Status::invalid_argument, "Unknown metal \"" + name + "\"; use one of " + known + ".");
 }
 
 }  // namespace

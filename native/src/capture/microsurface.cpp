@@ -32,8 +32,8 @@ std::string number(double x) {
 
 void check_range(const char* name, double value, double lowest, double highest) {
   if (value >= lowest && value <= highest) return;
-  throw Error(Status::invalid_argument, std::string("The micro-surface's ") + name + " is " + number(value) +
-                                            ": give a number from " + number(lowest) + " to " + number(highest) + ".");
+  throw Error(Status::invalid_argument, std::string("The microsurface's ") + name + " is " + number(value) +
+                                            "; it must be " + number(lowest) + " to " + number(highest) + ".");
 }
 
 void put_below_clear_surface(const MicrosurfaceOptions& options, GoniometerOptions& goniometer) {
@@ -52,8 +52,8 @@ GoniometerOptions goniometer_options(const MicrosurfaceOptions& options) {
   for (int c = 0; c < 3; ++c) check_range("base albedo", static_cast<double>(options.base_albedo[c]), 0.0, 1.0);
   check_range("number of threads", options.threads, 0, 4096);
   if (options.rays > kMaxRays) {
-    throw Error(Status::invalid_argument, "The micro-surface's rays are " + std::to_string(options.rays) +
-                                              ": give at most " + std::to_string(kMaxRays) + ".");
+    throw Error(Status::invalid_argument, "The microsurface's number of rays is " + std::to_string(options.rays) +
+                                              "; at most " + std::to_string(kMaxRays) + " are supported.");
   }
   GoniometerOptions goniometer;
   goniometer.surface.roughness = options.roughness;
@@ -106,8 +106,8 @@ void write_isotropic(const MicrosurfaceBrdf& brdf, int threads, const std::strin
 std::string describe(const MicrosurfaceOptions& options) {
   const std::string clear = options.ior == 0.0
                                 ? ""
-                                : " Below a clear surface of index " + number(options.ior) +
-                                      ", whose roughness it is; flakes " + number(options.flake_roughness) + ".";
+                                : " The roughness is that of a clear coat of refractive index " + number(options.ior) +
+                                      "; the flakes below it have roughness " + number(options.flake_roughness) + ".";
   return "Ray-traced Gaussian random surface of " + options.metal + ": roughness " + number(options.roughness) +
          " along x, anisotropy " + number(options.anisotropy) + ", diffuse base over a share of " +
          number(options.base_share) + "." + clear;

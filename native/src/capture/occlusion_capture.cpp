@@ -50,10 +50,10 @@ class OcclusionCapturer {
     const auto start = std::chrono::steady_clock::now();
     inspect();
     measure();
-    progress_.stage("distances", 0.1, 0.6);
+    progress_.stage("computing distances", 0.1, 0.6);
     fill();
     result_.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-    progress_.stage("checking", 0.6, 1);
+    progress_.stage("checking the silhouette", 0.6, 1);
     if (options_.check_views > 0) result_.errors = errors();
     result_.ray_share = share_.measure(tile_.rays(), progress_);
     return std::move(result_);
@@ -68,7 +68,8 @@ class OcclusionCapturer {
     if (const auto warning = seam_warning(tile_)) result_.warnings.push_back(*warning);
     const auto& materials = tile_.scene().materials();
     if (!std::ranges::all_of(materials, [](const SurfaceMaterial& m) { return m.material->opaque(); })) {
-      result_.warnings.emplace_back("A material of the tile lets rays through (alpha); its surface counts as solid.");
+      result_.warnings.emplace_back(
+          "A material of the tile is transparent (alpha). The silhouette (VOTF) treats its surface as opaque.");
     }
   }
 
@@ -79,7 +80,7 @@ class OcclusionCapturer {
                     in_widths(static_cast<double>(tile_.bottom())), in_widths(static_cast<double>(tile_.top())));
     v.closed = closed;
     v.tile_width = static_cast<float>(options_.metres_per_unit) * tile_.period().x;
-    progress_.stage("reference plane", 0, 0.1);
+    progress_.stage("finding the reference plane", 0, 0.1);
     const double reference = options_.reference_height
                                  ? *options_.reference_height
                                  : static_cast<double>(least_variance_height(tile_, !v.closed, progress_));
@@ -98,7 +99,8 @@ class OcclusionCapturer {
     const bool sheets = !v.closed && columns.unclosed() > 0;
     if (sheets) {
       result_.warnings.push_back(std::to_string(columns.unclosed()) + " of " + std::to_string(places.size()) +
-                                 " vertical lines meet a sheet that has no inside; it becomes about a texel thick.");
+                                 " vertical lines meet a sheet without thickness, which was made about one texel "
+                                 "thick. Give it a thickness, or increase the number of texels.");
     }
     const float thicker = sheets ? kSheet * v.pitch() : 0.0f;
     v.distance.resize(distance.size());

@@ -41,7 +41,8 @@ Affine moved(Affine map, const Vec2& by) {
 TilePlace place_of(const Scene& scene, const TilePlace& given) {
   if (!scene.committed()) throw Error(Status::invalid_state, "The tile's scene is not committed.");
   if (scene.bounds().empty()) {
-    throw Error(Status::invalid_argument, "The tile is empty: it has no triangle that a ray could meet.");
+    throw Error(Status::invalid_argument,
+                "The tile is empty: it has no triangles with an area. Give a mesh with faces.");
   }
   if (given.period.x != 0 || given.period.y != 0) return given;
   return {Vec2(scene.bounds().low), Vec2(scene.bounds().high - scene.bounds().low)};
@@ -70,11 +71,11 @@ void RepeatedTile::measure(const Progress& progress) {
     }
     bounds_.push_back(b);
   }
-  if (all.empty()) refuse("The tile is empty: it has no triangle that a ray could meet.");
+  if (all.empty()) refuse("The tile is empty: it has no triangles with an area. Give a mesh with faces.");
   const Vec2 span = Vec2(all.high - all.low) / period();
   if (std::max(span.x, span.y) > kMostPeriods) {
     refuse("The tile's geometry spans " + std::to_string(std::max(span.x, span.y)) +
-           " periods; at most 100 can be traced. Is the period in the scene's units?");
+           " periods; at most 100 are supported. Check that the period is in scene units.");
   }
   bottom_ = all.low.z;
   top_ = all.high.z;

@@ -17,7 +17,7 @@ constexpr uint32_t kLeastTexels = 4;
 
 OcclusionVolume empty_shell(uint32_t texels, float aspect, float lowest, float highest) {
   if (texels < kLeastTexels || texels > OcclusionVolume::kMaxSide) {
-    refuse("A shell cannot have " + std::to_string(texels) + " texels along x; it takes " +
+    refuse("A silhouette (VOTF) cannot have " + std::to_string(texels) + " texels along x; the number must be " +
            std::to_string(kLeastTexels) + " to " + std::to_string(OcclusionVolume::kMaxSide) + ".");
   }
   OcclusionVolume v;
@@ -27,11 +27,11 @@ OcclusionVolume empty_shell(uint32_t texels, float aspect, float lowest, float h
   v.bottom = lowest - v.pitch();
   v.top = highest + v.pitch();
   const double cells = std::ceil(static_cast<double>((v.top - v.bottom) / v.pitch()));
-  if (!std::isfinite(cells)) refuse("The heights of a shell must be finite numbers.");
+  if (!std::isfinite(cells)) refuse("The heights of a silhouette (VOTF) must be finite.");
   if (v.height > OcclusionVolume::kMaxSide || cells + 1 > OcclusionVolume::kMaxDepth ||
       uint64_t{v.width} * v.height * static_cast<uint64_t>(cells + 1) > OcclusionVolume::kMaxPoints) {
-    refuse("A shell of " + std::to_string(v.width) + " x " + std::to_string(v.height) + " x " +
-           std::to_string(static_cast<uint64_t>(cells) + 1) + " points is too large; give fewer texels.");
+    refuse("A silhouette (VOTF) of " + std::to_string(v.width) + " x " + std::to_string(v.height) + " x " +
+           std::to_string(static_cast<uint64_t>(cells) + 1) + " points is too large; reduce the number of texels.");
   }
   v.depth = static_cast<uint32_t>(cells) + 1;
   v.reach = kReach * v.pitch();

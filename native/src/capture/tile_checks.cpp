@@ -111,9 +111,9 @@ std::optional<std::string> seam_warning(const RepeatedTile& tile) {
     if (border.share <= inside + 0.1) continue;
     std::array<char, 320> text{};
     std::snprintf(text.data(), text.size(),
-                  "The tile is not periodic along %c: across its border the surface jumps by more than %g %% of its "
-                  "thickness at %.0f %% of the places (RMS %.3g of a thickness of %.3g), elsewhere at %.0f %% or less. "
-                  "The seam will show; set the period, or make the borders match.",
+                  "The tile does not repeat seamlessly along %c: its surface jumps by more than %g %% of its thickness "
+                  "across %.0f %% of its border (RMS %.3g of a thickness of %.3g), but across %.0f %% or less of lines "
+                  "inside. The seam will be visible. Set the period, or make the borders match.",
                   axis == 0 ? 'x' : 'y', 100 * kJump, 100 * border.share, border.rms,
                   static_cast<double>(tile.thickness()), 100 * inside);
     return text.data();

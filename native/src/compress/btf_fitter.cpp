@@ -12,9 +12,9 @@ void BtfFitter::bound(uint64_t bytes, const char* one) {
   const auto past = std::upper_bound(points.begin(), points.end(), bytes,
                                      [](uint64_t n, const OrderPoint& p) { return n < p.parameter_bytes; });
   if (past == points.begin()) {
-    throw Error(Status::invalid_argument, std::string(one) + " takes " +
-                                              std::to_string(points.front().parameter_bytes) + " bytes, and " +
-                                              std::to_string(bytes) + " were asked for; ask for more.");
+    throw Error(Status::invalid_argument,
+                std::string(one) + " takes " + std::to_string(points.front().parameter_bytes) +
+                    " bytes, but the maximum size is " + std::to_string(bytes) + " bytes. Raise the maximum size.");
   }
   largest_ = static_cast<size_t>(past - points.begin()) - 1;
 }

@@ -23,8 +23,9 @@ constexpr double kSetup = 0.2, kFits = 0.97;  // where parts of the progress end
 void require_same_texels(const TexelGrid& a, const TexelGrid& b) {
   if (a.width == b.width && a.height == b.height) return;
   throw Error(Status::invalid_argument, "The BTF has " + std::to_string(a.width) + " x " + std::to_string(a.height) +
-                                            " texels, what it is compared with " + std::to_string(b.width) + " x " +
-                                            std::to_string(b.height) + "; they must be the same.");
+                                            " texels, but the BTF or model that it is compared with has " +
+                                            std::to_string(b.width) + " x " + std::to_string(b.height) +
+                                            "; both must have the same size.");
 }
 
 BtfErrors compare_body(const BtfMeasurement& truth, const ModelBody& body, double p99, int threads,
@@ -104,7 +105,7 @@ Model compress_btf(const BtfMeasurement& measurement, const CompressOptions& opt
   record.raw_bytes = measurement.raw_bytes();
   if (fitter->not_finite() > 0) {
     record.warnings.push_back(std::to_string(fitter->not_finite()) +
-                              " entries of the BTF are not finite; the mean of their image stands in for them.");
+                              " entries of the BTF are not finite; they were replaced by the mean of their image.");
   }
   const std::string repeated = repeated_directions(measurement.layout());
   if (!repeated.empty()) record.warnings.push_back(repeated);
@@ -119,7 +120,7 @@ Model compress_btf(const BtfMeasurement& measurement, const CompressOptions& opt
   record.order = std::move(found.order);
   record.search = std::move(found.trials);
   record.shapes = fitter->shapes();
-  progress.stage("unseen pairs", kFits, 1.0);
+  progress.stage("measuring held-out pairs", kFits, 1.0);
   if (options.held_out) {
     record.psnr_held_out = compare_body(*options.held_out, model->body, record.p99, options.threads, progress).psnr;
   }

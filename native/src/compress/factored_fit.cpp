@@ -49,8 +49,9 @@ FitExtent extent_of(const BtfMeasurement& measurement, const BtfFitOptions& opti
 
 void require_complete_pairs(const PairLayout& layout) {
   if (layout.complete()) return;
-  throw Error(Status::unsupported, "A decomposition needs every view under every light; the BTF has " +
-                                       std::to_string(layout.pairs()) + " pairs alone.");
+  throw Error(Status::unsupported,
+              "The BTF has only " + std::to_string(layout.pairs()) +
+                  " view-light pairs, but a model requires every view under every light. Use a BTF with all pairs.");
 }
 
 }  // namespace
@@ -113,7 +114,7 @@ void FactoredFitter::rank(std::vector<Component> components, size_t most) {
 ModelBody FactoredFitter::fit(size_t point) {
   FactoredBtf btf{measurement_.layout(), measurement_.grid(), options_.companding, axes_, {}, {}, {}};
   choose(point + 1, btf);
-  progress_.stage("texels", 0, 1);
+  progress_.stage("fitting texels", 0, 1);
   project(btf);
   return btf;
 }

@@ -43,11 +43,11 @@ void FitCheckpoint::read() {
   try {
     TensorFile file = decode_tensors(read_file(options_.path), options_.path);
     if (file.attributes[kKind] != kKindOfThis || file.attributes[kKey] != options_.key) {
-      throw Error(Status::bad_data, options_.path + " is not of a fit of this BTF with these options.");
+      throw Error(Status::bad_data, options_.path + " belongs to a fit of another BTF or with other options.");
     }
     file_ = std::move(file);
   } catch (const Error& error) {
-    warnings_.push_back(std::string("nothing was resumed: ") + error.what());
+    warnings_.push_back(std::string("the fit was not resumed but started from the beginning: ") + error.what());
   }
 }
 
@@ -117,7 +117,8 @@ void FitCheckpoint::write() {
     write_file(options_.path, encode_tensors(file_));
   } catch (const Error& error) {
     failed_ = true;
-    warnings_.push_back(std::string("the fit cannot be resumed: ") + error.what());
+    warnings_.push_back(std::string("the checkpoint could not be written, so the fit cannot be resumed: ") +
+                        error.what());
   }
 }
 

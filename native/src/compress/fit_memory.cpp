@@ -48,9 +48,9 @@ uint64_t judging_bytes(const FitExtent& e) {
 }
 
 [[noreturn]] void refuse(uint64_t memory, uint64_t least, const std::string& of_what) {
-  throw Error(Status::unsupported, "The fit holds " + megabytes(least) + " at least, for " + of_what +
+  throw Error(Status::unsupported, "The fit requires at least " + megabytes(least) + " of memory, for " + of_what +
                                        "; the limit is " + megabytes(memory) +
-                                       ". Raise it, or capture fewer texels or lights.");
+                                       ". Raise the memory limit, or capture fewer texels or lights.");
 }
 
 uint64_t svd_bytes(const FitExtent& e) {
@@ -147,7 +147,7 @@ uint32_t search_points_within(uint64_t memory, const FitExtent& extent) {
   if (least > memory) {
     refuse(memory, least,
            "one view of " + std::to_string(extent.texels) + " texels under " + std::to_string(extent.lights) +
-               " lights and " + std::to_string(extent.coefficients) + " coefficients a texel");
+               " lights and " + std::to_string(extent.coefficients) + " coefficients per texel");
   }
   const uint64_t held = kLibraries + point_bytes(extent);
   return static_cast<uint32_t>(std::min<uint64_t>(kUsualPoints, (memory - held) / search_point_bytes(extent)));

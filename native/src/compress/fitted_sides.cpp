@@ -41,8 +41,9 @@ FittedSides fitted_sides(const BtfMeasurement& measurement, const ColourAxes& co
 
 void require_complete(const PairLayout& layout) {
   if (layout.complete()) return;
-  throw Error(Status::unsupported, "A model needs every view under every light; the BTF has " +
-                                       std::to_string(layout.pairs()) + " pairs alone.");
+  throw Error(Status::unsupported,
+              "The BTF has only " + std::to_string(layout.pairs()) +
+                  " view-light pairs, but a model requires every view under every light. Use a BTF with all pairs.");
 }
 
 }  // namespace velour

@@ -21,12 +21,12 @@ ShapeRange shapes_of(const CompressOptions& options) {
   if (options.method == CompressMethod::kcta) range.most_members = kMostMembers;
   if (options.clusters > 0) {
     if (options.method == CompressMethod::tucker && options.clusters > 1) {
-      throw Error(Status::invalid_argument, "A Tucker decomposition has one cluster, not " +
-                                                std::to_string(options.clusters) + "; cta and kcta have more.");
+      throw Error(Status::invalid_argument, "The method tucker has one cluster, not " +
+                                                std::to_string(options.clusters) + "; use cta or kcta for more.");
     }
     if (options.clusters > TensorBtf::kMaxClusters) {
-      throw Error(Status::invalid_argument, std::to_string(options.clusters) + " clusters are too many; up to " +
-                                                std::to_string(TensorBtf::kMaxClusters) + " can be stored.");
+      throw Error(Status::invalid_argument, std::to_string(options.clusters) + " clusters are too many; at most " +
+                                                std::to_string(TensorBtf::kMaxClusters) + " are supported.");
     }
     range.least_clusters = range.most_clusters = options.clusters;
   }
@@ -34,9 +34,10 @@ ShapeRange shapes_of(const CompressOptions& options) {
     const size_t most = options.method == CompressMethod::kcta ? TensorBtf::kMaxMembers : 1;
     if (options.members > most || (options.clusters > 0 && options.members > options.clusters)) {
       throw Error(Status::invalid_argument,
-                  std::to_string(options.members) + " members are too many; a texel has " +
-                      (most == 1 ? std::string("one, but with kcta.")
-                                 : "up to " + std::to_string(most) + ", and no more than there are clusters."));
+                  std::to_string(options.members) + " clusters per texel (members) are too many; " +
+                      (most == 1 ? std::string("only the method kcta supports more than one.")
+                                 : "at most " + std::to_string(most) +
+                                       " are supported, and not more than the number of clusters."));
     }
     range.least_members = range.most_members = options.members;
     range.least_clusters = std::max(range.least_clusters, options.members);
@@ -60,10 +61,12 @@ std::unique_ptr<BtfFitter> make_fitter(const BtfMeasurement& measurement, const 
                                        FitCheckpoint& checkpoint, Progress& progress) {
   const bool tensors = has_tensors(options.method);
   if (!tensors && (options.clusters > 0 || options.members > 0)) {
-    throw Error(Status::invalid_argument, "Clusters and members are of the methods tucker, cta and kcta.");
+    throw Error(Status::invalid_argument,
+                "Clusters and members are only available with the methods tucker, cta and kcta.");
   }
   if (!tensors && options.method != CompressMethod::srbf && !options.relief) {
-    throw Error(Status::invalid_argument, "A relief to leave out is of the methods srbf, tucker, cta and kcta.");
+    throw Error(Status::invalid_argument,
+                "Only the methods srbf, tucker, cta and kcta fit a relief that can be omitted.");
   }
   if (tensors) return std::make_unique<TensorFitter>(measurement, options, shapes_of(options), checkpoint, progress);
   if (options.method == CompressMethod::svd) {

@@ -13,27 +13,28 @@ constexpr double kFullFit = 0.7;  // fraction of the progress, if the full model
 const SceneObservation& checked(const CompressOptions& options) {
   if (options.for_scene->hits.empty()) {
     throw Error(Status::invalid_argument,
-                "The scene shows nothing of the material: no camera ray met it. Check camera, visibility and frames, "
-                "or compress without a scene.");
+                "The scene does not show the material: no camera ray hits it. Check camera, visibility and frames, or "
+                "compress without a scene.");
   }
   if (options.for_scene->domain.surface.weight() > 0) return *options.for_scene;
   throw Error(Status::invalid_argument,
-              "The observation does not say how finely the surface was seen, because its material does not vary over "
-              "it. Observe the scene with the BTF or its model as the material.");
+              "The scene usage does not contain the resolution at which the surface is shown, because it was observed "
+              "with a material that does not vary over the surface. Observe the scene again with the BTF or its model "
+              "as the material.");
 }
 
 Model checked_full_model(const BtfMeasurement& measurement, const Model& model) {
   const auto refuse = [](const std::string& what) {
     throw Error(Status::invalid_argument,
-                "The full model of a fit for a scene must be of the same BTF and for any "
-                "scene; this one is " +
+                "The full model for a scene model must be a model of the same BTF that is not reduced to a scene; this "
+                "one is " +
                     what + ".");
   };
-  if (!is_btf(model)) refuse("of a BRDF");
-  if (is_reduced(model)) refuse("itself reduced");
+  if (!is_btf(model)) refuse("a BRDF model");
+  if (is_reduced(model)) refuse("itself a scene model");
   if (model.source.sha256 != measurement.provenance().sha256) {
-    refuse("of '" + model.source.name + "', whose content differs from that of '" + measurement.provenance().name +
-           "'");
+    refuse("a model of '" + model.source.name + "', whose content differs from that of '" +
+           measurement.provenance().name + "'");
   }
   return model;
 }
@@ -50,8 +51,7 @@ void reduce(const BtfMeasurement& measurement, size_t count, const CompressOptio
   if (count == 0) return;
   if (std::holds_alternative<TensorBtf>(model.body)) {
     model.btf->warnings.emplace_back(
-        "of clustered tensors the finest levels were left out, and no more: they are not "
-        "fitted anew to what the scene shows");
+        "of clustered tensors the finest levels were left out, and no more: they are not refitted to the scene usage");
   }
   ModelBody levels = without_finest(model.body, count);
   auto refit = refit_for_scene(measurement, model.body, levels, options, progress);
@@ -74,15 +74,14 @@ Model compress_for_scene(const BtfMeasurement& measurement, const CompressOption
   const SceneObservation& observation = checked(options);
   Model model = full_model(measurement, options, progress);
   const Progress::Span reducing(progress, options.full_model ? 0 : kFullFit, 1.0);
-  progress.stage("scene", 0, 1);
+  progress.stage("reducing to the scene", 0, 1);
   SceneRecord record;
   record.domain = observation.domain;
   record.full_parameter_bytes = parameter_bytes(model.body);
   record.full_texels = {grid_of(model)->width, grid_of(model)->height};
   const size_t count = unresolved_levels(model.body, observation.domain.surface);
   reduce(measurement, count, options, model, record, progress);
-  if (count == 0)
-    model.btf->warnings.emplace_back("the scene resolves the finest texels: it needs all of the full model");
+  if (count == 0) model.btf->warnings.emplace_back("the scene resolves the finest texels, so it needs the full model");
   model.scene = std::move(record);
   progress.update(1.0);
   return model;

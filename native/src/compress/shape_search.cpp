@@ -88,8 +88,9 @@ class ShapeSearch {
   }
 
   [[noreturn]] void refuse() const {
-    throw Error(Status::invalid_argument, "No model of clustered tensors is within " + std::to_string(options_.bytes) +
-                                              " bytes; ask for more bytes, or for fewer clusters and members.");
+    throw Error(Status::invalid_argument,
+                "No model of this method fits into " + std::to_string(options_.bytes) +
+                    " bytes. Raise the maximum size, or reduce the number of clusters and members.");
   }
 
   /// A choice of `clusters` clusters, or fewer if those exceed the bytes, with `share` or else another share.
@@ -174,7 +175,7 @@ class ShapeSearch {
                              .tensor = tensor};
     const double done = static_cast<double>(found_.trials.size()) / kMaxShapeTrials;
     const Progress::Span trial(progress_, done, std::min(1.0, done + 1.0 / kMaxShapeTrials));
-    progress_.stage("shapes", 0, 1);
+    progress_.stage("searching the model shape", 0, 1);
     ClusteredTensor found = fit_clusters(fitted_, fit, progress_).tensor;
     const double of_slices = relative_error(found, tensor);
     return std::sqrt(of_slices * of_slices + found_.relief_error);

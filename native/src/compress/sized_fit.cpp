@@ -56,7 +56,7 @@ class Trials {
     std::optional<BtfErrors> errors = kept_errors(options_.checkpoint, point);
     if (!errors) {
       body = fit(point);
-      progress_.stage("errors", kTrialFit, 1);
+      progress_.stage("measuring the error", kTrialFit, 1);
       errors = errors_of_(*body, progress_);
       keep_errors(options_.checkpoint, point, *errors);
     }

@@ -82,7 +82,7 @@ SrbfFitter::SrbfFitter(const BtfMeasurement& measurement, const BtfFitOptions& o
       progress_(progress),
       views_(measurement, options.companding, options.threads, progress) {
   require_complete(measurement.layout());
-  progress.stage("colours", 0, kSrbfColors);
+  progress.stage("computing color axes", 0, kSrbfColors);
   const ColourAxes colours = find_colours(views_, measurement.layout(), checkpoint);
   axes_ = colours.axes;
   not_finite_ = colours.not_finite;
@@ -91,12 +91,12 @@ SrbfFitter::SrbfFitter(const BtfMeasurement& measurement, const BtfFitOptions& o
   const uint64_t bytes = options.bytes > 0 ? options.bytes : usual_bytes(measurement, sides_.size());
   const uint64_t texels = pyramid_texels(measurement.grid());
   curve_.points = {{1, sides_.size() * srbf_side_bytes(texels, 1, 1), 0, 1}};
-  bound(bytes, "The least model");
+  bound(bytes, "The smallest model");
   find_orders(bytes);
   shares_.emplace(demand_, texels);
   curve_ = shares_->curve();
   for (OrderPoint& point : curve_.points) point.relative_l2 *= kHeight;
-  bound(all ? ~uint64_t{0} : bytes, "The least model");
+  bound(all ? ~uint64_t{0} : bytes, "The smallest model");
 }
 
 void SrbfFitter::find_sides(const ColourAxes& colours) {
@@ -125,7 +125,7 @@ void SrbfFitter::find_orders(uint64_t bytes) {
     std::optional<LobeOrder> kept = kept_order(checkpoint_, stage);
     if (!kept) {
       const std::vector<SurfacePoint>& points = points_of(s);
-      progress_.stage("lobes", kPoints, 1);
+      progress_.stage("choosing lobes", kPoints, 1);
       kept = order_lobes(points, order, progress_);
       keep_order(checkpoint_, stage, *kept);
     }
@@ -152,7 +152,7 @@ uint32_t SrbfFitter::search_points(size_t most) {
 const std::vector<SurfacePoint>& SrbfFitter::points_of(size_t number) {
   Side& side = sides_[number];
   if (!side.points.empty()) return side.points;
-  progress_.stage("points", 0, kPoints);
+  progress_.stage("sampling surface points", 0, kPoints);
   const SurfacePointOptions sampling{points_for(measurement_.grid()), kPairs, options_.seed};
   side.points = surface_points(views_, measurement_.grid(), side.directions, side.relief[0], sampling, progress_);
   return side.points;
@@ -167,7 +167,7 @@ ModelBody SrbfFitter::fit(size_t point) {
     const Side& side = sides_[s];
     const std::string stage = "fit." + std::to_string(point) + "." + side_stage(s);
     const SharedLobes lobes = lobes_of(s, count[s], stage + ".lobes");
-    progress_.stage("texels", kLobes, 1);
+    progress_.stage("fitting texels", kLobes, 1);
     const TexelLevelsInput input{measurement_.grid(), side.directions, side.relief, lobes,
                                  options_.companding, options_.threads};
     SrbfSide& fitted = btf.sides.emplace_back(SrbfSide{
@@ -182,7 +182,7 @@ SharedLobes SrbfFitter::lobes_of(size_t side, size_t coefficients, const std::st
   SharedLobes lobes = chosen_lobes(order, coefficients, options_.seed);
   if (take_kept_lobes(checkpoint_, stage, lobes)) return lobes;
   const std::vector<SurfacePoint>& points = points_of(side);
-  progress_.stage("lobes", kPoints, kLobes);
+  progress_.stage("refining lobes", kPoints, kLobes);
   refine_lobes(points, order.share(coefficients), {kRefinements, options_.threads}, lobes, progress_);
   keep_lobes(checkpoint_, stage, lobes);
   return lobes;

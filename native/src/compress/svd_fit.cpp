@@ -32,7 +32,7 @@ void rotate(RowMatrix& response, Eigen::VectorXd& energy) {
 SvdFitter::SvdFitter(const BtfMeasurement& measurement, const BtfFitOptions& options, FitCheckpoint& checkpoint,
                      Progress& progress)
     : FactoredFitter(measurement, options, checkpoint, progress, false) {
-  progress.stage("colours", 0, 0.1);
+  progress.stage("computing color axes", 0, 0.1);
   find_axes();
   const uint64_t most = most_components();
   uint64_t count = options.tolerance > 0 ? std::min(most, kFirstLook) : most;
@@ -59,7 +59,7 @@ void SvdFitter::sketch(uint64_t components, double begin, double end) {
   }
   for (int i = done; i <= kPowerIterations; ++i) {
     const double step = (end - begin) / (kPowerIterations + 1);
-    progress_.stage("directions", begin + step * i, begin + step * (i + 1));
+    progress_.stage("computing direction functions", begin + step * i, begin + step * (i + 1));
     pass(i < kPowerIterations);
     if (i == kPowerIterations) break;
     checkpoint_.forget("sketch.");

@@ -73,7 +73,7 @@ TensorFitter::TensorFitter(const BtfMeasurement& measurement, const BtfFitOption
       views_(measurement, options.companding, options.threads, progress) {
   require_complete(measurement.layout());
   allowance_ = tensor_allowance(options.memory, extent_of(measurement), entries_of(measurement.layout()));
-  progress.stage("colours", 0, kTensorColors);
+  progress.stage("computing color axes", 0, kTensorColors);
   const ColourAxes colours = find_colours(views_, measurement.layout(), checkpoint);
   axes_ = colours.axes;
   not_finite_ = colours.not_finite;
@@ -82,7 +82,7 @@ TensorFitter::TensorFitter(const BtfMeasurement& measurement, const BtfFitOption
   uint64_t least = 0;
   for (size_t s = 0; s < sides_.size(); ++s) least += tensor_bytes({}, extent(s));
   curve_.points = {{1, least, 0, 1}};
-  bound(bytes, "The least model");
+  bound(bytes, "The smallest model");
   const double share = (1 - kTensorColors) / static_cast<double>(sides_.size());
   for (size_t s = 0; s < sides_.size(); ++s) {
     const Progress::Span of_side(progress_, kTensorColors + share * static_cast<double>(s),
@@ -92,7 +92,7 @@ TensorFitter::TensorFitter(const BtfMeasurement& measurement, const BtfFitOption
     shapes_.insert(shapes_.end(), sides_[s].found.trials.begin(), sides_[s].found.trials.end());
   }
   set_curve(bytes);
-  bound(options.bytes == 0 && options.tolerance > 0 ? ~uint64_t{0} : bytes, "The least model");
+  bound(options.bytes == 0 && options.tolerance > 0 ? ~uint64_t{0} : bytes, "The smallest model");
 }
 
 void TensorFitter::find_sides(const ColourAxes& colours) {
@@ -146,9 +146,9 @@ void TensorFitter::reduce(size_t side) {
   if (of.reduced) return;
   const size_t a_point = of.directions.view.size() * of.directions.light.size() * 3;
   const size_t points = std::clamp(allowance_.point_floats / a_point, kMinBasisPoints, kMaxBasisPoints);
-  progress_.stage("directions", 0, kBases);
+  progress_.stage("computing direction functions", 0, kBases);
   of.bases = direction_bases(views_, source(side), kDirections, points, progress_);
-  progress_.stage("texels in common", kBases, kReduced);
+  progress_.stage("sampling texels", kBases, kReduced);
   std::vector<uint32_t> texels =
       random_texels(measurement_.grid().texels(), allowance_.slices / sides_.size(), options_.seed);
   of.reduced = reduced_texels(views_, source(side), *of.bases, std::move(texels), progress_);
@@ -197,7 +197,7 @@ void TensorFitter::settle_rival(size_t side) {
 /// Error of a model with this side alone.
 double TensorFitter::error_of(const TensorSide& side) {
   const ModelBody alone = TensorBtf{measurement_.layout(), measurement_.grid(), options_.companding, axes_, {side}, {}};
-  progress_.stage("errors", kFitted, 1);
+  progress_.stage("measuring the error", kFitted, 1);
   return compare_btf(measurement_, images_of(alone), {.companding = options_.companding}, options_.threads, progress_)
       .relative_l2;
 }
@@ -287,7 +287,7 @@ void TensorFitter::set_clusters(size_t side, const std::string& stage, TensorSid
     const Progress::Span reading(progress_, 0, kClusters / 2);
     reduce(side);
   }
-  progress_.stage("clusters", kClusters / 2, kClusters);
+  progress_.stage("clustering texels", kClusters / 2, kClusters);
   const TensorSide::Ranks& rank = fitted.rank;
   const ClusterFit found = fit_clusters(of.reduced->slices.view(),
                                         {.clusters = static_cast<Index>(fitted.clusters.size()),

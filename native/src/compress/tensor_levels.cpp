@@ -190,21 +190,21 @@ void solve_tensor_levels(CompandedViews& views, const TensorSource& source, Comp
   }
   LevelFit fit(views, source, companding, checkpoint, progress, side);
   if (!take_kept_clusters(checkpoint, stage + "refit.", source.side, side)) {
-    progress.stage("texels", 0, kFirst);
+    progress.stage("fitting texels", 0, kFirst);
     fit.solve(TensorFunctions(side, source.threads, progress), stage + "first.");
-    progress.stage("functions", kFirst, kRefitted);
+    progress.stage("refitting functions", kFirst, kRefitted);
     fit.refit();
     checkpoint.forget(stage + "first.");
     keep_clusters(checkpoint, stage + "refit.", side);
   }
-  progress.stage("texels", kRefitted, kSecond);
+  progress.stage("fitting texels", kRefitted, kSecond);
   {
     const TensorFunctions functions(side, source.threads, progress);
     fit.solve(functions, stage);
     fit.brighten(functions);
     fit.round(functions);
   }
-  progress.stage("functions", kSecond, 1);
+  progress.stage("refitting functions", kSecond, 1);
   fit.refit();
   fit.mend_brightness();
   progress.update(1);

@@ -22,9 +22,9 @@ ViewSvdFitter::ViewSvdFitter(const BtfMeasurement& measurement, const BtfFitOpti
                              Progress& progress)
     : FactoredFitter(measurement, options, checkpoint, progress, true) {
   const uint64_t most = most_components();
-  progress.stage("colours", 0, kViewColors);
+  progress.stage("computing color axes", 0, kViewColors);
   find_axes();
-  progress.stage("directions", kViewColors, 1);
+  progress.stage("computing direction functions", kViewColors, 1);
   std::vector<Component> components;
   function_of_.resize(views_.views());
   for (uint32_t v = 0; v < views_.views(); ++v) {

@@ -35,7 +35,7 @@ class Denoiser::Filter {
     const auto width = static_cast<size_t>(picture_.width), height = static_cast<size_t>(picture_.height);
     if (pixels.size() != 3 * width * height) {
       throw Error(Status::invalid_argument,
-                  std::string("The picture to denoise has another size than its ") + name + ".");
+                  std::string("The image to denoise and its ") + name + " must have the same size.");
     }
     oidn_.SetSharedFilterImage(filter_, name, pixels.data(), kFloat3, width, height, 0, 0, 0);
   }
@@ -55,7 +55,7 @@ class Denoiser::Filter {
 
 Denoiser::Denoiser(int threads, Effort effort)
     : oidn_(open_image_denoise()), effort_(effort), device_(oidn_.NewDevice(kCpu)) {
-  if (device_ == nullptr) throw Error(Status::unsupported, path() + " does not run on this processor.");
+  if (device_ == nullptr) throw Error(Status::unsupported, path() + " does not support this processor.");
   oidn_.SetDeviceInt(device_, "numThreads", threads > 0 ? threads : tbb::info::default_concurrency());
   oidn_.SetDeviceBool(device_, "setAffinity", false);  // the host shares these threads
   oidn_.CommitDevice(device_);
@@ -75,7 +75,7 @@ void Denoiser::check(const Progress& progress) const {
   if (error == kCancelled) progress.check();
   if (error == kNoError || error == kCancelled) return;
   throw Error(Status::unsupported,
-              path() + " cannot denoise: " + (message != nullptr ? message : "it does not say why"));
+              path() + " cannot denoise the image: " + (message != nullptr ? message : "unknown error"));
 }
 
 void Denoiser::prefilter(const NoisyPicture& picture, const char* name, std::span<const float> noisy,

@@ -7,8 +7,8 @@ namespace velour {
 namespace {
 
 constexpr const char* kRemedy =
-    "Blender's own builds since 4.0 bring it; elsewhere scripts/setup --denoise installs it, and VELOUR_OIDN names its "
-    "file.";
+    "Blender's official builds since 4.0 include it; elsewhere install it with scripts/setup --denoise, or set "
+    "VELOUR_OIDN to the path of its library.";
 
 std::mutex mutex;
 std::string file;

@@ -63,14 +63,14 @@ void read_directions(const JsonFields& fields, ViewWeights& views) {
   const auto weights = fields.values<double>("views", views.weight.size());
   std::ranges::copy(weights, views.weight.begin());
   const bool good = std::ranges::all_of(weights, [](double w) { return w >= 0; });
-  if (!good || !std::isfinite(views.sum())) fields.fail("views", "numbers of at least 0 of a finite sum");
+  if (!good || !std::isfinite(views.sum())) fields.fail("views", "numbers of at least 0 with a finite sum");
 }
 
 SurfaceDomain read_surface(const JsonFields& fields) {
   SurfaceDomain surface;
   std::ranges::copy(fields.numbers("footprint", surface.footprint.size()), surface.footprint.begin());
   std::ranges::copy(fields.numbers("tile", surface.tile.size()), surface.tile.begin());
-  if (!std::isfinite(surface.weight())) fields.fail("footprint", "a list of numbers of a finite sum");
+  if (!std::isfinite(surface.weight())) fields.fail("footprint", "a list of numbers with a finite sum");
   if (fields.has("views")) read_directions(fields, surface.views);
   return surface;
 }
@@ -78,7 +78,7 @@ SurfaceDomain read_surface(const JsonFields& fields) {
 SceneDomain read_domain(const JsonFields& fields) {
   SceneDomain domain;
   std::ranges::copy(fields.numbers("view", SceneDomain::kViewBins), domain.view.begin());
-  if (!std::isfinite(domain.weight())) fields.fail("view", "a list of numbers of a finite sum");
+  if (!std::isfinite(domain.weight())) fields.fail("view", "a list of numbers with a finite sum");
   domain.camera_rays = fields.whole("camera_rays", kMostRays);
   domain.frames = fields.whole("frames", kMostRays);
   domain.light_density = fields.number_or_infinite("light_density");
@@ -104,13 +104,13 @@ void read_term_counts(const JsonFields& fields, uint64_t total, std::vector<Obse
     hits[i].last = static_cast<uint32_t>(next = last);
   }
   if (next != total || (!hits.empty() && hits.back().last != total)) {
-    fields.fail("terms", "numbers whose sum is 'terms.count'");
+    fields.fail("terms", "counts that add up to 'terms.count'");
   }
 }
 
 void read_sides(const JsonFields& fields, std::vector<ObservedHit>& hits) {
   const auto back = fields.values<uint8_t>("back", hits.size());
-  if (!std::ranges::all_of(back, [](uint8_t b) { return b <= 1; })) fields.fail("back", "bytes of 0 or 1");
+  if (!std::ranges::all_of(back, [](uint8_t b) { return b <= 1; })) fields.fail("back", "a list of bytes 0 or 1");
   for (size_t i = 0; i < hits.size(); ++i) hits[i].back = back[i] == 1;
 }
 
@@ -120,7 +120,7 @@ std::vector<ObservedHit> read_hits(const JsonFields& fields, uint64_t terms) {
   const auto wv = fields.values<Vec3>("wv", hits.size());
   const auto light_density = fields.values<float>("light_density", hits.size());
   if (!std::ranges::is_sorted(key)) fields.fail("key", "in ascending order");
-  if (!std::ranges::all_of(wv, is_above_horizon)) fields.fail("wv", "unit directions above the horizon");
+  if (!std::ranges::all_of(wv, is_above_horizon)) fields.fail("wv", "unit vectors above the horizon");
   if (!std::ranges::all_of(light_density, [](float d) { return d >= 0.0f; })) {
     fields.fail("light_density", "numbers of at least 0");
   }
@@ -136,15 +136,15 @@ bool is_finite(const Rgb& c) { return std::isfinite(c.r) && std::isfinite(c.g) &
 void read_terms(const JsonFields& fields, uint64_t count, SceneObservation& observation) {
   observation.wl = fields.values<Vec3>("wl", count);
   observation.light = fields.values<Rgb>("light", count);
-  if (!std::ranges::all_of(observation.wl, is_unit)) fields.fail("wl", "unit directions");
+  if (!std::ranges::all_of(observation.wl, is_unit)) fields.fail("wl", "unit vectors");
   if (!std::ranges::all_of(observation.light, is_finite)) fields.fail("light", "finite numbers");
 }
 
 Json parsed(std::span<const uint8_t> bytes, const std::string& name) {
   Json json = parse_json(bytes);
   if (!is_of_format(json, kFormat)) {
-    throw Error(Status::bad_data, name + ": is not an observation of a scene, which is JSON of the format '" + kFormat +
-                                      "'; it may be cut short. Write one with 'velour observe'.");
+    throw Error(Status::bad_data, name + ": is not a scene usage file (JSON with format '" + kFormat +
+                                      "'); it may be truncated. Write it again with 'velour observe'.");
   }
   return json;
 }
@@ -152,9 +152,9 @@ Json parsed(std::span<const uint8_t> bytes, const std::string& name) {
 void check_version(const JsonFields& fields, const std::string& name) {
   const uint64_t version = fields.whole("version", std::numeric_limits<uint64_t>::max());
   if (version == kVersion) return;
-  throw Error(Status::version_mismatch, name + ": is an observation of format version " + std::to_string(version) +
-                                            ", this library reads version " + std::to_string(kVersion) +
-                                            "; observe the scene anew.");
+  throw Error(Status::version_mismatch, name + ": the scene usage has format version " + std::to_string(version) +
+                                            "; this Velour reads version " + std::to_string(kVersion) +
+                                            ". Observe the scene again.");
 }
 
 }  // namespace
@@ -179,7 +179,7 @@ std::string encode_observation(const SceneObservation& observation) {
 
 SceneObservation decode_observation(std::span<const uint8_t> bytes, const std::string& name) {
   const Json json = parsed(bytes, name);
-  const JsonSource source{name, "the file is damaged, observe the scene anew."};
+  const JsonSource source{name, "the file is damaged. Observe the scene again."};
   const JsonFields fields(json, source);
   check_version(fields, name);
   SceneObservation observation;
@@ -189,7 +189,7 @@ SceneObservation decode_observation(std::span<const uint8_t> bytes, const std::s
   observation.hits = read_hits(fields.object("hits"), count);
   read_terms(terms, count, observation);
   if (observation.hits.empty() != (observation.domain.weight() == 0.0)) {
-    fields.fail("hits", "of the weight that 'view' has");
+    fields.fail("hits", "empty if and only if all weights in 'view' are 0");
   }
   return observation;
 }

@@ -23,7 +23,7 @@ class ByteReader {
   const std::string& name() const { return name_; }
 
   void seek(uint64_t position, const std::string& field) {
-    if (position > bytes_.size()) fail(field + " points at byte " + std::to_string(position));
+    if (position > bytes_.size()) fail(field + " points to byte " + std::to_string(position));
     position_ = position;
   }
 

@@ -24,7 +24,7 @@ int open_for_reading(const std::string& path) {
 uint64_t regular_size(int fd, const std::string& path) {
   struct stat info {};
   if (::fstat(fd, &info) != 0) fail_with_code(path, "read", errno);
-  if (!S_ISREG(info.st_mode)) throw Error(Status::io, path + ": is not a regular file; give a file.");
+  if (!S_ISREG(info.st_mode)) throw Error(Status::io, path + ": is not a regular file; choose a file.");
   return static_cast<uint64_t>(info.st_size);
 }
 

@@ -29,8 +29,8 @@ std::vector<uint8_t> read_file(const std::string& path, uint64_t limit) {
   const Descriptor fd(open_for_reading(path));
   const uint64_t size = regular_size(fd.get(), path);
   if (size > limit)
-    throw Error(Status::bad_data, path + ": holds " + std::to_string(size) + " bytes, more than the limit of " +
-                                      std::to_string(limit) + "; is it the right file?");
+    throw Error(Status::bad_data, path + ": has " + std::to_string(size) + " bytes, more than the limit of " +
+                                      std::to_string(limit) + ". Check that it is the right file.");
   std::vector<uint8_t> bytes(size);
   read_all(fd.get(), path, bytes);
   return bytes;

@@ -12,12 +12,12 @@ JsonFields::JsonFields(const Json& json, const JsonSource& source, std::string p
     : json_(json), source_(source), path_(std::move(path)) {}
 
 void JsonFields::fail(const std::string& key, const std::string& wanted) const {
-  throw Error(Status::bad_data, source_.name + ": '" + path_ + key + "' is not " + wanted + "; " + source_.remedy);
+  throw Error(Status::bad_data, source_.name + ": '" + path_ + key + "' must be " + wanted + "; " + source_.remedy);
 }
 
 const JsonFields::Json& JsonFields::at(const char* key) const {
   const auto found = json_.find(key);
-  if (found == json_.end()) fail(key, "there");
+  if (found == json_.end()) fail(key, "present");
   return *found;
 }
 
@@ -29,7 +29,7 @@ JsonFields JsonFields::object(const char* key) const {
 
 std::string JsonFields::text(const char* key) const {
   const Json& json = at(key);
-  if (!json.is_string()) fail(key, "a text");
+  if (!json.is_string()) fail(key, "a string");
   return json.get<std::string>();
 }
 
@@ -42,7 +42,7 @@ bool JsonFields::flag(const char* key) const {
 uint64_t JsonFields::whole(const char* key, uint64_t most) const {
   const Json& json = at(key);
   if (!json.is_number_unsigned() || json.get<uint64_t>() > most) {
-    fail(key, "a whole number from 0 to " + std::to_string(most));
+    fail(key, "an integer from 0 to " + std::to_string(most));
   }
   return json.get<uint64_t>();
 }

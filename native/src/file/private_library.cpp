@@ -59,9 +59,8 @@ PrivateLibrary::~PrivateLibrary() {
 void* PrivateLibrary::address(const char* name) const {
   void* found = dlsym(handle_, name);
   if (found == nullptr) {
-    throw Error(Status::version_mismatch, path_ + " has no entry point " + name +
-                                              ": install the version of it that "
-                                              "this library was built for.");
+    throw Error(Status::version_mismatch,
+                path_ + " has no function " + name + ": install the version that Velour was built for.");
   }
   return found;
 }

@@ -16,7 +16,7 @@ void RandomAccessFile::read(uint64_t offset, std::span<uint8_t> bytes) const {
     if (got < 0) fail_with_code(path_, "read", errno);
     if (got == 0) {
       throw Error(Status::bad_data,
-                  path_ + ": ends at byte " + std::to_string(offset) + "; it was cut short after it was opened.");
+                  path_ + ": ends at byte " + std::to_string(offset) + "; it was truncated while it was being read.");
     }
     bytes = bytes.subspan(static_cast<size_t>(got));
     offset += static_cast<uint64_t>(got);

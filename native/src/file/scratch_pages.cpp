@@ -23,8 +23,8 @@ int nameless_file(const std::string& folder, uint64_t bytes) {
   const int problem = file < 0 ? errno : posix_fallocate(file, 0, static_cast<off_t>(bytes));
   if (problem == 0) return file;
   if (file >= 0) close(file);
-  throw Error(Status::io, folder + ": no temporary file of " + std::to_string(bytes) + " bytes can be made there: " +
-                              std::strerror(problem) + ". Free space, or raise the memory limit.");
+  throw Error(Status::io, folder + ": cannot create a temporary file of " + std::to_string(bytes) +
+                              " bytes: " + std::strerror(problem) + ". Free disk space, or raise the memory limit.");
 }
 
 }  // namespace
@@ -40,7 +40,8 @@ ScratchPages::ScratchPages(uint64_t bytes, uint64_t limit, const std::string& fo
   if (data_ != MAP_FAILED) return;
   data_ = nullptr;
   if (!in_file_) throw std::bad_alloc();
-  throw Error(Status::io, folder + ": a temporary file cannot be mapped: " + std::strerror(problem) + ".");
+  throw Error(Status::io,
+              folder + ": cannot map a temporary file: " + std::strerror(problem) + ". Raise the memory limit.");
 }
 
 ScratchPages::~ScratchPages() {

@@ -24,8 +24,8 @@ void warn_of_gamut(const std::vector<MeasuredSlice>& slices, std::vector<std::st
   }
   if (outside == 0) return;
   warnings.push_back(std::to_string(outside) + " of " + std::to_string(total) +
-                     " fitted values have a negative channel (a colour outside Rec. 709), which non-negative "
-                     "coefficients cannot follow; alone they cost a relative L2 of up to " +
+                     " fitted values have a negative channel (a color outside Rec. 709), which non-negative "
+                     "coefficients cannot represent; this alone causes a relative L2 error of up to " +
                      std::to_string(cost));
 }
 
@@ -40,7 +40,8 @@ void check_options(const FitOptions& o, int most_lobes) {
     refuse("The fit's max_lobes is " + std::to_string(o.max_lobes) + "; it must be 1 to " + std::to_string(most_lobes) +
            " for this measurement.");
   }
-  if (o.threads < 0) refuse("The fit's threads is " + std::to_string(o.threads) + "; it must be 0 (all) or more.");
+  if (o.threads < 0)
+    refuse("The fit's number of threads is " + std::to_string(o.threads) + "; it must be at least 0 (0: all).");
 }
 
 MeasuredSlices read_slices(const Measurement& measurement, const SliceGrid& grid, const FitOptions& options,
@@ -53,8 +54,8 @@ MeasuredSlices read_slices(const Measurement& measurement, const SliceGrid& grid
     throw Error(Status::bad_data, "'" + measurement.provenance().path +
                                       "' has no view direction with at least 8 valid light directions (" +
                                       std::to_string(n.valid) + " of " + std::to_string(n.valid + n.invalid()) +
-                                      " entries are valid); there is nothing to fit. Measure more directions, or "
-                                      "check how the file marks what is missing.");
+                                      " entries are valid), so it cannot be fitted. Measure more directions, or check "
+                                      "how the file marks missing values.");
   }
   if (grid.folded && !source.samples().empty()) {
     for (MeasuredSlice& slice : slices.slices) slice.interpolated = true;

@@ -16,8 +16,8 @@ uint64_t size_of_parametric(const Model& model, const FitOptions& options) {
 
 [[noreturn]] void refuse_bound(const FitOptions& options, const char* of_what, uint64_t smallest) {
   throw Error(Status::invalid_argument, "The fit's max_bytes is " + std::to_string(options.max_bytes) +
-                                            "; the smallest model " + of_what + " takes " + std::to_string(smallest) +
-                                            ".");
+                                            ", but the smallest model " + of_what + " takes " +
+                                            std::to_string(smallest) + " bytes. Raise the maximum size.");
 }
 
 /// A scene model is already as small as its error allows, so the bound is only checked.
@@ -45,11 +45,13 @@ Model bounded_parametric(const Measurement& measurement, FitOptions options, Pro
 void refuse_contradictions(ModelKind kind, const FitOptions& options) {
   const auto refuse = [](const char* sentence) { throw Error(Status::invalid_argument, sentence); };
   if (kind != ModelKind::parametric) {
-    if (options.for_scene) refuse("Only parametric models can be fitted for a scene.");
-    if (options.limit_albedo) refuse("Only parametric models can have their albedo limited.");
-    if (options.symmetric) refuse("Only parametric models can be made symmetric.");
+    if (options.for_scene) refuse("Only parametric models can be reduced to a scene.");
+    if (options.limit_albedo) refuse("The albedo can only be limited for parametric models.");
+    if (options.symmetric) refuse("Only parametric models can be made reciprocal (symmetric).");
   } else if (options.for_scene && options.symmetric) {
-    refuse("A model reduced to the views of a scene cannot be symmetric: its lights are not among its views.");
+    refuse(
+        "A scene model cannot be made reciprocal (symmetric), because it covers only the views of the scene and not "
+        "its light directions.");
   }
 }
 

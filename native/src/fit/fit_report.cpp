@@ -37,8 +37,8 @@ void warn_of_errors(const FitRecord& record, std::vector<std::string>& warnings)
     const auto error = record.by_view_angle.at(std::to_string(degrees));
     const double limit = tolerance_at(record.tolerance, radians_from(static_cast<double>(degrees)));
     if (error && *error > limit) {
-      warnings.push_back("view " + std::to_string(degrees) + " degrees: relative L2 " + number(*error) + " exceeds " +
-                         number(limit));
+      warnings.push_back("view " + std::to_string(degrees) + " degrees: relative L2 error " + number(*error) +
+                         " exceeds the tolerance " + number(limit));
     }
     if (!error) warnings.push_back("view " + std::to_string(degrees) + " degrees: the measurement does not cover it");
   }
@@ -61,7 +61,7 @@ void warn_of_fitted_views(const std::vector<FittedView>& fitted, const FitOption
     names += " and " + std::to_string(missed - kMostNamed) + " more of " + std::to_string(fitted.size());
   warnings.push_back("fitted views that miss the tolerance with at most " + std::to_string(options.max_lobes) +
                      " lobes (degrees): " + names + "; the worst is " + view_name(worst->wv, isotropic) +
-                     " with relative L2 " + number(worst->relative_l2));
+                     " with relative L2 error " + number(worst->relative_l2));
 }
 
 void warn_of_albedo(const Measurement& measurement, const Vec3& wv, FitRecord& record) {
@@ -70,13 +70,14 @@ void warn_of_albedo(const Measurement& measurement, const Vec3& wv, FitRecord& r
   const double measured = largest(directional_albedo(measurement, wv).albedo);  // over the lights that it covers
   if (measured > kWrongScale) {
     record.warnings.push_back(where +
-                              "the measurement reflects more light there than arrives, far more than errors "
-                              "explain: check its scale");
+                              "the measurement reflects more light there than arrives, far more than measurement "
+                              "errors explain; check its scale");
   } else if (measured > 1) {
     record.warnings.push_back(where + "the measurement reflects more light there than arrives");
   } else {
-    record.warnings.push_back(where + "the model reflects more light there than arrives, the measurement " +
-                              number(measured) + "; allow it more lobes");
+    record.warnings.push_back(where +
+                              "the model reflects more light there than arrives, but the measurement has albedo " +
+                              number(measured) + "; allow more lobes");
   }
 }
 

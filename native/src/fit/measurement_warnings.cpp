@@ -30,7 +30,7 @@ void warn_of_entries(const Measurement& measurement, std::vector<std::string>& w
   const uint64_t possible = n.valid + n.invalid();
   if (static_cast<double>(n.invalid()) > kManyInvalid * static_cast<double>(possible)) {
     warnings.push_back(std::to_string(n.invalid()) + " of " + std::to_string(possible) +
-                       " entries are invalid and were left out; errors are those of the others");
+                       " entries are invalid and were left out; errors are measured on the others");
   }
 }
 
@@ -39,19 +39,19 @@ void warn_of_few_samples(size_t samples, bool all_data, std::vector<std::string>
   uint64_t judges = 0;
   for (uint64_t i = 0; i < samples; ++i) judges += held_out_sample(i);
   warnings.push_back("the measurement has " + std::to_string(samples) +
-                     " samples: what lies between them is a guess, and the errors rest on " + std::to_string(judges) +
-                     (all_data ? " that the fit has seen" : " that were held out"));
+                     " samples: what lies between them is a guess, and the errors are measured on " +
+                     std::to_string(judges) + (all_data ? " fitted samples" : " held-out samples"));
 }
 
 void warn_of_azimuth(std::span<const ScatteredSample> samples, std::vector<std::string>& warnings) {
   const std::optional<AzimuthSpread> spread = azimuth_spread(samples);
   if (!spread || spread->turned < kBrushed || spread->turned < 2 * spread->alike) return;
   warnings.push_back("the surface is anisotropic: " + std::to_string(spread->turned_pairs) +
-                     " pairs of samples that differ in azimuth alone differ by a factor of " +
-                     three_digits(std::exp(spread->turned)) + " (median), those of one azimuth by " +
+                     " pairs of samples that differ only in azimuth differ by a factor of " +
+                     three_digits(std::exp(spread->turned)) + " (median), pairs with the same azimuth by " +
                      three_digits(std::exp(spread->alike)) +
-                     "; scattered samples are fitted as isotropic, so the model is a mean over azimuths. A table with "
-                     "azimuths (docs/reference/measurement_formats.md, velour-table) keeps them");
+                     "; irregular samples are fitted as isotropic, so the model is a mean over azimuths. Use a table "
+                     "with azimuths (docs/reference/measurement_formats.md, velour-table) to keep them");
 }
 
 /// Names the view whose noise exceeds its tolerance by the largest factor.
@@ -68,9 +68,9 @@ void warn_of_noise(const Comparison& errors, double tolerance, std::vector<std::
   if (count == 0) return;
   warnings.push_back("the measurement's own noise exceeds the tolerance at " + std::to_string(count) +
                      " of the reported views; at " + std::to_string(worst) +
-                     " degrees values that symmetry or reciprocity makes equal differ by " +
+                     " degrees, values that symmetry or reciprocity should make equal differ by " +
                      three_digits(*errors.noise_by_view_angle.at(std::to_string(worst))) +
-                     ": a smaller error there says nothing, a larger tolerance saves lobes");
+                     ". A smaller error is meaningless there, and a larger tolerance saves lobes");
 }
 
 /// Names views as "view 5 degrees" or "views 5, 30 degrees", with the smallest of their values.
@@ -95,9 +95,9 @@ void warn_of_narrow_views(const Comparison& errors, std::vector<std::string>& wa
   for (const auto& [degrees, share] : errors.narrow_views) views.add(degrees, share);
   if (views.empty()) return;
   warnings.push_back(views.names() +
-                     ": the highlight, or a lobe of the model, is narrower than the spacing of the error's 4096 "
-                     "directions, which see as little as " +
-                     views.least() + " of the highlight's energy; the error was taken on closer directions instead");
+                     ": the highlight, or a lobe of the model, is narrower than the spacing of the 4096 directions "
+                     "that measure the error, which capture as little as " +
+                     views.least() + " of its energy; the error was measured with closer directions instead");
 }
 
 void warn_of_holes(const Comparison& errors, std::vector<std::string>& warnings) {
@@ -107,26 +107,26 @@ void warn_of_holes(const Comparison& errors, std::vector<std::string>& warnings)
   }
   if (views.empty()) return;
   warnings.push_back(views.names() + ": the measurement covers as little as " + views.least() +
-                     " of the light directions; errors are those of these, elsewhere the model is a guess");
+                     " of the light directions; errors are measured on these, and elsewhere the model is a guess");
 }
 
 void warn_of_nothing_to_judge(const Comparison& errors, std::vector<std::string>& warnings) {
   const bool judged = std::any_of(errors.by_view_angle.begin(), errors.by_view_angle.end(),
                                   [](const auto& entry) { return entry.second.has_value(); });
   if (!judged) {
-    warnings.emplace_back("no reported view is covered: the error is not known, and is given as 1");
+    warnings.emplace_back("no reported view is covered: the error is not known and is reported as 1");
   }
 }
 
 void warn_of_darkness(double albedo, double error, std::vector<std::string>& warnings) {
   if (albedo == 0 && error > 0) {
     warnings.push_back(
-        "the model is black: the measurement is darker than what can be fitted; check the measurement's scale");
+        "the model is black: the measurement is darker than any value that can be fitted; check its scale");
   } else if (albedo == 0) {
     warnings.push_back("the measurement is black at every view; check that it is the right file");
   } else if (albedo < kDarkest) {
     warnings.push_back("albedo at most " + three_digits(albedo) +
-                       " at every view, darker than any material we know of: check the measurement's scale");
+                       " at every view, darker than any known material; check the scale of the measurement");
   }
 }
 
@@ -140,7 +140,8 @@ void warn_of_reciprocity(const FitRecord& record, std::vector<std::string>& warn
   if (is_not_reciprocal(record)) {
     warnings.push_back("the measurement is not reciprocal: exchanging light and view changes it by " +
                        three_digits(*record.measured_reciprocity) +
-                       " (relative L2); the model follows it, and light paths traced from either end will differ");
+                       " (relative L2), and so does the model; paths traced from the camera and from the lights will "
+                       "give different images");
   } else if (record.reciprocity > kBrokenReciprocity) {
     warnings.push_back("the model is not reciprocal: exchanging light and view changes it by " +
                        three_digits(record.reciprocity) + " (relative L2)");

@@ -73,7 +73,7 @@ Model fit_parametric(const Measurement& measurement, const FitOptions& options, 
   progress.stage("fitting", 0.1 * share, 0.9 * share);
   const TrackedFitOptions tracked = tracked_options(measurement, options);
   TrackedFit fit = fit_tracked(measured.slices, tracked, progress);
-  progress.stage("checking", 0.9 * share, share);
+  progress.stage("checking the model", 0.9 * share, share);
   fit.brdf.symmetric = options.symmetric;
   const bool limited = options.limit_albedo && limit_albedo(fit.brdf, options.threads, progress);
   if (limited || options.symmetric) judge_again(measured.slices, tracked, fit, progress);

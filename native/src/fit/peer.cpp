@@ -30,11 +30,11 @@ uint64_t PeerFit::parameter_bytes() const {
 
 PeerFit judge_peer(const Measurement& measurement, Peer peer, int threads, Progress& progress) {
   PeerFit out;
-  progress.stage(peer == Peer::ggx ? "ggx fit" : "principled fit", 0, 0.5);
+  progress.stage(peer == Peer::ggx ? "fitting GGX" : "fitting Principled BSDF", 0, 0.5);
   const auto start = std::chrono::steady_clock::now();
   out.parameters = fit_peer(measurement, peer, threads, progress);
   out.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  progress.stage("compare", 0.5, 1);
+  progress.stage("comparing", 0.5, 1);
   out.error = compare(measurement, *make_peer_material(out.parameters), progress);
   return out;
 }

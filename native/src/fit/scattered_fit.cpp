@@ -68,8 +68,8 @@ Model bounded_model(const Measurement& measurement, const FittedSlices& all, con
     if (size <= options.max_bytes) return model;
     if (budget == ScatteredBrdf::kViewBytes) {
       throw Error(Status::invalid_argument, "The fit's max_bytes is " + std::to_string(options.max_bytes) +
-                                                "; the smallest model of this measurement takes " +
-                                                std::to_string(size) + ".");
+                                                ", but the smallest model of this measurement takes " +
+                                                std::to_string(size) + " bytes. Raise the maximum size.");
     }
     const uint64_t excess = size - options.max_bytes + ScatteredBrdf::kLobeBytes;
     budget = budget > excess + ScatteredBrdf::kViewBytes ? budget - excess : ScatteredBrdf::kViewBytes;
@@ -89,7 +89,7 @@ Model fit_scattered(const Measurement& measurement, const FitOptions& options, P
   auto paths = fit_slices(measured.slices, options, progress);
   const FittedSlices fitted{std::move(measured.slices), std::move(paths)};
 
-  progress.stage("checking", 0.95, 1.0);
+  progress.stage("checking the model", 0.95, 1.0);
   Model model = options.max_bytes > 0 ? bounded_model(measurement, fitted, options, progress)
                                       : reported(measurement, fitted, fitted, options, progress);
   model.fit.warnings.insert(model.fit.warnings.end(), warnings.begin(), warnings.end());

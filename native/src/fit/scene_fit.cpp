@@ -87,7 +87,7 @@ class SceneSearch {
     double at = begin;
     for (const int cells : kCells) {
       if (cells > most) break;
-      progress_.stage("scene", at, at);
+      progress_.stage("fitting the scene model", at, at);
       at += (end - begin) / static_cast<double>(std::size(kCells));
       tracked_.cells = cells;
       try_lobes();
@@ -153,24 +153,22 @@ Model full_model(const Measurement& measurement, FitOptions options, Progress& p
 
 SceneObservation checked(const Measurement& measurement, const FitOptions& options) {
   if (!measurement.isotropic()) {
-    throw Error(Status::unsupported,
-                "'" + measurement.provenance().path +
-                    "' is anisotropic: what scenes show is kept by the polar angle of the view "
-                    "alone, so a model reduced to it would not know when it is turned. Fit without "
-                    "a scene.");
+    throw Error(Status::unsupported, "'" + measurement.provenance().path +
+                                         "' is anisotropic. A scene usage contains only the polar angles of the views, "
+                                         "so only isotropic measurements can be reduced to it. Fit without a scene.");
   }
   if (!options.for_scene->hits.empty()) return reflected_part(*options.for_scene);
   throw Error(Status::invalid_argument,
-              "The scene shows nothing of the material: no camera ray met it. Check camera, visibility and frames, or "
+              "The scene does not show the material: no camera ray hits it. Check camera, visibility and frames, or "
               "fit without a scene.");
 }
 
 const ParametricBrdf& parametric_body(const Model& model) {
   if (const auto* brdf = std::get_if<ParametricBrdf>(&model.body); brdf && !is_reduced(model)) return *brdf;
-  throw Error(Status::invalid_argument,
-              "The full model of a fit for a scene must be parametric and for all views; "
-              "this one is " +
-                  std::string(is_reduced(model) ? "itself reduced" : model_kind(model)) + ".");
+  throw Error(
+      Status::invalid_argument,
+      "The full model for a scene model must be a parametric model that is not reduced to a scene; this one is " +
+          std::string(is_reduced(model) ? "itself a scene model" : model_kind(model)) + ".");
 }
 
 }  // namespace
@@ -181,7 +179,7 @@ Model fit_for_scene(const Measurement& measurement, const FitOptions& options, P
   const Model full = full_model(measurement, options, progress);
   const ParametricBrdf& full_brdf = parametric_body(full);
   const double begin = options.full_model ? 0 : kFullShare;
-  progress.stage("scene", begin, begin + kReadingShare);
+  progress.stage("reading the scene usage", begin, begin + kReadingShare);
   const ViewRange range = view_range(observation.domain);
   const MeasuredSlices measured = parametric_slices(measurement, options, progress);
   const std::vector<MeasuredSlice> slices = seen_slices(measured.slices, range, observation);
@@ -191,14 +189,15 @@ Model fit_for_scene(const Measurement& measurement, const FitOptions& options, P
   SceneSearch search(slices, tracked, options.limit_albedo, judge, full_brdf, progress);
   search.run(begin + kReadingShare, 0.95);
 
-  progress.stage("checking", 0.95, 1.0);
+  progress.stage("checking the model", 0.95, 1.0);
   Model model = full;
   if (search.best()) {
     judge_again(slices, tracked, *search.best(), progress);  // colors have changed
     model = parametric_model(measurement, *search.best(), options, progress);
     model.shell = full.shell;
   } else {
-    model.fit.warnings.emplace_back("the scene needs all of the full model: nothing smaller makes pictures as good");
+    model.fit.warnings.emplace_back(
+        "the scene needs all of the full model: no smaller model gives images of the same quality");
   }
   const auto error = [](const std::vector<double>& shares) { return PictureError::estimate(shares).relmse; };
   model.scene =

@@ -155,16 +155,21 @@ void AddTile(const float* const* rows, const float* const* columns, size_t begin
   }
 }
 
-void SubtractColumns(const float* const* columns, const double* coefficients, size_t count, const float* target,
-                     size_t padded, float* HWY_RESTRICT residual) {
+/// Coefficients [column][channel].
+void SubtractColumns(const float* const* columns, const float* coefficients, size_t count, const float* const* target,
+                     size_t padded, float* const* residual) {
   const Tag tag;
   for (size_t i = 0; i < padded; i += hn::Lanes(tag)) {
-    Lanes r = hn::Load(tag, target + i);
+    Lanes r0 = hn::Load(tag, target[0] + i), r1 = hn::Load(tag, target[1] + i), r2 = hn::Load(tag, target[2] + i);
     for (size_t j = 0; j < count; ++j) {
-      const Lanes c = hn::Set(tag, static_cast<float>(coefficients[j]));
-      r = hn::NegMulAdd(c, hn::Load(tag, columns[j] + i), r);
+      const Lanes column = hn::Load(tag, columns[j] + i);
+      r0 = hn::NegMulAdd(hn::Set(tag, coefficients[3 * j]), column, r0);
+      r1 = hn::NegMulAdd(hn::Set(tag, coefficients[3 * j + 1]), column, r1);
+      r2 = hn::NegMulAdd(hn::Set(tag, coefficients[3 * j + 2]), column, r2);
     }
-    hn::Store(r, tag, residual + i);
+    hn::Store(r0, tag, residual[0] + i);
+    hn::Store(r1, tag, residual[1] + i);
+    hn::Store(r2, tag, residual[2] + i);
   }
 }
 
@@ -181,8 +186,9 @@ HWY_EXPORT(Project);
 HWY_EXPORT(AddTile);
 HWY_EXPORT(SubtractColumns);
 
-// Samples summed in float before the sum goes to a double: 64 per lane with 4 lanes. 32 columns of a block fit in L1.
-constexpr size_t kBlock = 256;
+// Samples summed in float before the sum goes to a double: 64 per lane with 16 lanes. Four columns of a block stay in
+// L1 while the others stream past.
+constexpr size_t kBlock = 1024;
 
 /// Pointers to columns, padded with the last one to a multiple of 4, so that all tiles are full.
 std::vector<const float*> in_fours(std::span<const float* const> columns) {
@@ -250,9 +256,10 @@ void gram(std::span<const float* const> columns, size_t padded, Eigen::MatrixXd&
   out = sums.topLeftCorner(n, n).selfadjointView<Eigen::Lower>();
 }
 
-void subtract_columns(std::span<const float* const> columns, std::span<const double> coefficients, const float* target,
-                      size_t padded, float* residual) {
-  VELOUR_SIMD_DISPATCH(SubtractColumns)(columns.data(), coefficients.data(), columns.size(), target, padded, residual);
+void subtract_columns(std::span<const float* const> columns, const Eigen::MatrixXd& coefficients,
+                      const float* const target[3], size_t padded, float* const residual[3]) {
+  const Eigen::MatrixXf by_column = coefficients.transpose().cast<float>();
+  VELOUR_SIMD_DISPATCH(SubtractColumns)(columns.data(), by_column.data(), columns.size(), target, padded, residual);
 }
 
 }  // namespace velour

@@ -65,8 +65,8 @@ void gram(std::span<const float* const> columns, size_t padded, Eigen::MatrixXd&
 void cross_gram(std::span<const float* const> rows, std::span<const float* const> columns, size_t padded,
                 Eigen::MatrixXd& out);
 
-/// residual = target - sum_j coefficient_j column_j.
-void subtract_columns(std::span<const float* const> columns, std::span<const double> coefficients, const float* target,
-                      size_t padded, float* residual);
+/// residual_c = target_c - sum_j coefficients(j, c) column_j, of three channels c.
+void subtract_columns(std::span<const float* const> columns, const Eigen::MatrixXd& coefficients,
+                      const float* const target[3], size_t padded, float* const residual[3]);
 
 }  // namespace velour

@@ -22,8 +22,8 @@ bool usable(const Rgb& f) { return std::isfinite(f.r) && std::isfinite(f.g) && s
 void check_size(const Measurement& source, const Rgb& f) {
   const float largest = std::max({std::abs(f.r), std::abs(f.g), std::abs(f.b)});
   if (largest <= kLargestValue) return;
-  throw Error(Status::bad_data, "'" + source.provenance().path + "' holds the value " + std::to_string(largest) +
-                                    " 1/sr; values up to 1e12 can be fitted. Check the measurement's scale.");
+  throw Error(Status::bad_data, "'" + source.provenance().path + "' contains the value " + std::to_string(largest) +
+                                    " 1/sr; values up to 1e12 can be fitted. Check the scale of the measurement.");
 }
 
 void keep_one_side(LightGrid& grid) {

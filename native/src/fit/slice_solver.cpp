@@ -116,8 +116,9 @@ void SliceSolver::solve(State& state) const {
     Eigen::VectorXd x = state.peaks.col(c);
     solve_nnls(products, moments.col(c), kSliceRidge, x);
     state.peaks.col(c) = x;
-    subtract_columns(all, {x.data(), n + 1}, targets[c], padded, state.residual[static_cast<size_t>(c)]);
   }
+  float* const residual[3] = {state.residual[0], state.residual[1], state.residual[2]};
+  subtract_columns(all, state.peaks, targets, padded, residual);
   Eigen::MatrixXd residual_products;
   gram(state.residual.first(3), padded, residual_products);
   state.residual_products = residual_products;

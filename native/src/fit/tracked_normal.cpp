@@ -5,15 +5,16 @@
 #include <Eigen/Cholesky>
 
 #include "job/parallel.h"
+#include "tensor/matrix_product.h"
 
 namespace velour {
 namespace {
 
-using Index = Eigen::Index;
 using P = ParametricBrdf;
 
-// Relative tolerance of the residual in the preconditioner's norm. More digits do not improve the steps.
-constexpr double kRelativeResidual = 3e-3;
+// Relative residual, in the preconditioner's norm, at which conjugate gradients stop. Steps are judged by the cost that
+// they lead to; more digits cost iterations and do not improve fits.
+constexpr double kRelativeResidual = 0.1;
 constexpr int kMostSteps = 80;
 // Ridge relative to the mean diagonal, so that what the data leave open is not singular and does not drift.
 constexpr float kNormalRidge = 1e-6f;
@@ -118,7 +119,8 @@ Eigen::VectorXf TrackedNormal::product(const Eigen::VectorXf& x) const {
     const Eigen::VectorXf* weight = &weight_[first_tap_[v]];
     Eigen::VectorXf at_view = Eigen::VectorXf::Zero(block);
     for (int t = 0; t < taps.count; ++t) at_view += weight[t].cwiseProduct(x.segment(taps.node[t] * block, block));
-    curved.col(static_cast<Index>(v)).noalias() = local_[v].hessian * at_view;
+    multiply({local_[v].hessian.data(), block, block, 1, block}, at_view.data(),
+             curved.col(static_cast<Index>(v)).data());
   });
   Eigen::VectorXf out = smoothness_gradient(model_, x.cast<double>()).cast<float>();
   auto weight = weight_.begin();

@@ -63,24 +63,32 @@ struct Linear {
     for (Index j = 0; j < lobes; ++j) {
       const WarpedShape shape = shape_of(model, parameters, j, view.fade);
       excess[j] = view.spacing ? std::max(view.spacing->excess(shape), 0.0) : 0.0;
-      fill_warped(shape, view.wv, view.samples, columns[static_cast<size_t>(j)]);
-      if (!slopes) continue;
+      float* const value = columns[static_cast<size_t>(j)];
+      if (!slopes) {
+        fill_warped(shape, view.wv, view.samples, value);
+        continue;
+      }
       if (excess[j] > 0) view.spacing->slopes(shape, excess_slope.col(j));
       float* out[kWarpedSlopes] = {};
       for (int a = 0; a < per_lobe; ++a) out[a] = columns[static_cast<size_t>(lobes + j * per_lobe + a)];
-      fill_warped_slopes(shape, view.wv, view.samples, per_lobe, out);
+      fill_warped_slopes(shape, view.wv, view.samples, per_lobe, value, out);
     }
     coefficient = parameters.middleCols(P::kLogRed, 3).array().exp();
   }
 };
 
+/// The view's residual: its targets less `coefficient` times the columns of the lobes.
+void subtract_lobes(const Linear& linear, const Eigen::MatrixXd& coefficient, TrackedView& view) {
+  const float* const target[3] = {view.samples.target(0), view.samples.target(1), view.samples.target(2)};
+  float* const residual[3] = {view.residual[0].data(), view.residual[1].data(), view.residual[2].data()};
+  subtract_columns(linear.columns.first(static_cast<size_t>(coefficient.rows())), coefficient, target,
+                   view.samples.padded(), residual);
+}
+
 void leave_residual(const Linear& linear, TrackedView& view) {
-  const auto lobes = static_cast<size_t>(linear.coefficient.rows());
+  subtract_lobes(linear, linear.coefficient, view);
   double plain = 0, pictures = 0;
   for (int c = 0; c < 3; ++c) {
-    const std::span<const double> coefficients(linear.coefficient.col(c).data(), lobes);
-    subtract_columns(linear.columns.first(lobes), coefficients, view.samples.target(c), view.samples.padded(),
-                     view.residual[c].data());
     const ResidualSums squares = residual_sums(view.residual[c], view.share);
     plain += kLuminanceShare[c] * squares.shared;
     pictures += kLuminanceShare[c] * (squares.all - squares.shared);
@@ -190,13 +198,8 @@ LocalNormal linearised(const ParametricBrdf& model, const Eigen::VectorXd& x, Tr
 
 void add_to_targets(const ParametricBrdf& model, const Eigen::VectorXd& x, TrackedView& view) {
   const Linear linear(model, x, view, false);
-  const auto lobes = static_cast<size_t>(linear.coefficient.rows());
-  for (int c = 0; c < 3; ++c) {
-    const Eigen::VectorXd taken = -linear.coefficient.col(c);
-    subtract_columns(linear.columns.first(lobes), {taken.data(), lobes}, view.samples.target(c), view.samples.padded(),
-                     view.residual[c].data());
-    view.samples.replace_target(c, view.residual[c]);
-  }
+  subtract_lobes(linear, -linear.coefficient, view);
+  for (int c = 0; c < 3; ++c) view.samples.replace_target(c, view.residual[c]);
 }
 
 double error_of(const ParametricBrdf& brdf, const TrackedView& view) {

@@ -81,7 +81,7 @@ Lanes stretch_slope(const Stretch& slope, const Warped& at, const Lanes3& across
   return hn::Mul(at.inverse, hn::MulAdd(across.x, x, hn::Mul(across.y, y)));
 }
 
-void FillWarpedSlopes(const WarpedShape& shape, const Vec3d& wv, const SliceSamples& samples, int count,
+void FillWarpedSlopes(const WarpedShape& shape, const Vec3d& wv, const SliceSamples& samples, int count, float* value,
                       float* const out[kWarpedSlopes]) {
   const Tag tag;
   const Warp w(shape, wv);
@@ -90,6 +90,7 @@ void FillWarpedSlopes(const WarpedShape& shape, const Vec3d& wv, const SliceSamp
   const StretchSlopes stretch = stretch_slopes(shape.stretch_a, shape.stretch_b);
   for (size_t i = 0; i < samples.padded(); i += hn::Lanes(tag)) {
     const Warped at = warp(w, samples, i);
+    hn::Store(at.value, tag, value + i);
     const Lanes slope = hn::Mul(at.value, w.bandwidth);
     // The component of the center orthogonal to psi: the gradient of psi . center as psi moves on the sphere.
     const Lanes t = dot(at.psi, w.center);
@@ -139,9 +140,9 @@ void fill_warped(const WarpedShape& shape, const Vec3d& wv, const SliceSamples& 
   VELOUR_SIMD_DISPATCH(FillWarped)(shape, wv, samples, out);
 }
 
-void fill_warped_slopes(const WarpedShape& shape, const Vec3d& wv, const SliceSamples& samples, int count,
+void fill_warped_slopes(const WarpedShape& shape, const Vec3d& wv, const SliceSamples& samples, int count, float* value,
                         float* const out[kWarpedSlopes]) {
-  VELOUR_SIMD_DISPATCH(FillWarpedSlopes)(shape, wv, samples, count, out);
+  VELOUR_SIMD_DISPATCH(FillWarpedSlopes)(shape, wv, samples, count, value, out);
 }
 
 Projection project_warped(const WarpedShape& shape, const Vec3d& wv, const SliceSamples& samples,

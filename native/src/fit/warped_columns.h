@@ -18,9 +18,10 @@ struct WarpedShape {
 /// out_i = sqrt(weight_i) cos(theta_i) G(psi(wl_i)).
 void fill_warped(const WarpedShape& shape, const Vec3d& wv, const SliceSamples& samples, float* out);
 
-/// Derivatives of fill_warped's column by log bandwidth, tilt_x, stretch_a, tilt_y, stretch_b: the first `count`.
+/// fill_warped's column as `value`, and its derivatives by log bandwidth, tilt_x, stretch_a, tilt_y, stretch_b: the
+/// first `count`.
 inline constexpr int kWarpedSlopes = 5;
-void fill_warped_slopes(const WarpedShape& shape, const Vec3d& wv, const SliceSamples& samples, int count,
+void fill_warped_slopes(const WarpedShape& shape, const Vec3d& wv, const SliceSamples& samples, int count, float* value,
                         float* const out[kWarpedSlopes]);
 
 /// project() of fit/slice_columns.h for this shape, over every `stride`-th block of kPadding samples.

@@ -103,12 +103,13 @@ void check_png_chunks(const std::string& path) {
   const Part png(file);
   uint64_t at = kSignature;
   for (int i = 0; at + kLengthAndType <= png.size() && !png.holds(at + 4, "IEND"sv); ++i) {
-    if (i == kMaxChunks) throw Error(Status::bad_data, path + ": has more than a million chunks; save it again.");
+    if (i == kMaxChunks)
+      throw Error(Status::bad_data, path + ": has more than a million chunks. Save the image again.");
     const uint64_t length = *png.number(at, 4, true);
     if (at + kBesideData + length > png.size()) {
       throw Error(Status::bad_data, path + ": is damaged: the chunk at byte " + std::to_string(at) +
-                                        " says that it holds " + std::to_string(length) +
-                                        " bytes, more than the file has; save it again.");
+                                        " has a length of " + std::to_string(length) +
+                                        " bytes, which is beyond the end of the file. Save the image again.");
     }
     at += kBesideData + length;
   }

@@ -73,7 +73,7 @@ std::string listed(std::span<const std::string> names) {
   throw Error(Status::unsupported, path + ": " + what);
 }
 
-constexpr const char* kHowToChoose = "choose one by its name (--layer, or Layer and Pass of Blender's node).";
+constexpr const char* kHowToChoose = "choose one by its name (--layer, or Layer and Pass of the Image Texture node).";
 
 std::vector<std::string> keys_where(const Layers& layers, const auto& holds) {
   std::vector<std::string> names;
@@ -106,7 +106,8 @@ std::optional<std::string> find_layer(const Layers& layers, const std::string& w
       keys_where(layers, [&](const std::string& name, const Layer&) { return lower(name).ends_with("." + small); });
   if (ends.size() == 1) return ends[0];
   if (same.empty() && ends.empty()) return std::nullopt;
-  refuse(path, "layer '" + wanted + "' may be " + listed(same.empty() ? ends : same) + "; " + kHowToChoose);
+  refuse(path,
+         "layer '" + wanted + "' is ambiguous: it may be " + listed(same.empty() ? ends : same) + "; " + kHowToChoose);
 }
 
 ExrColors choose_layer(const Layers& layers, const std::string& wanted, std::span<const std::string> channels,
@@ -116,11 +117,11 @@ ExrColors choose_layer(const Layers& layers, const std::string& wanted, std::spa
     if (layer.has_colors() || layer.has_xyz()) return colors_of(*name, layer);
     if (layer.all.size() == 1) return single(layer.all[0]);
     refuse(path, "none of the channels of layer '" + *name + "' (" + listed(layer.all) +
-                     ") is named as a color; choose one of them by its name.");
+                     ") is named like a color (R, G, B or Y); choose one of them by its name.");
   }
   const auto channel = std::ranges::find(channels, lower(wanted), [](const std::string& name) { return lower(name); });
   if (channel != channels.end()) return single(*channel);
-  refuse(path, "has no layer '" + wanted + "'; its channels are " + listed(channels) + ".");
+  refuse(path, "has no layer '" + wanted + "'; its channels are " + listed(channels) + ". Choose one of them.");
 }
 
 ExrColors choose_default(const Layers& layers, std::span<const std::string> channels, const std::string& path) {
@@ -138,7 +139,7 @@ ExrColors choose_default(const Layers& layers, std::span<const std::string> chan
     refuse(path, "has several layers with colors (" + listed(with_colors) + "); " + kHowToChoose);
   }
   if (channels.size() == 1) return single(channels[0]);
-  refuse(path, "none of its channels (" + listed(channels) + ") is named as a color (R, G, B or Y); " + kHowToChoose);
+  refuse(path, "none of its channels (" + listed(channels) + ") is named like a color (R, G, B or Y); " + kHowToChoose);
 }
 
 }  // namespace

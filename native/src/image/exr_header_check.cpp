@@ -51,10 +51,12 @@ class HeaderCheck {
   void run() {
     const auto version = number<uint32_t>(4);
     if (!version) return;
+    const bool has_parts = (*version & kSeveralParts) != 0;
     size_t at = 8;
     do {
       at = check_part(at);
-    } while (at != kEnd && (*version & kSeveralParts) != 0 && at < head_.size() && head_[at] != 0);
+    } while (has_parts && at < head_.size() && head_[at] != 0);
+    if (has_parts && at == head_.size()) require_end();
   }
 
  private:
@@ -63,6 +65,12 @@ class HeaderCheck {
   static constexpr uint32_t kSeveralParts = 0x1000;  // multi-part bit of the version field
 
   [[noreturn]] void fail(const std::string& what) const { throw Error(Status::bad_data, path_ + ": " + what); }
+
+  /// Throws if the file goes on after what was read: no header that is not checked may reach OpenEXR.
+  void require_end() const {
+    if (head_.size() < file_bytes_)
+      fail("its header is larger than 1 MB, which is not supported. Remove metadata from the file.");
+  }
 
   template <typename T>
   std::optional<T> number(size_t at) const {
@@ -81,20 +89,24 @@ class HeaderCheck {
   }
 
   /// Checks the attributes (name, type, size, value) of the part whose header begins at `at`. Returns where the next
-  /// header begins, or kEnd if the header ends early or is longer than head_, which is left to OpenEXR.
+  /// header begins, or kEnd if the file ends before, which OpenEXR reports.
   size_t check_part(size_t at) const {
     Claims claims;
     while (at < head_.size() && head_[at] != 0) {
       const auto name = text(at), type = text(at);
       const auto size = number<uint32_t>(at);
-      if (!name || !type || !size) return kEnd;
+      if (!name || !type || !size) {
+        require_end();
+        return kEnd;
+      }
       at += sizeof *size;
-      if (*size > file_bytes_ - at) fail("its header is damaged.");
-      if (*size > head_.size() - at) fail("its header has more than a megabyte, which Velour does not read.");
+      if (*size > file_bytes_ - at) fail("its header is damaged. Save the image again.");
+      if (*size > head_.size() - at) require_end();
       check_value(*name, *type, *size, at);
       take_claim(*name, *type, *size, at, claims);
       at += *size;
     }
+    if (at >= head_.size()) require_end();
     check_claims(claims);
     return at < head_.size() ? at + 1 : kEnd;
   }
@@ -109,7 +121,7 @@ class HeaderCheck {
                                                    : true;
     if (!is_whole) {
       fail("its header is damaged: attribute " + name + " of type " + type + " has a size of " + std::to_string(size) +
-           " bytes, which is not that of its content.");
+           " bytes, which does not match its content. Save the image again.");
     }
   }
 
@@ -147,7 +159,8 @@ class HeaderCheck {
       claims.height = value(12) - value(4) + 1;
     } else if (name == "chunkCount" && size == 4) {
       if (value(0) < 0 || static_cast<uint64_t>(value(0)) > file_bytes_ / sizeof(uint64_t))
-        fail("the header says " + std::to_string(value(0)) + " chunks, more than the file can hold.");
+        fail("the header claims " + std::to_string(value(0)) +
+             " chunks, more than the file can contain; the file is damaged.");
     } else if (name == "compression" && size == 1) {
       claims.compression = head_[at];
     } else if (name == "tiles" && size == 9) {
@@ -181,15 +194,15 @@ class HeaderCheck {
     const double row = static_cast<double>(claims.width) * claims.pixel_bytes;
     const double decoded = row * static_cast<double>(claims.height);
     const std::string said =
-        "the header says " + std::to_string(claims.width) + " x " + std::to_string(claims.height) + " pixels";
+        "the header claims " + std::to_string(claims.width) + " x " + std::to_string(claims.height) + " pixels";
     const double most_rows = static_cast<double>(kMaxValuesPerByte) * static_cast<double>(file_bytes_);
     if ((!claims.is_deep && decoded > packing.most_ratio * static_cast<double>(file_bytes_)) ||
         static_cast<double>(claims.height) > most_rows) {
-      fail(said + ", more than the file can hold.");
+      fail(said + ", more than the file can contain; the file is damaged.");
     }
     const double tile = static_cast<double>(claims.tile_width) * claims.tile_height * claims.pixel_bytes;
     if (std::max(tile, packing.rows * row) > kAlwaysAllowed + kTimesDecoded * decoded)
-      fail(said + " in blocks that are many times as large; save it without compression.");
+      fail(said + " in compression blocks that are many times as large. Save the image without compression.");
   }
 
   std::string path_;

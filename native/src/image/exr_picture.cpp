@@ -112,7 +112,8 @@ class OpenExr : public OpenPicture {
       const Imf::Channel* channel = exr_header().channels().findChannel(name.c_str());
       if (channel != nullptr && (channel->xSampling != 1 || channel->ySampling != 1)) {
         throw Error(Status::unsupported, path_ + ": channel " + name +
-                                             " has fewer pixels than the picture; write all channels at its size.");
+                                             " has a lower resolution than the image, which is not supported. Save all "
+                                             "channels at full resolution.");
       }
     }
   }
@@ -163,7 +164,8 @@ class ExrPicture : public OpenExr {
     if (colors_.kind != ExrColors::Kind::luminance_chroma) {
       check_sampling(names_);
     } else if (part() != 0) {
-      throw Error(Status::unsupported, path_ + ": luminance and chroma are read from the first part only.");
+      throw Error(Status::unsupported,
+                  path_ + ": luminance and chroma are only supported in the first part. Save the image as RGB.");
     }
     header_.channels = static_cast<int>(names_.size());
     if (!colors_.alpha.empty()) header_.alpha_channel = header_.channels - 1;
@@ -201,8 +203,9 @@ class ExrPicture : public OpenExr {
       }
     }
     if (flat == 0) {
-      throw Error(Status::unsupported,
-                  path_ + ": is a deep picture; flatten it (oiiotool --flatten, or in your compositor).");
+      throw Error(
+          Status::unsupported,
+          path_ + ": is a deep image, which is not supported. Flatten it (oiiotool --flatten, or in your compositor).");
     }
     throw Error(Status::unsupported, refusal);
   }
@@ -215,7 +218,9 @@ class ExrPicture : public OpenExr {
 
   void check_not_a_cube() const {
     if (Imf::hasEnvmap(exr_header()) && Imf::envmap(exr_header()) == Imf::ENVMAP_CUBE) {
-      throw Error(Status::unsupported, path_ + ": is a cube map; convert it to latitude and longitude (exrenvmap -l).");
+      throw Error(
+          Status::unsupported,
+          path_ + ": is a cube map, which is not supported. Convert it to an equirectangular image (exrenvmap -l).");
     }
   }
 
@@ -228,15 +233,16 @@ class ExrPicture : public OpenExr {
     };
     if (!colors_.left_out.empty()) {
       const std::string chosen = colors_.layer.empty() ? "" : " of layer '" + colors_.layer + "'";
-      header_.notes.push_back("the picture" + chosen +
-                              " is read; its other channels are left out: " + list(colors_.left_out) + ".");
+      header_.notes.push_back("the image" + chosen +
+                              " is used; its other channels are ignored: " + list(colors_.left_out) + ".");
     }
     if (part_count() > 1) {
       const std::string name = exr_header().hasName() ? " '" + exr_header().name() + "'" : "";
-      header_.notes.push_back("part" + name + " of " + std::to_string(part_count()) + " is read.");
+      header_.notes.push_back("part" + name + " of " + std::to_string(part_count()) +
+                              " is used; the other parts are ignored.");
     }
     if (colors_.kind == ExrColors::Kind::rgb && std::ranges::count(colors_.names, "") > 0)
-      header_.notes.push_back("it lacks one of the channels R, G, B, which is read as 0.");
+      header_.notes.push_back("one of the channels R, G and B is missing and is treated as 0.");
   }
 
   /// Uses OpenEXR's own reconstruction, which works in half floats.
@@ -279,7 +285,8 @@ Imath::Box2i data_window(const Picture& picture, const PictureFrame& frame) {
 void add_texts(Imf::Header& header, const PictureTexts& texts) {
   for (const auto& [name, text] : texts) {
     if (name.empty() || header.find(name) != header.end()) {
-      throw Error(Status::invalid_argument, "A text of a picture cannot be named '" + name + "'.");
+      throw Error(Status::invalid_argument,
+                  "Image metadata cannot be named '" + name + "'; the name is empty or reserved.");
     }
     header.insert(name, Imf::StringAttribute(text));
   }
@@ -316,7 +323,7 @@ void write_exr(const std::string& path, const Picture& top_first, const PictureF
                                          pixel * static_cast<size_t>(top_first.width)));
   }
   AtomicFile file(path);
-  const auto sentence = [&](const char* why) { return path + ": OpenEXR cannot write the picture: " + why; };
+  const auto sentence = [&](const char* why) { return path + ": OpenEXR cannot write the image: " + why; };
   with_exr_errors(Status::io, sentence, [&] {
     ExrOutput stream(file, path);
     Imf::OutputFile output(stream, header, 0);

@@ -40,7 +40,7 @@ void check_type(const ByteReader& in, const ExrPart& part, const std::string& fi
   const auto fixed = fixed_exr_bytes(type);
   if (!fixed) {
     throw Error(Status::unsupported, in.name() + ": part '" + part.name + "': attribute " + field + " has type '" +
-                                         type + "', which Velour's files do not use.");
+                                         type + "', which does not occur in files written by Velour.");
   }
   if (static_cast<uint32_t>(size) != *fixed) {
     fail(in, part,
@@ -58,18 +58,22 @@ void read_channels(ByteReader value, ExrPart& part) {
     const auto x_step = value.number<int32_t>("channel sampling");
     const auto y_step = value.number<int32_t>("channel sampling");
     if (pixel_type < kIntegerPixels || pixel_type > kFloatPixels || x_step != 1 || y_step != 1)
-      fail(value, part, "channel " + channel + " is not 32-bit or 16-bit float at full resolution; write floats.");
-    if (part.channels.size() == 16) fail(value, part, "has more than 16 channels.");
+      fail(value, part,
+           "channel " + channel + " is not a 32-bit or 16-bit float channel at full resolution; write floats.");
+    if (part.channels.size() == 16) fail(value, part, "has more than 16 channels, which is not supported.");
     const uint64_t bytes = pixel_type == kHalfPixels ? 2 : 4;
     const bool integers = pixel_type == kIntegerPixels;
     if (!part.channels.empty() && (bytes != part.value_bytes || integers != part.integers))
-      fail(value, part, "channel " + channel + " is not of the same type as those before; write all alike.");
+      fail(value, part,
+           "channel " + channel +
+               " has a different type than the channels before it; write all channels with the same type.");
     part.value_bytes = bytes;
     part.integers = integers;
     part.channels.push_back(channel);
   }
   // OpenEXR would read the rest as the next attribute.
-  if (value.remaining() != 0) fail(value, part, "attribute channels is longer than its list; the file is damaged.");
+  if (value.remaining() != 0)
+    fail(value, part, "attribute channels is longer than its channel list; the file is damaged.");
 }
 
 void read_window(ByteReader value, ExrPart& part, PartLayout& layout) {
@@ -113,11 +117,11 @@ void read_attribute(ByteReader& in, const std::string& field, ExrPart& part, Par
 void check_part(const ByteReader& in, const ExrPart& part, const PartLayout& layout) {
   if (!layout.has_window) fail(in, part, "attribute dataWindow is missing.");
   if (part.channels.empty()) fail(in, part, "attribute channels is missing or empty.");
-  if (layout.type != "scanlineimage") fail(in, part, "type is '" + layout.type + "', not scanlineimage.");
+  if (layout.type != "scanlineimage") fail(in, part, "type is '" + layout.type + "'; it must be scanlineimage.");
   if (layout.compression != 0 && layout.compression != 2 && layout.compression != 3)
-    fail(in, part, "compression is " + std::to_string(layout.compression) + "; only none, zips and zip are read.");
+    fail(in, part, "compression is " + std::to_string(layout.compression) + "; only none, zips and zip are supported.");
   if (part.row_bytes() * layout.lines_per_chunk() > INT32_MAX)
-    fail(in, part, "dataWindow has " + std::to_string(part.width) + " columns, more than a chunk can hold.");
+    fail(in, part, "dataWindow has " + std::to_string(part.width) + " columns, more than fit into a chunk.");
 }
 
 /// Checks that each chunk lies in the file and is large enough for its pixels, and that all chunks together are no
@@ -128,12 +132,12 @@ void check_chunks(ByteReader& in, const ExrPart& part, const PartLayout& layout,
   const uint64_t chunk_count = (part.height + lines - 1) / lines;
   if (layout.chunk_count_claimed >= 0 && static_cast<uint64_t>(layout.chunk_count_claimed) != chunk_count)
     fail(in, part,
-         "chunkCount is " + std::to_string(layout.chunk_count_claimed) + " where the dataWindow has " +
+         "chunkCount is " + std::to_string(layout.chunk_count_claimed) + ", but the dataWindow requires " +
              std::to_string(chunk_count) + ".");
   if (chunk_count > in.remaining() / 8)
     fail(in, part,
          "dataWindow has " + std::to_string(part.height) +
-             " rows, more than the file can hold; it is truncated or damaged.");
+             " rows, more than the file can contain; it is truncated or damaged.");
   ByteReader chunk = in;
   for (uint64_t i = 0; i < chunk_count; ++i) {
     chunk.seek(in.number<uint64_t>("chunk table of part '" + part.name + "'"),
@@ -142,7 +146,8 @@ void check_chunks(ByteReader& in, const ExrPart& part, const PartLayout& layout,
     chunk.take(4, "first row of a chunk");
     const auto stored = chunk.number<uint32_t>("size of a chunk");
     chunk.take(stored, "chunk " + std::to_string(i) + " of part '" + part.name + "'");
-    if (stored > left) fail(in, part, "its chunks and those before hold more bytes than the file; it is damaged.");
+    if (stored > left)
+      fail(in, part, "its chunks and the chunks of earlier parts are larger than the file; the file is damaged.");
     left -= stored;
     const uint64_t rows = std::min(lines, part.height - i * lines);
     if (rows * part.row_bytes() > uint64_t{stored} * kMaxDeflateRatio)
@@ -158,7 +163,7 @@ bool read_version(ByteReader& in) {
   const auto version = in.number<uint32_t>("version");
   if ((version & 0xff) != 2 || (version & (kTiled | kDeep)) != 0)
     throw Error(Status::unsupported, in.name() + ": OpenEXR version field is " + std::to_string(version) +
-                                         "; only flat scan line files of version 2 are read.");
+                                         "; only flat scan line files of version 2 are supported.");
   return (version & kMultiPart) != 0;
 }
 
@@ -173,7 +178,8 @@ ScannedHeaders read_headers(ByteReader& in) {
   while (true) {
     std::string field = in.text(255, "attribute name");
     if (field.empty()) break;  // an empty header ends the list of a multi-part file
-    if (scanned.parts.size() == kMaxParts) throw Error(Status::bad_data, in.name() + ": has more than 4096 parts.");
+    if (scanned.parts.size() == kMaxParts)
+      throw Error(Status::bad_data, in.name() + ": has more than 4096 parts, which is not supported.");
     ExrPart& part = scanned.parts.emplace_back();
     PartLayout& layout = scanned.layouts.emplace_back();
     for (; !field.empty(); field = in.text(255, "attribute name")) read_attribute(in, field, part, layout);

@@ -38,7 +38,7 @@ class MemoryInput : public Imf::IStream {
     const auto wanted = static_cast<uint64_t>(std::max(count, 0));
     if (position_ > bytes_.size() || wanted > bytes_.size() - position_)
       throw Error(Status::bad_data, std::string(fileName()) + ": ends at byte " + std::to_string(bytes_.size()) +
-                                        " inside its pixels; it is truncated or damaged.");
+                                        " within its pixels; it is truncated or damaged.");
     std::memcpy(target, bytes_.data() + position_, wanted);
     position_ += wanted;
     return position_ < bytes_.size();
@@ -89,14 +89,14 @@ std::vector<uint64_t> parse_shape(const std::string& text, const std::string& wh
     if (*at++ != ' ') break;
   }
   throw Error(Status::bad_data,
-              where + "velour.shape is '" + text + "'; it must be up to 16 extents, as in '90 90 180'.");
+              where + "velour.shape is '" + text + "'; it must be up to 16 extents, for example '90 90 180'.");
 }
 
 /// Throws Error(invalid_argument) if a part exceeds OpenEXR's limits.
 void check_size(const std::string& name, const PartSize& size) {
   constexpr uint64_t kMaxLine = INT32_MAX / (4 * 16 * 3);  // a chunk's bytes are an int in OpenEXR
   if (size.width > kMaxLine || size.height > INT32_MAX / 2)
-    throw Error(Status::invalid_argument, "Tensor '" + name + "' is too long for OpenEXR.");
+    throw Error(Status::invalid_argument, "Tensor '" + name + "' is too large for OpenEXR.");
 }
 
 Imath::Box2i window_of(const PartSize& size) {
@@ -125,7 +125,7 @@ class PartList {
  public:
   void add(const std::string& name, const Tensor& tensor) {
     if (tensor.precision == Precision::bytes)
-      throw Error(Status::invalid_argument, "Tensor '" + name + "' of bytes needs a file that is packed.");
+      throw Error(Status::invalid_argument, "Tensor '" + name + "' of bytes can only be written to a packed file.");
     add_pixels(name, TensorPixels(tensor));
     headers_.back().insert(kShapeAttribute, Imf::StringAttribute(shape_text(tensor.shape)));
   }
@@ -176,7 +176,7 @@ const std::string& open_tensor(const TensorFile& file) {
   const auto smallest = std::min_element(file.tensors.begin(), file.tensors.end(),
                                          [&](const auto& a, const auto& b) { return values(a) < values(b); });
   if (smallest->second.precision == Precision::bytes)
-    throw Error(Status::invalid_argument, "A packed file needs a tensor beside bytes.");
+    throw Error(Status::invalid_argument, "A packed file must have at least one tensor of floats or halves.");
   return smallest->first;
 }
 
@@ -252,7 +252,8 @@ std::vector<Value> read_pixels(Imf::MultiPartInputFile& in, int index, Imf::Pixe
 }
 
 Tensor read_tensor(Imf::MultiPartInputFile& in, int index, const ExrPart& part, const std::string& where) {
-  if (part.integers) throw Error(Status::bad_data, where + "has integers in place of floats.");
+  if (part.integers)
+    throw Error(Status::bad_data, where + "has integer channels instead of float channels; the file is damaged.");
   const auto precision = part.value_bytes == sizeof(half) ? Precision::halves : Precision::floats;
   auto shape = checked_shape(part, where);
   return {std::move(shape), read_pixels<float>(in, index, Imf::FLOAT, part, where), precision};
@@ -272,8 +273,8 @@ class Budget {
   void take(uint64_t bytes, const std::string& where) {
     if (bytes > left_) {
       throw Error(Status::bad_data, where + "it would take " + std::to_string(bytes >> 20) +
-                                        " MiB, too much for a file of " + std::to_string(file_bytes_ >> 10) +
-                                        " KiB; it is damaged or made to fill memory.");
+                                        " MiB of memory, too much for a file of " + std::to_string(file_bytes_ >> 10) +
+                                        " KiB; the file is damaged or malicious.");
     }
     left_ -= bytes;
   }
@@ -281,7 +282,7 @@ class Budget {
   void check_pack(uint64_t bytes, const std::string& where) const {
     constexpr uint64_t kTimes = 4, kAlways = 1 << 20;
     if (bytes > kAlways + kTimes * file_bytes_)
-      throw Error(Status::bad_data, where + "is damaged or made to fill memory.");
+      throw Error(Status::bad_data, where + "is damaged or malicious: it would fill the memory.");
   }
 
  private:
@@ -292,11 +293,12 @@ class Budget {
 TensorFile read_pack(Imf::MultiPartInputFile& in, int index, const ExrPart& part, const std::string& where,
                      const Budget& budget) {
   if (!part.integers || part.channels.size() != 1)
-    throw Error(Status::bad_data, where + "has no integers of one channel.");
+    throw Error(Status::bad_data, where + "is not a single integer channel; the file is damaged.");
   budget.check_pack(part.value_count() * sizeof(uint32_t), where);
   const auto words = read_pixels<uint32_t>(in, index, Imf::UINT, part, where);
   return decode_pack({reinterpret_cast<const uint8_t*>(words.data()), words.size() * sizeof(uint32_t)},
-                     where + "its pack", {[&](const std::string& name) { return budget.takes(name); }, budget.left()});
+                     where + "packed data",
+                     {[&](const std::string& name) { return budget.takes(name); }, budget.left()});
 }
 
 void merge(TensorFile from, TensorFile& file) {
@@ -330,7 +332,7 @@ TensorFile decode_scanned(std::span<const uint8_t> bytes, const std::vector<ExrP
 }  // namespace
 
 std::vector<uint8_t> encode_tensors(const TensorFile& file) {
-  if (file.tensors.empty()) throw Error(Status::invalid_argument, "A file of tensors needs at least one tensor.");
+  if (file.tensors.empty()) throw Error(Status::invalid_argument, "A tensor file must have at least one tensor.");
   for (const auto& [name, tensor] : file.tensors) check_tensor(name, tensor);
   PartList parts;
   file.packed ? add_packed(file, parts) : add_all(file, parts);
@@ -339,7 +341,7 @@ std::vector<uint8_t> encode_tensors(const TensorFile& file) {
 
 TensorFile decode_tensors(std::span<const uint8_t> bytes, const std::string& name, const TensorLimits& limits) {
   const auto parts = scan_exr(bytes, name);
-  const auto sentence = [&](const char* why) { return name + ": OpenEXR refuses the file: " + why; };
+  const auto sentence = [&](const char* why) { return name + ": OpenEXR cannot read the file: " + why; };
   return with_exr_errors(Status::bad_data, sentence,
                          [&] { return decode_scanned(bytes, parts, name, Budget(limits, bytes.size())); });
 }

@@ -105,7 +105,7 @@ void check_sizes(const std::string& path, const ImageStack& stack, std::span<con
                      stack.height < INT32_MAX / 2 && stack.images < INT32_MAX / 2 / stack.height;
   if (sized && pixels.size() == stack.images * stack.image_bytes()) return;
   throw Error(Status::invalid_argument, path + ": part '" + stack.name + "' has " + std::to_string(pixels.size()) +
-                                            " bytes, which are not those of its images.");
+                                            " bytes, which does not match the size of its images.");
 }
 
 }  // namespace

@@ -55,10 +55,13 @@ ImageStackFile::ImageStackFile(const std::string& path, std::vector<ImageStack> 
 void ImageStackFile::check_headers(std::span<const uint8_t> head) {
   const ExrHeaders headers = scan_exr_headers(head, file_.path());
   const bool same = std::equal(headers.parts.begin(), headers.parts.end(), stacks_.begin(), stacks_.end(), agrees);
-  if (!same) refuse(file_.path(), "its parts are not the ones that the index asks for; it belongs to something else.");
+  if (!same)
+    refuse(file_.path(),
+           "its parts do not match the index of the BTF (btf.json); the file belongs to another BTF. Copy the whole "
+           "folder again.");
   layout_ = StackLayout(stacks_, headers.bytes);
   if (layout_.bytes() != file_.size()) {
-    refuse(file_.path(), "holds " + std::to_string(file_.size()) + " bytes where its images take " +
+    refuse(file_.path(), "has " + std::to_string(file_.size()) + " bytes, but its images require " +
                              std::to_string(layout_.bytes()) + "; it is truncated or damaged.");
   }
 }
@@ -91,7 +94,8 @@ void ImageStackFile::read_image(size_t index, uint64_t image, std::span<uint8_t>
   for (uint64_t row = 0; row < stack.height; ++row) {
     const uint8_t* chunk = chunks.data() + row * layout_.step(index);
     if (!layout_.has_head(index, top + row, chunk)) {
-      refuse(file_.path(), "row " + std::to_string(top + row) + " of part '" + stack.name + "' is damaged.");
+      refuse(file_.path(),
+             "row " + std::to_string(top + row) + " of part '" + stack.name + "' is damaged. Copy the file again.");
     }
     copy_row(stack, chunk + layout_.head_bytes(), pixels.data() + (stack.height - 1 - row) * row_bytes);
   }
@@ -101,7 +105,8 @@ void ImageStackFile::read(size_t stack, uint64_t first, std::span<uint8_t> pixel
   const ImageStack& of = stacks_[stack];
   const uint64_t bytes = of.image_bytes(), count = pixels.size() / bytes;
   if (first > of.images || count > of.images - first || count * bytes != pixels.size()) {
-    throw Error(Status::invalid_argument, file_.path() + ": part '" + of.name + "' does not have those images.");
+    throw Error(Status::invalid_argument,
+                file_.path() + ": part '" + of.name + "' does not have the requested images.");
   }
   std::vector<uint8_t> chunks(of.height * layout_.step(stack));
   for (uint64_t i = 0; i < count; ++i) read_image(stack, first + i, chunks, pixels.subspan(i * bytes, bytes));

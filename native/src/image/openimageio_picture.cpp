@@ -10,9 +10,9 @@ namespace {
 
 const OpenImageIoModule& open_module() {
   // Never closed: unloading 260 libraries at exit takes time, and OpenImageIO's threads may still be running.
-  static const auto& library =
-      *new PrivateLibrary("libvelour_openimageio.so",
-                          "run scripts/setup and scripts/build again, or use an OpenEXR file, which needs neither.");
+  static const auto& library = *new PrivateLibrary(
+      "libvelour_openimageio.so",
+      "run scripts/setup and scripts/build again, or use an OpenEXR file, which does not require OpenImageIO.");
   return *library.function<decltype(velour_openimageio_2)>("velour_openimageio_2")();
 }
 
@@ -22,7 +22,7 @@ const OpenImageIoModule& module_for(const std::string& path) {
     static const OpenImageIoModule& module = open_module();
     return module;
   } catch (const Error& error) {
-    throw Error(error.status(), path + ": needs OpenImageIO, but " + error.what());
+    throw Error(error.status(), path + ": requires OpenImageIO, but " + error.what());
   }
 }
 
@@ -39,7 +39,7 @@ const char* reader_of(PictureFormat format) {
     case PictureFormat::radiance:
       break;
   }
-  throw Error(Status::invalid_argument, "OpenImageIO is not asked for this format.");
+  throw Error(Status::invalid_argument, "OpenImageIO is not used for this format.");
 }
 
 class ByOpenImageIo : public OpenPicture {
@@ -79,7 +79,7 @@ std::vector<uint8_t> png_of(const std::string& path, int width, int height, int 
                             std::span<const uint8_t> values) {
   std::string error;
   auto bytes = module_for(path).encode_png(width, height, channels, values, error);
-  if (!error.empty()) throw Error(Status::unsupported, path + ": OpenImageIO cannot write this picture: " + error);
+  if (!error.empty()) throw Error(Status::unsupported, path + ": OpenImageIO cannot write the image: " + error);
   return bytes;
 }
 

@@ -53,12 +53,12 @@ std::string name_of(Orientation orientation) {
   constexpr std::array<const char*, 9> kNames{"",
                                               "upright",
                                               "mirrored",
-                                              "turned by 180 degrees",
-                                              "upside down",
+                                              "rotated by 180 degrees",
+                                              "flipped vertically",
                                               "transposed",
-                                              "turned by 90 degrees",
-                                              "mirrored and turned by 90 degrees",
-                                              "turned by 270 degrees"};
+                                              "rotated by 90 degrees",
+                                              "mirrored and rotated by 90 degrees",
+                                              "rotated by 270 degrees"};
   return kNames[static_cast<size_t>(orientation)];
 }
 

@@ -35,11 +35,12 @@ void check_size(const std::string& path, const PictureHeader& header) {
   const std::string size = size_text(header.width, header.height, header.channels);
   if (header.width <= 0 || header.height <= 0 || header.depth > 1 || header.channels <= 0 ||
       header.channels > kMaxChannels)
-    throw Error(Status::bad_data, path + ": the header says " + size + ", which is no flat picture.");
+    throw Error(Status::bad_data, path + ": the header claims " + size + ", which is not a valid flat image.");
   const uint64_t pixels = static_cast<uint64_t>(header.width) * static_cast<uint64_t>(header.height);
   const uint64_t bound = std::min(kMaxValues, kMaxValuesPerByte * std::filesystem::file_size(path));
   if (pixels > bound / static_cast<uint64_t>(header.channels))
-    throw Error(Status::bad_data, path + ": the header says " + size + ", more than the file can hold.");
+    throw Error(Status::bad_data,
+                path + ": the header claims " + size + ", more than the file can contain; the file is damaged.");
 }
 
 /// Limits the size of a picture of which the file contains only a part.
@@ -53,9 +54,9 @@ void check_frame(const std::string& path, const PictureHeader& header) {
       std::min(kMaxValues / static_cast<uint64_t>(header.channels), std::max(kAlwaysAllowed, kTimesStored * stored));
   if (width <= 0 || height <= 0 || whole > bound)
     throw Error(Status::bad_data, path + ": its display window is " + std::to_string(width) + " x " +
-                                      std::to_string(height) + " pixels, its data window " +
+                                      std::to_string(height) + " pixels, but its data window is only " +
                                       std::to_string(header.width) + " x " + std::to_string(header.height) +
-                                      ", a small part of it; save it without the crop, or it is damaged.");
+                                      ". Save the image without the crop; otherwise the file is damaged.");
 }
 
 PictureFormat format_of(const std::string& path) {
@@ -72,8 +73,8 @@ std::unique_ptr<OpenPicture> open_picture(const std::string& path, const std::st
   const PictureFormat format = format_of(path);
   if (format == PictureFormat::exr) return checked(path, open_exr(path, layer));
   if (!layer.empty()) {
-    throw Error(Status::unsupported,
-                path + ": has no layer '" + layer + "'; only OpenEXR files have layers, leave it out.");
+    throw Error(Status::unsupported, path + ": has no layer '" + layer +
+                                         "', because only OpenEXR files have layers. Do not choose a layer.");
   }
   if (format == PictureFormat::png) check_png_chunks(path);
   return checked(path, format == PictureFormat::radiance ? open_radiance(path)
@@ -97,15 +98,14 @@ std::vector<std::string> notes_of(const std::string& path, const PictureHeader& 
   for (const std::string& note : header.notes) notes.push_back(path + ": " + note);
   if (!options.as_stored) return notes;
   const auto ignored = [&](const std::string& what) {
-    notes.push_back(path + ": its header says that " + what +
-                    ". Blender does not follow that, and neither does Velour within Blender; save the picture as it "
-                    "should look.");
+    notes.push_back(path + ": according to its header, " + what +
+                    ". Blender ignores this, and so does Velour in Blender. Save the image as it should look.");
   };
-  if (header.orientation != Orientation::normal) ignored("it is stored " + name_of(header.orientation));
-  if (is_scaled(header)) ignored("its values are to be divided by an exposure");
-  if (header.primaries && !is_rec709(*header.primaries)) ignored("its colors are not of Rec. 709");
+  if (header.orientation != Orientation::normal) ignored("the image is stored " + name_of(header.orientation));
+  if (is_scaled(header)) ignored("its values must be divided by an exposure");
+  if (header.primaries && !is_rec709(*header.primaries)) ignored("its colors are not in Rec. 709");
   if (header.frame) {
-    ignored("its pixels lie in a picture of " + std::to_string(header.frame->width) + " x " +
+    ignored("it is a part of an image of " + std::to_string(header.frame->width) + " x " +
             std::to_string(header.frame->height) + " pixels");
   }
   return notes;
@@ -157,7 +157,7 @@ void apply_primaries(Picture& picture, const ColorPrimaries& primaries, const st
   if (picture.channels < 3 || is_rec709(primaries)) return;
   const auto matrix = to_rec709(primaries);
   if (!matrix) {
-    throw Error(Status::bad_data, path + ": its chromaticities are no primaries of colors; correct or remove them.");
+    throw Error(Status::bad_data, path + ": its chromaticities are not valid color primaries. Correct or remove them.");
   }
   transform_colors(*matrix, static_cast<size_t>(picture.channels), picture.pixels);
 }
@@ -207,8 +207,8 @@ Picture top_first(const std::string& path, const Picture& picture) {
   const uint64_t count = static_cast<uint64_t>(picture.width) * static_cast<uint64_t>(picture.height) *
                          static_cast<uint64_t>(picture.channels);
   if (picture.width <= 0 || picture.height <= 0 || picture.channels <= 0 || count != picture.pixels.size()) {
-    throw Error(Status::invalid_argument, path + ": the picture has " + std::to_string(picture.pixels.size()) +
-                                              " values, not width x height x channels.");
+    throw Error(Status::invalid_argument, path + ": the image has " + std::to_string(picture.pixels.size()) +
+                                              " values, which does not match width x height x channels.");
   }
   Picture flipped = picture;
   flip_rows(flipped);
@@ -219,7 +219,7 @@ Picture top_first(const std::string& path, const Picture& picture) {
 
 std::string input_error(const std::string& path, std::string detail) {
   std::ranges::replace(detail, '\n', ' ');  // libraries may report several sentences, one per line
-  return path + ": cannot be read as a picture" + (detail.empty() ? "." : ": " + detail);
+  return path + ": cannot be read as an image" + (detail.empty() ? "." : ": " + detail);
 }
 
 Picture read_picture_header(const std::string& path, const PictureOptions& options) {
@@ -269,7 +269,8 @@ void write_picture(const std::string& path, const Picture& picture) {
 void write_exr_part(const std::string& path, const Picture& picture, const PictureFrame& frame,
                     const PictureTexts& texts) {
   if (std::filesystem::path(path).extension() != ".exr") {
-    throw Error(Status::unsupported, path + ": pictures are written as .exr or .png, parts of them as .exr.");
+    throw Error(Status::unsupported,
+                path + ": images can only be written as .exr or .png, and parts of images only as .exr.");
   }
   write_exr(path, top_first(path, picture), frame, texts);
 }

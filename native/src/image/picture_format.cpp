@@ -58,13 +58,12 @@ PictureFormat picture_format_of(std::span<const uint8_t> head, const std::string
   for (const auto& [magic, format] : kFormats) {
     if (begins_with(head, magic)) return format;
   }
-  std::string found = head.empty() ? "an empty file" : "in none of the formats that are read";
+  std::string found = head.empty() ? "an empty file" : "not in a supported image format";
   for (const auto& [magic, name] : kOthers) {
     if (begins_with(head, magic)) found = name;
   }
-  throw Error(Status::unsupported, path + ": is " + found +
-                                       ". Pictures are read from OpenEXR, Radiance HDR, PNG, JPEG, TIFF and BMP files; "
-                                       "convert it to one of these.");
+  throw Error(Status::unsupported,
+              path + ": is " + found + ". Convert it to OpenEXR, Radiance HDR, PNG, JPEG, TIFF or BMP.");
 }
 
 }  // namespace velour

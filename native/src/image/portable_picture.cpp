@@ -34,7 +34,7 @@ std::unique_ptr<OpenPicture> open_format(const std::string& path, PictureFormat 
     case PictureFormat::radiance:
       break;
   }
-  throw Error(Status::invalid_argument, path + ": is no picture of integers.");
+  throw Error(Status::invalid_argument, path + ": is not an integer image.");
 }
 
 }  // namespace

@@ -46,14 +46,14 @@ class Radiance : public OpenPicture {
 
  private:
   [[noreturn]] void fail(const std::string& what) const {
-    throw Error(Status::bad_data, path_ + ": cannot be read as a Radiance picture: " + what);
+    throw Error(Status::bad_data, path_ + ": cannot be read as a Radiance image: " + what);
   }
 
   std::string_view next_line() {
     const auto* begin = reinterpret_cast<const char*>(bytes_.data()) + at_;
     const std::string_view rest(begin, bytes_.size() - at_);
     const size_t end = rest.find('\n');
-    if (end == std::string_view::npos) fail("it ends within its header.");
+    if (end == std::string_view::npos) fail("the file ends within its header.");
     at_ += end + 1;
     std::string_view line = rest.substr(0, end);
     if (line.ends_with('\r')) line.remove_suffix(1);
@@ -75,7 +75,7 @@ class Radiance : public OpenPicture {
     name = name.substr(0, name.find_last_not_of(" \t") + 1);
     is_xyz_ = name == "32-bit_rle_xyze";
     if (!is_xyz_ && name != "32-bit_rle_rgbe")
-      fail("its FORMAT is '" + std::string(name) + "', neither 32-bit_rle_rgbe nor 32-bit_rle_xyze.");
+      fail("its FORMAT is '" + std::string(name) + "'; it must be 32-bit_rle_rgbe or 32-bit_rle_xyze.");
   }
 
   template <size_t kCount>
@@ -86,7 +86,7 @@ class Radiance : public OpenPicture {
       if (text.starts_with('+')) text.remove_prefix(1);
       const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
       if (error != std::errc() || !std::isfinite(number))
-        fail(std::string(variable) + " is not " + std::to_string(kCount) + " numbers.");
+        fail(std::string(variable) + " must be " + std::to_string(kCount) + " finite number(s).");
       text.remove_prefix(static_cast<size_t>(end - text.data()));
     }
     return numbers;
@@ -99,7 +99,8 @@ class Radiance : public OpenPicture {
       const double factor = factors[kCount == 3 ? c : 0];
       if (!(factor > 0)) fail("EXPOSURE and COLORCORR must be positive.");
       header_.scale[c] = static_cast<float>(header_.scale[c] / factor);
-      if (!std::isfinite(header_.scale[c])) fail("EXPOSURE and COLORCORR leave no finite number.");
+      if (!std::isfinite(header_.scale[c]))
+        fail("EXPOSURE and COLORCORR are too small: the image values would not be finite.");
     }
   }
 
@@ -127,7 +128,7 @@ class Radiance : public OpenPicture {
   }
 
   [[noreturn]] void fail_resolution(std::string_view line) const {
-    fail("its line of the resolution is '" + std::string(line.substr(0, 40)) + "', not one such as '-Y 512 +X 1024'.");
+    fail("its resolution line is '" + std::string(line.substr(0, 40)) + "'; it must be like '-Y 512 +X 1024'.");
   }
 
   static Orientation orientation_of(bool columns, bool from_top, bool from_left) {
@@ -140,7 +141,7 @@ class Radiance : public OpenPicture {
   }
 
   uint8_t next() {
-    if (at_ >= bytes_.size()) fail("it ends early.");
+    if (at_ >= bytes_.size()) fail("the file is truncated.");
     return bytes_[at_++];
   }
   Rgbe next_pixel() { return {next(), next(), next(), next()}; }
@@ -153,7 +154,7 @@ class Radiance : public OpenPicture {
       at_ -= first.size();
       return read_old_line(line);
     }
-    if (((first[2] << 8) | first[3]) != width) fail("a scan line has another length than the resolution says.");
+    if (((first[2] << 8) | first[3]) != width) fail("the length of a scan line does not match the resolution.");
     for (size_t component = 0; component < 4; ++component) read_component(line, component);
   }
 
@@ -162,7 +163,7 @@ class Radiance : public OpenPicture {
       size_t count = next();
       const bool run = count > 128;
       if (run) count -= 128;
-      if (count == 0 || count > line.size() - x) fail("a run of a scan line is too long.");
+      if (count == 0 || count > line.size() - x) fail("a run in a scan line is too long.");
       const uint8_t repeated = run ? next() : uint8_t{0};
       for (const size_t end = x + count; x < end; ++x) line[x][component] = run ? repeated : next();
     }
@@ -180,7 +181,7 @@ class Radiance : public OpenPicture {
           repeats_ = 1;
           digit_ = 0;
         } else {
-          if (!repeated_ || digit_ > 2) fail("a run of its scan lines has no pixel or is too long.");
+          if (!repeated_ || digit_ > 2) fail("a run in a scan line has no pixel or is too long.");
           repeats_ = size_t{pixel[3]} << (8 * digit_++);
         }
       }

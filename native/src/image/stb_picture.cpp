@@ -99,7 +99,7 @@ class ByStb : public OpenPicture {
     Values<T> values(function(&Source::kCallbacks, &source, &width, &height, &channels, header_.channels));
     if (!values) throw Error(Status::bad_data, input_error(path_, stbi_failure_reason()));
     if (source.ended_early || width != header_.width || height != header_.height)
-      throw Error(Status::bad_data, input_error(path_, "it ends early."));
+      throw Error(Status::bad_data, input_error(path_, "the file is truncated."));
     return values;
   }
 
@@ -131,7 +131,7 @@ std::vector<uint8_t> png_of(const std::string& path, int width, int height, int 
   std::vector<uint8_t> bytes;
   if (channels > 4 ||
       stbi_write_png_to_func(append, &bytes, width, height, channels, values.data(), width * channels) == 0)
-    throw Error(Status::unsupported, path + ": a PNG file has one to four channels.");
+    throw Error(Status::unsupported, path + ": a PNG file must have 1 to 4 channels.");
   return bytes;
 }
 

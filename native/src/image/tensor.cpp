@@ -18,14 +18,17 @@ bool is_byte(float value) {
 void check_halves(const std::string& name, const Tensor& tensor) {
   for (const float value : tensor.data) {
     if (rounded_to_half(value) == value) continue;
-    throw Error(Status::invalid_argument, "Tensor '" + name + "' is to be stored as half floats, which cannot hold " +
-                                              std::to_string(value) + "; round it first.");
+    throw Error(Status::invalid_argument, "Tensor '" + name + "' cannot be stored as half floats, because " +
+                                              std::to_string(value) + " is not a half float; round the values first.");
   }
 }
 
 void check_bytes(const std::string& name, const Tensor& tensor) {
   if (tensor.shape.size() >= 2 && std::all_of(tensor.data.begin(), tensor.data.end(), is_byte)) return;
-  throw Error(Status::invalid_argument, "Tensor '" + name + "' is to be stored as maps of bytes, and is none.");
+  throw Error(
+      Status::invalid_argument,
+      "Tensor '" + name +
+          "' cannot be stored as byte maps: it needs at least two dimensions and integer values from 0 to 255.");
 }
 
 }  // namespace
@@ -52,7 +55,8 @@ void check_tensor(const std::string& name, const Tensor& tensor) {
   const uint64_t count = element_count(tensor.shape);
   if (count == 0 || count != tensor.data.size() || tensor.shape.size() > kMaxTensorRank)
     throw Error(Status::invalid_argument, "Tensor '" + name + "' of shape '" + shape_text(tensor.shape) + "' has " +
-                                              std::to_string(tensor.data.size()) + " values.");
+                                              std::to_string(tensor.data.size()) +
+                                              " values; the number must match the shape, with at most 16 dimensions.");
   if (tensor.precision == Precision::halves) check_halves(name, tensor);
   if (tensor.precision == Precision::bytes) check_bytes(name, tensor);
 }

@@ -86,7 +86,7 @@ std::vector<uint64_t> shape_in(const JsonFields& fields) {
   const Json& list = fields.at("shape");
   const auto is_extent = [](const Json& json) { return json.is_number_unsigned(); };
   if (!list.is_array() || list.size() > kMaxTensorRank || !std::all_of(list.begin(), list.end(), is_extent))
-    fields.fail("shape", "up to 16 whole numbers");
+    fields.fail("shape", "a list of at most 16 integers");
   return list.get<std::vector<uint64_t>>();
 }
 
@@ -100,7 +100,7 @@ Precision precision_in(const JsonFields& fields) {
 class PackReader {
  public:
   PackReader(std::span<const uint8_t> bytes, const std::string& where, const PackLimits& limits)
-      : source_{where, "the file is damaged; write it again."},
+      : source_{where, "the file is damaged. Copy it again, or create it again."},
         limits_(limits),
         inflater_(bytes),
         left_(std::min(kMostInflated * bytes.size(), limits.max_bytes)),
@@ -119,7 +119,7 @@ class PackReader {
 
  private:
   [[noreturn]] void damaged() const {
-    throw Error(Status::bad_data, source_.name + " is damaged; make the file anew.");
+    throw Error(Status::bad_data, source_.name + ": the file is damaged. Copy it again, or create it again.");
   }
 
   std::vector<uint8_t> take(uint64_t count) {
@@ -144,9 +144,9 @@ class PackReader {
 
   void read_tensors(const JsonFields& fields, TensorFile& file) {
     const Json& tensors = fields.at("tensors");
-    if (!tensors.is_array() || tensors.size() > kMostTensors) fields.fail("tensors", "an array of up to 4096");
+    if (!tensors.is_array() || tensors.size() > kMostTensors) fields.fail("tensors", "a list of at most 4096 objects");
     for (const Json& json : tensors) {
-      if (!json.is_object()) fields.fail("tensors", "an array of objects");
+      if (!json.is_object()) fields.fail("tensors", "a list of objects");
       const JsonFields tensor(json, source_, "tensors.");
       const std::string name = tensor.text("name");
       if (limits_.takes && !limits_.takes(name)) {
@@ -166,7 +166,8 @@ class PackReader {
     const std::vector<uint64_t> shape = shape_in(fields);
     const uint64_t count = element_count(shape);
     const bool is_maps = precision_in(fields) == Precision::bytes;
-    if (count == 0 || (is_maps && shape.size() < 2)) fields.fail("shape", "one of such a tensor");
+    if (count == 0 || (is_maps && shape.size() < 2))
+      fields.fail("shape", "a valid shape without zeros (of at least two dimensions for bytes)");
     return count;
   }
 

@@ -209,7 +209,8 @@ class ByLibtiff : public OpenPicture {
 
  private:
   [[noreturn]] void refuse() const {
-    throw Error(Status::bad_data, input_error(path_, complaint_.text.empty() ? "it is damaged." : complaint_.text));
+    throw Error(Status::bad_data,
+                input_error(path_, complaint_.text.empty() ? "the file is damaged." : complaint_.text));
   }
 
   void check_storage() const {
@@ -217,9 +218,10 @@ class ByLibtiff : public OpenPicture {
         storage_.is_palette && (storage_.samples != 1 || storage_.bits > 16 || storage_.format != SAMPLEFORMAT_UINT);
     const bool are_odd_inks = storage_.is_cmyk && storage_.is_planar;
     if (Samples(storage_).are_known() && !is_odd_palette && !are_odd_inks) return;
-    throw Error(Status::unsupported, path_ + ": its " + std::to_string(storage_.samples) + " samples of " +
-                                         std::to_string(storage_.bits) + " bits in TIFF's sample format " +
-                                         std::to_string(storage_.format) + " are not read; convert it to EXR or PNG.");
+    throw Error(Status::unsupported, path_ + ": TIFF files with " + std::to_string(storage_.samples) + " samples of " +
+                                         std::to_string(storage_.bits) + " bits in sample format " +
+                                         std::to_string(storage_.format) +
+                                         " are not supported. Convert the image to EXR or PNG.");
   }
 
   void set_header() {

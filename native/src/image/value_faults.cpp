@@ -28,9 +28,11 @@ std::vector<std::string> fault_sentences(const ValueFaults& faults, const std::s
   };
   char brightest[32];
   std::snprintf(brightest, sizeof brightest, "%.6g", static_cast<double>(faults.brightest));
-  add(faults.infinite, " value is infinite and counts as ", " values are infinite and count as ", brightest);
-  add(faults.no_number, " value is not a number and counts as ", " values are not numbers and count as ", "0");
-  add(faults.negative, " value is negative and counts as ", " values are negative and count as ", "0");
+  add(faults.infinite, " value is infinite and was replaced by ", " values are infinite and were replaced by ",
+      brightest);
+  add(faults.no_number, " value is not a number (NaN) and was replaced by ",
+      " values are not numbers (NaN) and were replaced by ", "0");
+  add(faults.negative, " value is negative and was replaced by ", " values are negative and were replaced by ", "0");
   return sentences;
 }
 

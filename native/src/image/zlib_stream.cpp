@@ -13,7 +13,7 @@ constexpr size_t kStep = 1 << 16;
 /// zlib's counters have 32 bits.
 uInt counted(uint64_t bytes) {
   if (bytes <= UINT32_MAX) return static_cast<uInt>(bytes);
-  throw Error(Status::invalid_argument, "More than 4 GiB cannot be packed at once.");
+  throw Error(Status::invalid_argument, "More than 4 GiB cannot be compressed at once.");
 }
 
 /// zlib takes non-const pointers, but only reads through them.
@@ -43,14 +43,14 @@ std::vector<uint8_t> Deflater::take() {
 void Deflater::run(int flush) {
   do {
     make_room();
-    if (deflate(&stream_, flush) == Z_STREAM_ERROR) throw Error(Status::unknown, "zlib cannot pack.");
+    if (deflate(&stream_, flush) == Z_STREAM_ERROR) throw Error(Status::unknown, "zlib cannot compress the data.");
   } while (stream_.avail_out == 0);
 }
 
 void Deflater::change_to(int strategy) {
   run(Z_BLOCK);  // flushes the last block, for which deflateParams would need room
   make_room();
-  if (deflateParams(&stream_, kLevel, strategy) != Z_OK) throw Error(Status::unknown, "zlib cannot pack.");
+  if (deflateParams(&stream_, kLevel, strategy) != Z_OK) throw Error(Status::unknown, "zlib cannot compress the data.");
   strategy_ = strategy;
 }
 

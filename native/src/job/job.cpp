@@ -33,7 +33,8 @@ void Job::start(const std::function<void()>& before) {
     finished = std::exchange(thread_, std::thread(&Job::run, this, progress));
   } catch (const std::exception&) {
     running_jobs.fetch_sub(1);
-    throw Error(Status::out_of_memory, "The system gave no thread for the job.");
+    throw Error(Status::out_of_memory,
+                "The system could not start a thread for the job. Close other programs and try again.");
   }
   // The new run cannot finish before this lock is released.
   progress_ = std::move(progress);

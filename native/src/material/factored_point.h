@@ -1,4 +1,4 @@
-// Texels and views of a factored BTF at a hit.
+// Coefficients of a factored BTF at a hit, and the views around the direction of view.
 #pragma once
 
 #include <array>
@@ -6,14 +6,13 @@
 
 namespace velour {
 
-/// State of a factored BTF for a site and a view: component coefficients, blended over texels and padded per axis to
-/// whole vectors, and the views around the direction.
+/// What site and view decide of a factored BTF: the coefficients of its components, interpolated between texels.
 struct FactoredPoint {
-  static constexpr int kMost = 512 + 3 * 16;  // components and padding
-  alignas(64) float value[kMost];
-  std::array<uint32_t, 3> view;  // rows of each view's first light; with by_view(), indices of the views
-  std::array<float, 3> weight;   // all 0: the view is not covered
-  bool back;                     // a two-sided BTF seen from below
+  static constexpr int kMost = 512 + 16;  // components, and what vectors read beyond them
+  alignas(64) float value[kMost];         // of all components, or of those of each view in turn, times its weight
+  std::array<uint32_t, 3> view;           // numbers of views
+  std::array<float, 3> weight;            // barycentric; 0 everywhere: the BTF has no view on this side
+  bool back;                              // seen from below, in a BTF of two sides
 };
 
 }  // namespace velour

@@ -1,24 +1,24 @@
-// Inner loop of factored BTFs.
+// Inner loops of BTFs that are sums of products.
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <span>
 
-#include "sphere/vec.h"
-
 namespace velour {
 
-/// Row lengths are multiples of this: whole vectors of every instruction set.
-inline constexpr uint32_t kFactoredPadding = 16;
+/// Rows and values passed to weighted_dot() must be readable this many floats beyond their end.
+inline constexpr uint32_t kFactoredSlack = 16;
 
-/// A row of component values for a direction pair, and its weight.
+/// Values of all components for one direction pair or light, and the weight of that pair.
 struct WeightedRow {
   const float* row;
   float weight;
 };
 
-/// For each of three ranges [end[a - 1], end[a]) of components, the sum of value x (weighted sum of the rows).
-Vec3 factored_sums(const float* value, std::span<const WeightedRow> rows, const std::array<uint32_t, 3>& end);
+/// Returns sum over k < `count` of value[k] x (weighted sum of the rows)[k].
+float weighted_dot(const float* value, std::span<const WeightedRow> rows, uint32_t count);
+
+/// Adds weight x row[k] to sum[k] for k < `count`.
+void add_weighted(const WeightedRow& row, uint32_t count, float* sum);
 
 }  // namespace velour

@@ -125,9 +125,9 @@ float neutral(int parameter) {
 ParametricValues::ParametricValues(const ParametricBrdf& brdf)
     : spline_(brdf.spline()), count_(brdf.lobe_count()), padded_(WarpedMixture::padded_of(count_)) {
   if (count_ > WarpedMixture::kCapacity) {
-    throw Error(Status::invalid_argument, "the parametric model has " + std::to_string(count_) +
-                                              " lobes; fit it with at most " +
-                                              std::to_string(WarpedMixture::kCapacity));
+    throw Error(Status::invalid_argument, "The parametric model has " + std::to_string(count_) + " lobes; at most " +
+                                              std::to_string(WarpedMixture::kCapacity) +
+                                              " are supported. Fit it again with fewer lobes.");
   }
   for (int j = 0; j < padded_; ++j) {
     half_.push_back(j < count_ && brdf.space[static_cast<size_t>(j)] == LobeSpace::half ? 1.0f : 0.0f);

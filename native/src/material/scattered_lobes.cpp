@@ -67,14 +67,14 @@ size_t nearest_of(const ViewNeighbors& views) {
 int checked_neighbors(const ScatteredBrdf& brdf, int neighbors) {
   const int count = neighbors == 0 ? brdf.default_neighbors : neighbors;
   if (count < 1 || count > kMaxNeighbors) {
-    throw Error(Status::invalid_argument, "neighbors is " + std::to_string(count) + "; choose 1 to " +
-                                              std::to_string(kMaxNeighbors) + " neighbouring views");
+    throw Error(Status::invalid_argument, "The number of neighboring views (neighbors) is " + std::to_string(count) +
+                                              "; it must be 1 to " + std::to_string(kMaxNeighbors) + ".");
   }
   if (count * brdf.max_lobes_per_view() > LobeMixture::kCapacity) {
     throw Error(Status::invalid_argument,
-                std::to_string(count) + " neighbors of " + std::to_string(brdf.max_lobes_per_view()) +
-                    " lobes a view exceed the " + std::to_string(LobeMixture::kCapacity) +
-                    " lobes that can be mixed; choose fewer neighbors or fit with fewer lobes");
+                std::to_string(count) + " neighboring views with " + std::to_string(brdf.max_lobes_per_view()) +
+                    " lobes each exceed the limit of " + std::to_string(LobeMixture::kCapacity) +
+                    " lobes. Use fewer neighbors, or fit with fewer lobes.");
   }
   return count;
 }

@@ -32,7 +32,7 @@ template <class T>
 Texture<T>::Texture(int width, int height, std::vector<T> texels, const TextureOptions& options) : options_(options) {
   if (width <= 0 || height <= 0 || texels.size() != static_cast<size_t>(width) * static_cast<size_t>(height)) {
     throw Error(Status::invalid_argument, "A texture of " + std::to_string(width) + " x " + std::to_string(height) +
-                                              " has " + std::to_string(texels.size()) + " texels.");
+                                              " texels cannot have " + std::to_string(texels.size()) + " values.");
   }
   const std::span<float> values(reinterpret_cast<float*>(texels.data()), texels.size() * sizeof(T) / sizeof(float));
   const ValueFaults faults = find_value_faults(values);

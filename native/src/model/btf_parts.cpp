@@ -44,7 +44,8 @@ BtfFrame read_btf_frame(const ModelFields& fields) {
   const std::string& text = fields.attribute(kIndex);
   const std::span<const uint8_t> bytes(reinterpret_cast<const uint8_t*>(text.data()), text.size());
   const BtfIndex index = decode_btf_index(bytes, fields.name() + ": " + kIndex).index;
-  if (!index.layout.complete()) fields.fail(std::string(kIndex) + " leaves out pairs; a model needs all of them.");
+  if (!index.layout.complete())
+    fields.fail(std::string(kIndex) + " lacks view-light pairs; a model must have all of them.");
   return {index.layout, index.grid, companding_named(fields), read_axes(fields)};
 }
 
@@ -61,7 +62,8 @@ std::vector<HalfBits> shaped_halves(const ModelFields& fields, const std::string
   const Tensor& tensor = fields.tensor(part);
   expect_shape(fields, part, tensor, shape);
   for (size_t i = 0; i < tensor.data.size(); ++i) {
-    if (!(std::abs(tensor.data[i]) <= kLargestHalf)) fields.fail_at(part, i, tensor.data[i], "finite as a half float");
+    if (!(std::abs(tensor.data[i]) <= kLargestHalf))
+      fields.fail_at(part, i, tensor.data[i], "in the range of a half float (-65504 to 65504)");
   }
   std::vector<HalfBits> halves(tensor.data.size());
   floats_to_halves(tensor.data, halves);

@@ -89,7 +89,7 @@ std::string btf_record_json(const BtfRecord& record) {
 }
 
 BtfRecord parse_btf_record(const std::string& text, const std::string& where) {
-  const JsonSource source{where, "the model file is damaged."};
+  const JsonSource source{where, "the model file is damaged. Copy it again, or fit the model again."};
   const Json json = parse_json(text);
   if (!json.is_object()) throw Error(Status::bad_data, where + " is not a JSON object; " + source.remedy);
   const JsonFields fields(json, source);

@@ -31,7 +31,7 @@ std::vector<SharedSide> read_shared(const ModelFields& fields, size_t sides) {
   for (size_t i = 0; i < tensor.data.size(); ++i) {
     const float value = tensor.data[i], most = i % 3 == 2 ? static_cast<float>(sides) - 1 : 1.0f;
     if (!(value >= 0 && value <= most && value == std::floor(value))) {
-      fields.fail_at(kShared, i, value, "0 (above) or 1 (below), and the number of a side");
+      fields.fail_at(kShared, i, value, "0 (above) or 1 (below), followed by the index of a side");
     }
   }
   for (const float* v = tensor.data.data(); shared.size() < tensor.data.size() / 3; v += 3) {
@@ -76,7 +76,7 @@ std::vector<uint8_t> read_byte_maps(const ModelFields& fields, const std::string
   for (size_t i = 0; i < tensor.data.size(); ++i) {
     const float byte = tensor.data[i] / kOfByte;
     if (!(byte >= 0 && byte <= 255 && byte == std::floor(byte))) {
-      fields.fail_at(part, i, tensor.data[i], "0 to 255 over 256");
+      fields.fail_at(part, i, tensor.data[i], "a multiple of 1/256 from 0 to 255/256");
     }
     bytes.push_back(static_cast<uint8_t>(byte));
   }
@@ -98,7 +98,7 @@ std::vector<ByteScale> read_scales(const ModelFields& fields, const std::string&
   for (size_t i = 0; i < tensor.data.size(); ++i) {
     const float value = tensor.data[i];
     if (!(std::abs(value) <= kLargestHalf && (i % 2 == 0 || value >= 0))) {
-      fields.fail_at(part, i, value, i % 2 == 0 ? "at most 65504" : "from 0 to 65504");
+      fields.fail_at(part, i, value, i % 2 == 0 ? "from -65504 to 65504" : "from 0 to 65504");
     }
   }
   for (size_t i = 0; i < tensor.data.size(); i += 2) scales.push_back({tensor.data[i], tensor.data[i + 1]});

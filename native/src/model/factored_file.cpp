@@ -32,11 +32,12 @@ std::vector<uint16_t> read_views(const ModelFields& fields, size_t views) {
     const float v = tensor.data[i];
     const uint16_t least = view.empty() ? 0 : view.back();
     if (!(v >= least && v < static_cast<float>(views) && v == std::floor(v))) {
-      fields.fail_at(kView, i, v, "the number of a view, never falling");
+      fields.fail_at(kView, i, v, "a view index in non-decreasing order");
     }
     view.push_back(static_cast<uint16_t>(v));
     if (i >= FactoredBtf::kMaxOfView && view[i - FactoredBtf::kMaxOfView] == view[i]) {
-      fields.fail_at(kView, i, v, "that of " + std::to_string(FactoredBtf::kMaxOfView) + " components at most");
+      fields.fail_at(kView, i, v,
+                     "the view index of at most " + std::to_string(FactoredBtf::kMaxOfView) + " components");
     }
   }
   return view;
@@ -51,7 +52,7 @@ std::vector<uint8_t> read_axis_numbers(const ModelFields& fields, const std::vec
   for (size_t i = 0; i < tensor.data.size(); ++i) {
     const float a = tensor.data[i];
     if (i > 0 && !view.empty() && view[i] != view[i - 1]) least = 0;
-    if (!(a >= least && a <= 2 && a == std::floor(a))) fields.fail_at(kAxis, i, a, "0, 1 or 2, never falling");
+    if (!(a >= least && a <= 2 && a == std::floor(a))) fields.fail_at(kAxis, i, a, "0, 1 or 2 in non-decreasing order");
     axis.push_back(static_cast<uint8_t>(least = a));
   }
   return axis;

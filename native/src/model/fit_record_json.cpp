@@ -34,7 +34,7 @@ class FitRecordReader {
   }
   void integer(const char* key, uint64_t& out) const {
     const Json* v = find(key);
-    if (v && !v->is_number_unsigned()) fail(key, "a whole number");
+    if (v && !v->is_number_unsigned()) fail(key, "a non-negative integer");
     if (v) out = v->get<uint64_t>();
   }
   void boolean(const char* key, bool& out) const {
@@ -73,7 +73,7 @@ class FitRecordReader {
     return v.get<double>();
   }
   [[noreturn]] void fail(const char* key, const char* wanted) const {
-    throw Error(Status::bad_data, where_ + ": '" + key + "' is not " + wanted + ".");
+    throw Error(Status::bad_data, where_ + ": '" + key + "' must be " + wanted + "; the model file is damaged.");
   }
 
   const Json& json_;
@@ -100,7 +100,7 @@ std::string fit_record_json(const FitRecord& record) {
 
 FitRecord parse_fit_record(const std::string& text, const std::string& where) {
   const Json json = parse_json(text);
-  if (!json.is_object()) throw Error(Status::bad_data, where + " is not a JSON object.");
+  if (!json.is_object()) throw Error(Status::bad_data, where + " is not a JSON object; the model file is damaged.");
   const FitRecordReader reader(json, where);
   FitRecord record;
   reader.number("relative_l2", record.relative_l2);

@@ -9,7 +9,8 @@ namespace velour {
 void ModelFields::fail(const std::string& what) const { throw Error(Status::bad_data, name_ + ": " + what); }
 
 void ModelFields::fail_at(const std::string& part, size_t i, float value, const std::string& wanted) const {
-  fail(part + "[" + std::to_string(i) + "] is " + std::to_string(value) + "; it must be " + wanted + ".");
+  fail(part + "[" + std::to_string(i) + "] is " + std::to_string(value) + "; it must be " + wanted +
+       ". The model file is damaged.");
 }
 
 const std::string& ModelFields::attribute(const std::string& key) const {
@@ -43,7 +44,7 @@ int ModelFields::integer(const std::string& key, int least, int most) const {
 
 const Tensor& ModelFields::tensor(const std::string& part) const {
   const auto found = file_.tensors.find(part);
-  if (found == file_.tensors.end()) fail("the part " + part + " is missing.");
+  if (found == file_.tensors.end()) fail("the part " + part + " is missing; the model file is damaged.");
   return found->second;
 }
 

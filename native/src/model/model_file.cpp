@@ -48,7 +48,7 @@ ModelBody read_body(const ModelFields& fields) {
   if (kind == kSrbf) return read_srbf_btf(fields);
   if (kind == kTensor) return read_tensor_btf(fields);
   throw Error(Status::unsupported, fields.name() + ": velour.model is '" + kind +
-                                       "', a kind of model that this Velour does not know. Use a newer one.");
+                                       "', a kind of model that this Velour does not support. Use a newer Velour.");
 }
 
 void check_version(const ModelFields& fields) {
@@ -60,8 +60,8 @@ void check_version(const ModelFields& fields) {
   }
   if (major > kMajorVersion) {
     throw Error(Status::unsupported, fields.name() + ": the model file has format version " + text +
-                                         ", which a newer Velour wrote; this one reads up to version " +
-                                         std::to_string(kMajorVersion) + ". Use the newer Velour.");
+                                         " of a newer Velour; this Velour reads up to version " +
+                                         std::to_string(kMajorVersion) + ". Use a newer Velour.");
   }
 }
 
@@ -106,12 +106,13 @@ std::vector<uint8_t> encode_model(const Model& model) {
 
 Model decode_model(std::span<const uint8_t> bytes, const std::string& name) {
   if (!looks_like_exr(bytes)) {
-    throw Error(Status::bad_data, name + " is not a Velour model (it does not begin like an OpenEXR file).");
+    throw Error(Status::bad_data,
+                name + " is not a Velour model (it does not begin like an OpenEXR file). Choose a .velour file.");
   }
   const TensorLimits limits{{"btf.", "lobes.", "views.", "shell."}, usual_max_bytes(bytes.size())};
   const ModelFields fields(decode_tensors(bytes, name, limits), name);
   if (fields.attribute("velour.kind") != kKind) {
-    fields.fail("velour.kind is '" + fields.attribute("velour.kind") + "', not a model.");
+    fields.fail("velour.kind is '" + fields.attribute("velour.kind") + "'; a model file has 'model'.");
   }
   check_version(fields);
   Model model;
@@ -125,11 +126,11 @@ Model decode_model(std::span<const uint8_t> bytes, const std::string& name) {
   model.shell = read_shell(fields);
   const TexelGrid* grid = model.scene ? grid_of(model) : nullptr;
   if (grid && (model.scene->full_texels[0] < grid->width || model.scene->full_texels[1] < grid->height)) {
-    fields.fail(std::string(kScene) + ": full_texels are fewer than the model's own.");
+    fields.fail(std::string(kScene) + ": full_texels is smaller than the size of the model; the file is damaged.");
   }
   const auto* brdf = std::get_if<ParametricBrdf>(&model.body);
   if (brdf && !brdf->views.whole() && !model.scene) {
-    fields.fail(std::string(kScene) + " is missing; a model of some views must say for which scenes it was made.");
+    fields.fail(std::string(kScene) + " is missing, but the model covers only some views; the file is damaged.");
   }
   return model;
 }

@@ -67,7 +67,7 @@ std::shared_ptr<const Material> make_material(const std::shared_ptr<const Model>
 std::shared_ptr<const Material> make_measured_material(std::shared_ptr<const Measurement> measurement,
                                                        const std::shared_ptr<const Model>& proposal, int neighbors) {
   if (is_btf(*proposal)) {
-    throw Error(Status::invalid_argument, "A model of a BTF cannot draw samples for the measurement of a BRDF.");
+    throw Error(Status::invalid_argument, "A BTF model cannot be used to sample a BRDF measurement; use a BRDF model.");
   }
   if (const auto* body = std::get_if<ScatteredBrdf>(&proposal->body)) {
     return make_measured_material(std::move(measurement), Scattered(proposal, body), neighbors);

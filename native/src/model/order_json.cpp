@@ -19,7 +19,7 @@ constexpr double kMaxWhole = 1e15;  // exact as a double
 std::vector<double> column(const Json& json, const char* key, double most, const std::string& where) {
   const auto found = json.find(key);
   const auto fail = [&](const std::string& wanted) {
-    throw Error(Status::bad_data, where + ": '" + key + "' is not " + wanted + ".");
+    throw Error(Status::bad_data, where + ": '" + key + "' must be " + wanted + "; the model file is damaged.");
   };
   if (found == json.end() || !found->is_array() || found->size() > kMaxPoints) fail("a list of at most 1000 numbers");
   std::vector<double> out;
@@ -57,13 +57,13 @@ Json order_json(const OrderCurve& order) {
 }
 
 OrderCurve parse_order(const Json& json, const std::string& where) {
-  if (!json.is_object()) throw Error(Status::bad_data, where + " is not an object.");
+  if (!json.is_object()) throw Error(Status::bad_data, where + " is not an object; the model file is damaged.");
   const auto lobes = column(json, "lobes", std::numeric_limits<int>::max(), where);
   const auto bytes = column(json, "parameter_bytes", kMaxWhole, where);
   const auto worst = column(json, "worst", std::numeric_limits<double>::max(), where);
   const auto relative_l2 = column(json, "relative_l2", std::numeric_limits<double>::max(), where);
   if (bytes.size() != lobes.size() || worst.size() != lobes.size() || relative_l2.size() != lobes.size()) {
-    throw Error(Status::bad_data, where + ": its lists differ in length.");
+    throw Error(Status::bad_data, where + ": its lists differ in length; the model file is damaged.");
   }
   OrderCurve order;
   for (size_t i = 0; i < lobes.size(); ++i) {
@@ -72,7 +72,7 @@ OrderCurve parse_order(const Json& json, const std::string& where) {
   const auto chosen = json.find("chosen");
   if (chosen == json.end() || chosen->is_null()) return order;
   if (!chosen->is_number_unsigned() || chosen->get<uint64_t>() >= lobes.size()) {
-    throw Error(Status::bad_data, where + ": 'chosen' is not the number of a point.");
+    throw Error(Status::bad_data, where + ": 'chosen' must be the index of a point; the model file is damaged.");
   }
   order.chosen = chosen->get<size_t>();
   return order;

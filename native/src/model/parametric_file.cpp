@@ -29,7 +29,7 @@ std::vector<LobeSpace> read_spaces(const ModelFields& fields) {
 }
 
 std::string range_text(const ParameterRange& range) {
-  return "a " + std::string(range.name) + ", " + std::to_string(range.least) + " to " + std::to_string(range.most);
+  return std::to_string(range.least) + " to " + std::to_string(range.most) + " (" + range.name + ")";
 }
 
 /// The control values of `brdf`, whose lobes and spline are already set.
@@ -39,8 +39,8 @@ std::vector<float> read_control(const ModelFields& fields, const ParametricBrdf&
   const auto parameters = static_cast<uint64_t>(brdf.parameter_count());
   if (t.shape != std::vector<uint64_t>{nodes, parameters, brdf.space.size()}) {
     fields.fail("the part " + std::string(kControl) + " must have the shape [" + std::to_string(nodes) + ", " +
-                std::to_string(parameters) + ", " + std::to_string(brdf.space.size()) + "]: nodes of " + kCells + ", " +
-                "parameters, lobes of " + kSpace + ".");
+                std::to_string(parameters) + ", " + std::to_string(brdf.space.size()) + "]: nodes for " + kCells +
+                ", " + "parameters, lobes in " + kSpace + ".");
   }
   for (size_t i = 0; i < t.data.size(); ++i) {
     const ParameterRange range = parameter_range(static_cast<int>(i / brdf.space.size() % parameters));

@@ -32,7 +32,7 @@ std::vector<Vec3> read_directions(const ModelFields& fields, const std::string& 
     const Vec3 v(t.data[i], t.data[i + 1], t.data[i + 2]);
     const double length = glm::length(Vec3d(v));
     if (!(std::abs(length - 1) <= kUnitTolerance)) {
-      fields.fail_at(part, i / 3, static_cast<float>(length), "a direction of length 1");
+      fields.fail_at(part, i / 3, static_cast<float>(length), "a vector of length 1");
     }
     // Leave vectors that are unit up to rounding alone, so that reading and writing a file again preserves its bits.
     out.push_back(std::abs(length - 1) > 1e-6 ? Vec3(Vec3d(v) / length) : v);
@@ -42,7 +42,8 @@ std::vector<Vec3> read_directions(const ModelFields& fields, const std::string& 
 
 std::vector<float> read_bandwidths(const ModelFields& fields, Kernel kernel, size_t count) {
   const Tensor& t = fields.rows("lobes.bandwidth", 1);
-  if (t.data.size() != count) fields.fail("lobes.bandwidth and lobes.center disagree in length.");
+  if (t.data.size() != count)
+    fields.fail("lobes.bandwidth and lobes.center differ in length; the model file is damaged.");
   for (size_t i = 0; i < count; ++i) {
     const float b = t.data[i];
     if (kernel == Kernel::gaussian && !(b > 0 && b <= kMaxBandwidth)) {
@@ -59,7 +60,7 @@ std::vector<float> read_bandwidths(const ModelFields& fields, Kernel kernel, siz
 std::vector<Rgb> read_coefficients(const ModelFields& fields, const std::string& part, size_t count,
                                    const char* whose) {
   const Tensor& t = fields.rows(part, 3);
-  if (t.data.size() != 3 * count) fields.fail(part + " and " + whose + " disagree in length.");
+  if (t.data.size() != 3 * count) fields.fail(part + " and " + whose + " differ in length; the model file is damaged.");
   std::vector<Rgb> out;
   for (size_t i = 0; i < t.data.size(); ++i) {
     if (!(t.data[i] >= 0 && t.data[i] <= kMaxCoefficient)) {
@@ -72,20 +73,21 @@ std::vector<Rgb> read_coefficients(const ModelFields& fields, const std::string&
 
 std::vector<uint32_t> read_first_lobes(const ModelFields& fields, size_t views, size_t lobes, int neighbors) {
   const Tensor& t = fields.rows("views.lobe_count", 1);
-  if (t.data.size() != views) fields.fail("views.lobe_count and views.direction disagree in length.");
+  if (t.data.size() != views)
+    fields.fail("views.lobe_count and views.direction differ in length; the model file is damaged.");
   const int most = LobeMixture::kCapacity / neighbors;
   std::vector<uint32_t> first{0};
   for (size_t i = 0; i < views; ++i) {
     const float n = t.data[i];
     if (!(n >= 0 && n <= static_cast<float>(most)) || n != std::floor(n)) {
-      const std::string wanted = "a whole number of at most " + std::to_string(most);
+      const std::string wanted = "an integer from 0 to " + std::to_string(most);
       fields.fail_at("views.lobe_count", i, n, wanted.c_str());
     }
     first.push_back(first.back() + static_cast<uint32_t>(n));
   }
   if (first.back() != lobes) {
-    fields.fail("views.lobe_count sums to " + std::to_string(first.back()) + ", but there are " +
-                std::to_string(lobes) + " lobes.");
+    fields.fail("views.lobe_count adds up to " + std::to_string(first.back()) + ", but the model has " +
+                std::to_string(lobes) + " lobes; the model file is damaged.");
   }
   return first;
 }
@@ -98,7 +100,7 @@ void check_views(const ModelFields& fields, const ScatteredBrdf& brdf) {
     if (!brdf.isotropic) continue;
     if (std::abs(v.y) > kUnitTolerance || v.x < -kUnitTolerance)
       fields.fail_at(part, i, v.y, "on the meridian phi = 0");
-    if (i > 0 && v.z > brdf.views[i - 1].z) fields.fail_at(part, i, v.z, "in the order of the polar angle");
+    if (i > 0 && v.z > brdf.views[i - 1].z) fields.fail_at(part, i, v.z, "in the order of increasing polar angles");
   }
 }
 
@@ -107,7 +109,7 @@ Kernel read_kernel(const ModelFields& fields) {
   for (const Kernel kernel : {Kernel::gaussian, Kernel::abel_poisson}) {
     if (text == kernel_name(kernel)) return kernel;
   }
-  fields.fail("velour.kernel is '" + text + "'; this Velour knows " + kernel_name(Kernel::gaussian) + " and " +
+  fields.fail("velour.kernel is '" + text + "'; this Velour supports " + kernel_name(Kernel::gaussian) + " and " +
               kernel_name(Kernel::abel_poisson) + ".");
 }
 
@@ -137,7 +139,7 @@ void write_scattered(const ScatteredBrdf& brdf, TensorFile& file) {
 ScatteredBrdf read_scattered(const ModelFields& fields) {
   if (fields.attribute("velour.parameterisation") != kLightSpace) {
     fields.fail("velour.parameterisation is '" + fields.attribute("velour.parameterisation") +
-                "'; this Velour knows only 'light'.");
+                "'; this Velour supports only 'light'.");
   }
   ScatteredBrdf brdf;
   brdf.kernel = read_kernel(fields);

@@ -63,7 +63,7 @@ class SceneReader {
     return at(key).is_null() ? std::numeric_limits<double>::infinity() : number(key);
   }
   uint64_t whole(const char* key) const {
-    if (!at(key).is_number_unsigned()) fail(key, "a whole number");
+    if (!at(key).is_number_unsigned()) fail(key, "a non-negative integer");
     return at(key).get<uint64_t>();
   }
   std::array<uint64_t, 4> hash(const char* key) const {
@@ -75,7 +75,8 @@ class SceneReader {
     const uint64_t first = whole("first_view");
     const Json& weights = at("view_weights");
     if (!weights.is_array() || first > domain.view.size() || weights.size() > domain.view.size() - first) {
-      fail("view_weights", "a list of at most " + std::to_string(domain.view.size()) + " weights from 'first_view' on");
+      fail("view_weights",
+           "a list of at most " + std::to_string(domain.view.size()) + " weights, starting at 'first_view'");
     }
     for (size_t i = 0; i < weights.size(); ++i) domain.view[first + i] = number_of(weights[i], "view_weights");
   }
@@ -83,11 +84,11 @@ class SceneReader {
     const Json& bins = at("direction_bins");
     const auto good = [&](const Json& bin) { return bin.is_number_unsigned() && bin < views.weight.size(); };
     if (!bins.is_array() || !std::ranges::all_of(bins, good)) {
-      fail("direction_bins", "a list of numbers below " + std::to_string(views.weight.size()));
+      fail("direction_bins", "a list of integers below " + std::to_string(views.weight.size()));
     }
     const Json& weights = at("direction_weights");
     if (!weights.is_array() || weights.size() != bins.size()) {
-      fail("direction_weights", "a list of as many weights as 'direction_bins' has numbers");
+      fail("direction_weights", "a list with as many weights as 'direction_bins'");
     }
     for (size_t i = 0; i < bins.size(); ++i) {
       views.weight[bins[i].get<size_t>()] = number_of(weights[i], "direction_weights");
@@ -106,14 +107,14 @@ class SceneReader {
   std::array<uint32_t, 2> texels(const char* key) const {
     const Json& json = at(key);
     const auto good = [](const Json& n) { return n.is_number_unsigned() && n >= 1u && n <= kMostTexels; };
-    if (!json.is_array() || json.size() != 2 || !good(json[0]) || !good(json[1])) fail(key, "two numbers of texels");
+    if (!json.is_array() || json.size() != 2 || !good(json[0]) || !good(json[1])) fail(key, "two positive integers");
     return {json[0].get<uint32_t>(), json[1].get<uint32_t>()};
   }
 
  private:
   const Json& at(const char* key) const {
     const auto found = json_.find(key);
-    if (found == json_.end()) fail(key, "there");
+    if (found == json_.end()) fail(key, "present");
     return *found;
   }
   double number_of(const Json& v, const char* key) const {
@@ -121,7 +122,7 @@ class SceneReader {
     return v.get<double>();
   }
   [[noreturn]] void fail(const char* key, const std::string& wanted) const {
-    throw Error(Status::bad_data, where_ + ": '" + key + "' is not " + wanted + ".");
+    throw Error(Status::bad_data, where_ + ": '" + key + "' must be " + wanted + "; the model file is damaged.");
   }
 
   const Json& json_;
@@ -147,7 +148,7 @@ std::string scene_record_json(const SceneRecord& record) {
 
 SceneRecord parse_scene_record(const std::string& text, const std::string& where) {
   const Json json = parse_json(text);
-  if (!json.is_object()) throw Error(Status::bad_data, where + " is not a JSON object.");
+  if (!json.is_object()) throw Error(Status::bad_data, where + " is not a JSON object; the model file is damaged.");
   const SceneReader reader(json, where);
   SceneRecord record;
   record.domain.frames = reader.whole("frames");

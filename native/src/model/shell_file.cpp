@@ -18,7 +18,7 @@ class ShellJson {
  public:
   ShellJson(const ModelFields& fields, const std::string& text) : fields_(fields) {
     json_ = parse_json(text);
-    if (!json_.is_object()) fields.fail(std::string(kAttribute) + " is not a JSON object.");
+    if (!json_.is_object()) fields.fail(std::string(kAttribute) + " is not a JSON object; the model file is damaged.");
   }
 
   bool has(const char* key) const { return json_.contains(key); }
@@ -34,11 +34,11 @@ class ShellJson {
     return json_[key].get<bool>();
   }
   std::string text(const char* key) const {
-    if (!json_.contains(key) || !json_[key].is_string()) fail(key, "a text");
+    if (!json_.contains(key) || !json_[key].is_string()) fail(key, "a string");
     return json_[key].get<std::string>();
   }
   [[noreturn]] void fail(const char* key, const std::string& wanted) const {
-    fields_.fail(std::string(kAttribute) + ": " + key + " must be " + wanted + ".");
+    fields_.fail(std::string(kAttribute) + ": " + key + " must be " + wanted + "; the model file is damaged.");
   }
 
  private:
@@ -48,7 +48,7 @@ class ShellJson {
 
 uint32_t side(const ModelFields& fields, uint64_t points, uint32_t most, const char* axis) {
   if (points >= 2 && points <= most) return static_cast<uint32_t>(points);
-  fields.fail(std::string(kPart) + " has " + std::to_string(points) + " points along " + axis + "; it takes 2 to " +
+  fields.fail(std::string(kPart) + " has " + std::to_string(points) + " points along " + axis + "; it must have 2 to " +
               std::to_string(most) + ".");
 }
 
@@ -89,7 +89,7 @@ std::optional<ModelShell> read_shell(const ModelFields& fields) {
   for (size_t i = 0; i < part.data.size(); ++i) {
     const float value = part.data[i];
     if (!(value >= 0 && value <= 255 && value == std::floor(value))) {
-      fields.fail_at(kPart, i, value, "a whole number from 0 to 255");
+      fields.fail_at(kPart, i, value, "an integer from 0 to 255");
     }
     v.distance.push_back(static_cast<uint8_t>(value));
   }

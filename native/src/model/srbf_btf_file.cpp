@@ -71,7 +71,7 @@ void read_lobes(const ModelFields& fields, const SrbfSideParts& part, SrbfSide& 
   for (size_t j = 0; j < count; ++j) {
     const float frame = frames.data[j];
     if (frame != 0 && frame != 1) fields.fail_at(part.frames(), j, frame, "0 (tile) or 1 (texel)");
-    if (frame == 0 && side.tile_lobes < j) fields.fail_at(part.frames(), j, frame, "1, as those before");
+    if (frame == 0 && side.tile_lobes < j) fields.fail_at(part.frames(), j, frame, "1, like the frames before it");
     side.tile_lobes += frame == 0;
   }
 }
@@ -79,21 +79,23 @@ void read_lobes(const ModelFields& fields, const SrbfSideParts& part, SrbfSide& 
 void read_coefficients(const ModelFields& fields, const SrbfSideParts& part, SrbfSide& side) {
   const Tensor& tensor = fields.rows(part.coefficients(), 2);
   const size_t count = tensor.data.size() / 2;
-  if (count > 3 * SrbfBtf::kMaxLobes) fields.fail(part.coefficients() + " has too many rows.");
+  if (count > 3 * SrbfBtf::kMaxLobes)
+    fields.fail(part.coefficients() + " has too many rows; the model file is damaged.");
   float least = 0;
   for (size_t k = 0; k < count; ++k) {
     const float axis = tensor.data[2 * k], lobe = tensor.data[2 * k + 1];
     if (!(axis >= least && axis <= 2 && axis == std::floor(axis))) {
-      fields.fail_at(part.coefficients(), 2 * k, axis, "0, 1 or 2, never falling");
+      fields.fail_at(part.coefficients(), 2 * k, axis, "0, 1 or 2 in non-decreasing order");
     }
     least = axis;
     const bool in_order = axis > 0 || lobe == static_cast<float>(k);
     if (!(lobe >= 0 && lobe < static_cast<float>(side.lobes.size()) && lobe == std::floor(lobe) && in_order)) {
-      fields.fail_at(part.coefficients(), 2 * k + 1, lobe, "the number of a lobe (for axis 0: all, in order)");
+      fields.fail_at(part.coefficients(), 2 * k + 1, lobe, "the index of a lobe (for axis 0: all lobes, in order)");
     }
     side.lobe[static_cast<size_t>(axis)].push_back(static_cast<uint16_t>(lobe));
   }
-  if (side.lobe[0].size() != side.lobes.size()) fields.fail(part.coefficients() + " leaves out lobes of axis 0.");
+  if (side.lobe[0].size() != side.lobes.size())
+    fields.fail(part.coefficients() + " lacks lobes of axis 0; the model file is damaged.");
 }
 
 /// Files before version 1.5 store half floats, which are converted to bytes here.

@@ -76,8 +76,9 @@ void check_ranks(const ModelFields& fields, const TensorSideParts& part, const T
   for (const uint32_t rank : {side.rank.texel, side.rank.light}) {
     if (side.clusters.size() * padded_rank(rank) <= TensorBtf::kMaxClusterRanks) continue;
     fields.fail(part.core() + " has " + std::to_string(side.clusters.size()) + " clusters of rank " +
-                std::to_string(rank) + "; one times the other, rounded up to a multiple of " +
-                std::to_string(kRankPadding) + ", is at most " + std::to_string(TensorBtf::kMaxClusterRanks) + ".");
+                std::to_string(rank) + "; clusters times rank, rounded up to a multiple of " +
+                std::to_string(kRankPadding) + ", must be at most " + std::to_string(TensorBtf::kMaxClusterRanks) +
+                ".");
   }
 }
 
@@ -85,8 +86,8 @@ void check_ranks(const ModelFields& fields, const TensorSideParts& part, const T
 uint64_t directions_of(const ModelFields& fields, const std::vector<PolarAngles>& set, bool below, const char* what) {
   const size_t count = directions_on_side(set, below).size();
   if (count == 0) {
-    fields.fail(std::string("btf.sides names a side ") + (below ? "below" : "above") +
-                " the plane where velour.btf.index has no " + what + ".");
+    fields.fail(std::string("btf.sides has a side ") + (below ? "below" : "above") +
+                " the plane, but velour.btf.index has no " + what + " there.");
   }
   return count;
 }
@@ -122,7 +123,7 @@ void check_members(const ModelFields& fields, const std::string& part, const Ten
       const bool again = std::find(member, member + k, member[k]) != member + k;
       if (member[k] < side.clusters.size() && !again) continue;
       fields.fail_at(part, place(t, k), static_cast<float>(member[k]) / 256,
-                     again ? "another cluster than those before" : "the number of a cluster over 256");
+                     again ? "a cluster that does not occur before it" : "the index of a cluster, divided by 256");
     }
   }
 }

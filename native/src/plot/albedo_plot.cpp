@@ -69,7 +69,7 @@ Plot albedo_plot(const Material& material, const Measurement* measurement, doubl
   set_linear_range(plot.y, largest > 0 ? largest : 1);
   if (largest > 1) {
     plot.series.insert(plot.series.begin(), {"all light", PlotRole::level, PlotMark::dashes, {{0, 1}, {90, 1}}});
-    plot.legend.push_back({"all light", PlotRole::level, PlotMark::dashes});
+    plot.legend.push_back({"albedo 1", PlotRole::level, PlotMark::dashes});
   }
   return plot;
 }

@@ -36,7 +36,7 @@ Plot order_plot(const Model& model) {
   const bool btf = model.btf.has_value();
   const OrderCurve& order = btf ? model.btf->order : model.fit.order;
   if (order.points.empty()) {
-    throw Error(Status::unsupported, "The model has no record of its error against its size; fit it anew.");
+    throw Error(Status::unsupported, "The model does not contain its error for other sizes. Fit it again.");
   }
   Plot plot{.kind = "order"};
   PlotSeries series{"error", PlotRole::model, PlotMark::line_and_dots, {}, order.chosen};
@@ -44,8 +44,9 @@ Plot order_plot(const Model& model) {
     series.points.push_back(btf ? PlotPoint{static_cast<double>(p.parameter_bytes), p.relative_l2}
                                 : PlotPoint{static_cast<double>(p.lobes), p.worst});
   }
-  plot.x = btf ? PlotAxis{"parameter_bytes", "bytes"} : PlotAxis{"lobes", "lobes"};
-  plot.y = btf ? PlotAxis{"relative_l2", "relative L2"} : PlotAxis{"worst_over_tolerance", "worst error / tolerance"};
+  plot.x = btf ? PlotAxis{"parameter_bytes", "size, bytes"} : PlotAxis{"lobes", "lobes"};
+  plot.y =
+      btf ? PlotAxis{"relative_l2", "relative L2 error"} : PlotAxis{"worst_over_tolerance", "worst error / tolerance"};
   const auto [first, last] = std::ranges::minmax(series.points, {}, &PlotPoint::x);
   set_logarithmic_range(plot.x, std::max(first.x, 1.0), std::max(last.x, 1.0));
   const double level = btf ? model.btf->tolerance : 1.0;
@@ -68,10 +69,12 @@ Plot view_error_plot(const FitRecord& fit) {
     }
   }
   if (series.points.empty()) {
-    throw Error(Status::unsupported, "No error by view angle is known of the model: no view of it was measured.");
+    throw Error(Status::unsupported,
+                "The model does not contain its error by view angle, because the measurement covers none of the "
+                "reported views.");
   }
   plot.x = {"theta_v_degrees", "view angle, degrees", false, 0, 90};
-  plot.y = {"relative_l2", "relative L2"};
+  plot.y = {"relative_l2", "relative L2 error"};
   const auto tolerance = [&](double degrees) { return tolerance_at(fit.tolerance, radians_from(degrees)); };
   std::vector<double> errors = errors_of(series);
   errors.insert(errors.end(), {tolerance(0), tolerance(90)});

@@ -142,7 +142,7 @@ void add_lobes(const Model& model, const Material* material, const Vec3& wv, con
     }
     plot.series.push_back(std::move(series));
   }
-  if (!lobes.empty()) plot.legend.push_back({"its lobes", PlotRole::lobe, PlotMark::line});
+  if (!lobes.empty()) plot.legend.push_back({"lobes", PlotRole::lobe, PlotMark::line});
 }
 
 }  // namespace
@@ -167,7 +167,7 @@ Plot lobes_plot(const std::shared_ptr<const Model>& model, const Measurement* me
     plot.series.push_back(std::move(measured));
   }
   plot.series.push_back({"view", PlotRole::text, PlotMark::dashes, {{-degrees, plot.y.low}, {-degrees, plot.y.high}}});
-  plot.legend.push_back({"view, " + tick_text(degrees) + "\u00b0", PlotRole::text, PlotMark::dashes});
+  plot.legend.push_back({"view at " + tick_text(degrees) + "\u00b0", PlotRole::text, PlotMark::dashes});
   return plot;
 }
 

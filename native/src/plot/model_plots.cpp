@@ -12,15 +12,16 @@ namespace {
 
 void require_brdf(const Model& model, PlotKind kind) {
   if (!is_btf(model)) return;
-  throw Error(Status::unsupported, "The model of a BTF has no plot '" +
-                                       std::string(kPlotNames[static_cast<size_t>(kind)]) +
-                                       "', which is of one BRDF; it has 'order', and 'outline' with a VOTF.");
+  throw Error(Status::unsupported,
+              "BTF models have no plot '" + std::string(kPlotNames[static_cast<size_t>(kind)]) +
+                  "', which shows a single BRDF. Use 'order', or 'outline' if the model has a silhouette (VOTF).");
 }
 
 void check_view(const PlotView& view) {
   if (view.theta >= 0 && view.theta < kPiD / 2 && std::isfinite(view.phi)) return;
-  throw Error(Status::invalid_argument, "The view of a plot lies " + std::to_string(view.theta * 180 / kPiD) +
-                                            " degrees from the normal; 0 to below 90 is meant.");
+  throw Error(Status::invalid_argument, "The polar angle of the plot's view is " +
+                                            std::to_string(view.theta * 180 / kPiD) +
+                                            " degrees; it must be at least 0 and below 90.");
 }
 
 }  // namespace

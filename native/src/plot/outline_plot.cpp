@@ -27,7 +27,7 @@ double covered(const ShellField& field, const TileTexels& texels, const Vec3& wv
 }  // namespace
 
 Plot outline_plot(const Model& model, Progress& progress) {
-  if (!model.shell) throw Error(Status::unsupported, "The model has no outline (VOTF) to plot; add one.");
+  if (!model.shell) throw Error(Status::unsupported, "The model has no silhouette (VOTF) to plot. Add one first.");
   const ShellField field(model.shell->volume);
   const TileTexels texels = texels_of(field.volume());
   PlotSeries least{"least", PlotRole::level, PlotMark::dashes}, most{"most", PlotRole::level, PlotMark::dashes};
@@ -49,10 +49,10 @@ Plot outline_plot(const Model& model, Progress& progress) {
   }
   Plot plot{.kind = "outline"};
   plot.x = {"theta_v_degrees", "view angle, degrees", false, 0, 90};
-  plot.y = {"covered", "share of the tile covered", false, 0, 1};
+  plot.y = {"covered", "covered share of the tile", false, 0, 1};
   plot.series = {std::move(least), std::move(most), std::move(mean)};
-  plot.legend = {{"mean of azimuths", PlotRole::model, PlotMark::line},
-                 {"least and most", PlotRole::level, PlotMark::dashes}};
+  plot.legend = {{"azimuthal mean", PlotRole::model, PlotMark::line},
+                 {"minimum, maximum", PlotRole::level, PlotMark::dashes}};
   return plot;
 }
 

@@ -81,7 +81,9 @@ BtfMaps maps_of(const SrbfBtf& btf, const SrbfSide& side) {
 
 std::vector<BtfMaps> btf_maps(const SrbfBtf& btf) {
   const auto above = serving_side(btf, false, false), below = serving_side(btf, true, true);
-  if (!above) throw Error(Status::invalid_argument, "The BTF has no side that is seen and lit from above.");
+  if (!above)
+    throw Error(Status::invalid_argument,
+                "The BTF model has no side that is viewed and lit from above, which the real-time viewport requires.");
   std::vector<BtfMaps> sides{maps_of(btf, btf.sides[*above])};
   if (below && below != above) sides.push_back(maps_of(btf, btf.sides[*below]));
   return sides;

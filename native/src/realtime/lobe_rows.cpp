@@ -203,7 +203,7 @@ LobeRows lobe_rows(const Model& model, int threads, Progress& progress) {
     return blended_rows(parametric->isotropic, *lobes_of_views(*parametric), threads, progress);
   }
   if (const auto* scattered = std::get_if<ScatteredBrdf>(&model.body)) return rows_of(*scattered, threads, progress);
-  throw Error(Status::invalid_argument, "The model of a BTF has no rows of lobes; models of BRDFs have.");
+  throw Error(Status::invalid_argument, "BTF models have no lobe table; only BRDF models do.");
 }
 
 LobeRows lobe_rows(const PrincipledParameters& parameters, int threads, Progress& progress) {

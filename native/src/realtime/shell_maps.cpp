@@ -39,8 +39,9 @@ TablePixels shell_maps(const OcclusionVolume& volume) {
   const uint32_t width = volume.width + 2 * kTableBorder, height = volume.height + 2 * kTableBorder;
   const uint64_t pixels = uint64_t{width} * height * volume.depth;
   if (pixels > kMostShellPixels) {
-    throw Error(Status::unsupported, "The outline has " + std::to_string(pixels) + " points; maps hold at most " +
-                                         std::to_string(kMostShellPixels) + ".");
+    throw Error(Status::unsupported, "The silhouette (VOTF) has " + std::to_string(pixels) +
+                                         " points, but the real-time viewport supports at most " +
+                                         std::to_string(kMostShellPixels) + ". Create it with fewer texels.");
   }
   TablePixels maps(width, height * volume.depth);
   const Distances distances(volume);

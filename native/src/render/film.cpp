@@ -48,7 +48,7 @@ const Pass* find_pass(std::string_view name) {
 void check_size(std::string_view name, size_t expected, size_t given) {
   if (given == expected) return;
   throw Error(Status::invalid_argument, "Pass \"" + std::string(name) + "\" has " + std::to_string(expected) +
-                                            " numbers, not " + std::to_string(given) + ".");
+                                            " values, not " + std::to_string(given) + ".");
 }
 
 }  // namespace
@@ -56,8 +56,9 @@ void check_size(std::string_view name, size_t expected, size_t given) {
 Film::Film(const PixelRect& window, PassOptions options)
     : window_(window), options_(std::move(options)), layout_(options_) {
   if (window.width() <= 0 || window.height() <= 0) {
-    throw Error(Status::invalid_argument, "A picture of " + std::to_string(window.width()) + " x " +
-                                              std::to_string(window.height()) + " pixels is empty.");
+    throw Error(Status::invalid_argument, "An image of " + std::to_string(window.width()) + " x " +
+                                              std::to_string(window.height()) +
+                                              " pixels cannot be rendered; it must have at least one pixel.");
   }
   pixels_.resize(static_cast<size_t>(window.width()) * static_cast<size_t>(window.height()));
   values_.resize(pixels_.size() * layout_.size());
@@ -124,9 +125,9 @@ int Film::channels(std::string_view name) {
   if (name == kDenoised) return 4;
   if (const int count = PassLayout::channels(name)) return count;
   throw Error(Status::invalid_argument,
-              "There is no pass \"" + std::string(name) +
-                  "\": Combined, Depth, Normal, Sample Count, Denoised, Position, UV, IndexOB, IndexMA, Mist, "
-                  "Albedo, Error, Denoising Albedo, Halves, CryptoObject00, CryptoMaterial00 and CryptoAsset00 are.");
+              "Unknown pass \"" + std::string(name) +
+                  "\"; use Combined, Depth, Normal, Sample Count, Denoised, Position, UV, IndexOB, IndexMA, Mist, "
+                  "Albedo, Error, Denoising Albedo, Halves, CryptoObject00, CryptoMaterial00 or CryptoAsset00.");
 }
 
 void Film::read_pass(std::string_view name, std::span<float> pixels) const {
@@ -145,13 +146,14 @@ void Film::read_pass(std::string_view name, std::span<float> pixels) const {
 void Film::read_layout(std::string_view name, std::span<float> pixels) const {
   if (!layout_.has(name)) {
     throw Error(Status::invalid_argument, "The pass \"" + std::string(name) +
-                                              "\" was not asked for when the render was made (vlr_pass_options).");
+                                              "\" was not requested when the render was created (vlr_pass_options).");
   }
   layout_.write(name, pixels_, values_, pixels.data());
 }
 
 void Film::read_denoised(std::span<float> pixels) const {
-  if (denoised_.empty()) throw Error(Status::invalid_state, "The picture has not been denoised since it changed.");
+  if (denoised_.empty())
+    throw Error(Status::invalid_state, "The image has not been denoised since its last change. Denoise it first.");
   for (size_t i = 0; i < pixels_.size(); ++i) {
     std::copy_n(&denoised_[3 * i], 3, &pixels[4 * i]);
     pixels[4 * i + 3] = pixels_[i].alpha * pixels_[i].weight();

@@ -31,7 +31,8 @@ void write(const PixelSum& p, float* out) {
 
 uint32_t count(float value) {
   if (value >= 0.0f && value <= kMaxWholeFloat && value == std::floor(value)) return static_cast<uint32_t>(value);
-  throw Error(Status::bad_data, "These are no sums of a film: a pixel has " + std::to_string(value) + " rays.");
+  throw Error(Status::bad_data,
+              "The given numbers are not the sums of a render: a pixel has " + std::to_string(value) + " rays.");
 }
 
 PixelSum read(const float* v) {
@@ -58,8 +59,9 @@ struct Contents {
 void check_size(const Film& film, size_t given) {
   const size_t expected = static_cast<size_t>(film.width()) * static_cast<size_t>(film.height()) * sums_per_pixel(film);
   if (given == expected) return;
-  throw Error(Status::invalid_argument,
-              "The sums of this film are " + std::to_string(expected) + " numbers, not " + std::to_string(given) + ".");
+  throw Error(Status::invalid_argument, "The sums of this render are " + std::to_string(expected) + " numbers, not " +
+                                            std::to_string(given) +
+                                            ". Add only sums of renders with the same size and passes.");
 }
 
 }  // namespace

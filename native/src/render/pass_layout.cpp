@@ -209,12 +209,12 @@ IdLevel find_ids(std::string_view name) {
 
 PassLayout::PassLayout(const PassOptions& options) : asked_(options.asked), ranks_(options.cryptomatte_ranks) {
   if ((asked_ & ~pass::kAll) != 0) {
-    throw Error(Status::invalid_argument,
-                "The passes asked for are " + std::to_string(asked_) + ", which has bits that are no VLR_PASS value.");
+    throw Error(Status::invalid_argument, "The requested passes are " + std::to_string(asked_) +
+                                              ", which has bits other than the VLR_PASS values.");
   }
   if (ranks_ < 2 || ranks_ > PassOptions::kMostRanks) {
-    throw Error(Status::invalid_argument, "A pixel cannot have " + std::to_string(ranks_) + " ids; 2 to " +
-                                              std::to_string(PassOptions::kMostRanks) + " are possible.");
+    throw Error(Status::invalid_argument, "The number of Cryptomatte ids per pixel is " + std::to_string(ranks_) +
+                                              "; it must be 2 to " + std::to_string(PassOptions::kMostRanks) + ".");
   }
   for (uint32_t bit = 1; bit <= pass::kAll; bit *= 2) size_ += floats(bit);
 }

@@ -14,12 +14,13 @@ SampleRange checked_samples(const RenderOptions& options) {
   if (range.begin < 0 || range.begin >= range.end || range.end > options.spp) {
     throw Error(Status::invalid_argument,
                 "Render option samples is " + std::to_string(range.begin) + ":" + std::to_string(range.end) +
-                    "; it must lie within 0:" + std::to_string(options.spp) + ", the samples of a pixel (spp).");
+                    "; it must be a range within 0:" + std::to_string(options.spp) + ", the samples per pixel (spp).");
   }
   if (!whole(range.begin) || !whole(range.end)) {
     throw Error(Status::invalid_argument, "Render option samples is " + std::to_string(range.begin) + ":" +
-                                              std::to_string(range.end) + "; its ends must be multiples of " +
-                                              std::to_string(options.split) + ", which share a camera ray (split).");
+                                              std::to_string(range.end) + "; both ends must be multiples of " +
+                                              std::to_string(options.split) +
+                                              ", the number of samples that share a camera ray (split).");
   }
   return range;
 }
@@ -27,7 +28,7 @@ SampleRange checked_samples(const RenderOptions& options) {
 void require_limit(const char* name, float value) {
   if (value >= 0.0f && std::isfinite(value)) return;
   throw Error(Status::invalid_argument, std::string("Render option ") + name + " is " + std::to_string(value) +
-                                            "; it must be a number of at least 0, which switches it off.");
+                                            "; it must be a finite number of at least 0 (0: off).");
 }
 
 }  // namespace
@@ -35,7 +36,7 @@ void require_limit(const char* name, float value) {
 void require_range(const char* options, const char* name, int value, int low, int high) {
   if (value >= low && value <= high) return;
   throw Error(Status::invalid_argument, std::string(options) + " option " + name + " is " + std::to_string(value) +
-                                            "; it must lie between " + std::to_string(low) + " and " +
+                                            "; it must be between " + std::to_string(low) + " and " +
                                             std::to_string(high) + ".");
 }
 
@@ -46,10 +47,10 @@ void check_crop(const RenderOptions& options) {
     return;
   }
   const auto span = [](int from, int to) { return std::to_string(from) + ":" + std::to_string(to); };
-  throw Error(Status::invalid_argument, "Render option crop is columns " + span(crop.x0, crop.x1) + ", rows " +
-                                            span(crop.y0, crop.y1) + "; it must hold pixels of the picture's " +
-                                            std::to_string(options.width) + " x " + std::to_string(options.height) +
-                                            ".");
+  throw Error(Status::invalid_argument,
+              "Render option crop is columns " + span(crop.x0, crop.x1) + ", rows " + span(crop.y0, crop.y1) +
+                  "; it must contain pixels and lie within the image of " + std::to_string(options.width) + " x " +
+                  std::to_string(options.height) + " pixels.");
 }
 
 RenderOptions checked(RenderOptions options) {
@@ -66,19 +67,23 @@ RenderOptions checked(RenderOptions options) {
   require_range("Render", "sequence", static_cast<int>(options.sequence), 0, static_cast<int>(kLastSequence));
   if (!(options.light_share >= 0.0f && options.light_share <= 1.0f)) {
     throw Error(Status::invalid_argument,
-                "Render option share is " + std::to_string(options.light_share) + "; it must lie between 0 and 1.");
+                "Render option share is " + std::to_string(options.light_share) + "; it must be between 0 and 1.");
   }
   const LightPathOptions& paths = options.light_paths;
   require_limit("clamp_direct", paths.clamp_direct);
   require_limit("clamp_indirect", paths.clamp_indirect);
   require_limit("filter_glossy", paths.filter_glossy);
-  if (!(options.noise >= 0.0)) throw Error(Status::invalid_argument, "Render option noise is negative.");
-  if (!(options.time_limit >= 0.0)) throw Error(Status::invalid_argument, "Render option time_limit is negative.");
+  if (!(options.noise >= 0.0))
+    throw Error(Status::invalid_argument,
+                "Render option noise is " + std::to_string(options.noise) + "; it must be at least 0.");
+  if (!(options.time_limit >= 0.0))
+    throw Error(Status::invalid_argument,
+                "Render option time_limit is " + std::to_string(options.time_limit) + "; it must be at least 0.");
   options.split = std::min(options.split, options.spp);
   const bool is_part = options.samples.begin > 0 || options.samples.end > 0 || options.crop != PixelRect{};
   if (is_part && options.noise > 0.0) {
     throw Error(Status::invalid_argument,
-                "Render option noise looks at a whole picture, and goes with neither samples nor crop.");
+                "Render option noise requires the whole image, so it cannot be combined with samples or crop.");
   }
   options.samples = checked_samples(options);
   check_crop(options);

@@ -48,7 +48,7 @@ void ProgressiveRender::restart() {
 
 void ProgressiveRender::run(Progress& progress) {
   prepare_scene(progress);
-  progress.stage("render", 0.0, 1.0);
+  progress.stage("rendering", 0.0, 1.0);
   start_ = std::chrono::steady_clock::now();
   try {
     for (render_level(progress); !is_last(); render_level(progress)) ++level_;
@@ -66,7 +66,7 @@ void ProgressiveRender::measure_first(bool is_whole) {
 
 /// Prepares hierarchy, lights, and what the strategy needs; kept while only the camera moves.
 void ProgressiveRender::prepare_scene(Progress& progress) {
-  progress.stage("hierarchy", 0.0, 0.0);
+  progress.stage("building the BVH", 0.0, 0.0);
   scene_->commit(asked_.threads, &progress);
   progress.check();
   if (context_ && prepared_for_ == scene_->revision()) return;
@@ -160,8 +160,9 @@ ProgressiveRender::Picture ProgressiveRender::read(std::span<float> pixels) cons
   const Film& film = shown_->film;
   const size_t count = 4 * static_cast<size_t>(film.width()) * static_cast<size_t>(film.height());
   if (pixels.size() < count) {
-    throw Error(Status::invalid_argument, "The picture has " + std::to_string(count) + " values, more than the " +
-                                              std::to_string(pixels.size()) + " that there is room for.");
+    throw Error(Status::invalid_argument, "The image has " + std::to_string(count) +
+                                              " values, but the given buffer has room for only " +
+                                              std::to_string(pixels.size()) + ".");
   }
   if (!denoised_.empty()) {
     std::ranges::copy(denoised_, pixels.begin());

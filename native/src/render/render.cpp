@@ -25,10 +25,10 @@ double seconds_since(Clock::time_point start) { return std::chrono::duration<dou
 
 RenderOptions checked_for(const Scene& scene, const RenderOptions& options, const Film& film) {
   if (film.window() != options.window()) {
-    throw Error(Status::invalid_argument, "The film has another size or place than the render options ask for.");
+    throw Error(Status::invalid_argument, "The size or position of the film does not match the render options.");
   }
   if (options.denoise && !film.options().has(pass::kHalves)) {
-    throw Error(Status::invalid_argument, "The film has no pass \"Halves\", which the render option denoise needs.");
+    throw Error(Status::invalid_argument, "The film has no pass \"Halves\", which the render option denoise requires.");
   }
   if (!scene.committed()) throw Error(Status::invalid_state, "The scene must be committed before it is rendered.");
   return checked(options);

@@ -55,9 +55,9 @@ class Observer {
         arena_(arena_concurrency(options.threads)) {}
 
   SceneObservation run() {
-    progress_.stage("views", 0.0, 0.3);
+    progress_.stage("tracing camera rays", 0.0, 0.3);
     see_views();
-    progress_.stage("light", 0.3, 1.0);
+    progress_.stage("gathering light", 0.3, 1.0);
     see_light();
     observation_.domain.hash = content_hash(observation_);
     progress_.update(1.0);
@@ -138,7 +138,7 @@ void check_observer(const Scene& scene, uint32_t material, const ObserverOptions
   if (!scene.committed()) throw Error(Status::invalid_state, "The scene must be committed before it is observed.");
   if (material >= scene.materials().size()) {
     throw Error(Status::invalid_argument, "Material " + std::to_string(material) +
-                                              " cannot be observed: the scene has " +
+                                              " cannot be observed: the scene has only " +
                                               std::to_string(scene.materials().size()) + " materials.");
   }
 }

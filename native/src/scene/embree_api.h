@@ -13,8 +13,9 @@ namespace velour {
 
 /// Table of the functions in use. Their types come from Embree's headers, so a mismatch is a compile error.
 struct EmbreeApi {
-  PrivateLibrary library{"libembree" + std::to_string(RTC_VERSION_MAJOR) + ".so." + std::to_string(RTC_VERSION_MAJOR),
-                         "install Embree " + std::string(RTC_VERSION_STRING) + " or put its library beside Velour's."};
+  PrivateLibrary library{
+      "libembree" + std::to_string(RTC_VERSION_MAJOR) + ".so." + std::to_string(RTC_VERSION_MAJOR),
+      "install Embree " + std::string(RTC_VERSION_STRING) + ", or put its library next to Velour's."};
 #define VELOUR_EMBREE(name) decltype(::name)* name = library.function<decltype(::name)>(#name)
   VELOUR_EMBREE(rtcNewDevice);
   VELOUR_EMBREE(rtcReleaseDevice);

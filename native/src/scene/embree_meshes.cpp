@@ -35,7 +35,8 @@ class EmbreeMeshes::Build {
     try {
       thread_ = std::thread(&Build::run, this);
     } catch (const std::system_error&) {
-      throw Error(Status::out_of_memory, "The system gave no thread to build the ray tracer's hierarchy.");
+      throw Error(Status::out_of_memory,
+                  "The system could not start a thread to build the BVH. Close other programs and try again.");
     }
     for (RTCScene scene : scenes) api_.rtcRetainScene(scene);
   }
@@ -112,7 +113,7 @@ class EmbreeMeshes::Build {
 };
 
 EmbreeMeshes::EmbreeMeshes() : device_(api_.rtcNewDevice(nullptr)) {
-  if (device_ == nullptr) throw Error(Status::unsupported, "Embree cannot run on this processor.");
+  if (device_ == nullptr) throw Error(Status::unsupported, "Embree does not support this processor.");
   api_.rtcSetDeviceMemoryMonitorFunction(device_, count_bytes, &bytes_);
 }
 
@@ -195,8 +196,9 @@ RTCScene EmbreeMeshes::new_scene() const {
 RTCScene EmbreeMeshes::scene_of(std::span<const Vec3> positions, std::span<const glm::uvec3> triangles) const {
   for (const glm::uvec3& t : triangles) {
     if (std::max({t.x, t.y, t.z}) >= positions.size()) {
-      throw Error(Status::invalid_argument, "A triangle names vertex " + std::to_string(std::max({t.x, t.y, t.z})) +
-                                                " of a mesh with " + std::to_string(positions.size()) + ".");
+      throw Error(Status::invalid_argument, "A triangle has vertex index " + std::to_string(std::max({t.x, t.y, t.z})) +
+                                                ", but the mesh has only " + std::to_string(positions.size()) +
+                                                " vertices.");
     }
   }
   RTCGeometry geometry = api_.rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_TRIANGLE);
@@ -226,9 +228,10 @@ void EmbreeMeshes::renew(RTCScene& scene) const {
 void EmbreeMeshes::check(RTCError error) {
   if (error == RTC_ERROR_NONE) return;
   if (error == RTC_ERROR_OUT_OF_MEMORY) {
-    throw Error(Status::out_of_memory, "Not enough memory to build the ray tracer's hierarchy.");
+    throw Error(Status::out_of_memory,
+                "Not enough memory to build the BVH. Simplify the scene, or close other programs.");
   }
-  throw Error(Status::unknown, "Embree failed with its error " + std::to_string(error) + ".");
+  throw Error(Status::unknown, "Embree failed with error code " + std::to_string(error) + ".");
 }
 
 }  // namespace velour

@@ -136,7 +136,7 @@ void EmbreeScene::share_meshes(const EmbreeScene& other) { impl_->meshes = other
 
 uint32_t EmbreeScene::add_instance(uint32_t mesh, const Affine& object_to_world) {
   if (mesh >= impl_->meshes->size()) {
-    throw Error(Status::invalid_argument, "There is no mesh " + std::to_string(mesh) + " to instance.");
+    throw Error(Status::invalid_argument, "The instance has mesh " + std::to_string(mesh) + ", which does not exist.");
   }
   const Vec3 z = glm::cross(object_to_world.column(0), object_to_world.column(1));
   const float front = glm::dot(z, object_to_world.column(2)) < 0.0f ? -1.0f : 1.0f;
@@ -224,7 +224,7 @@ uint64_t EmbreeScene::bytes() const { return static_cast<uint64_t>(std::max<int6
 EmbreeInfo embree_info() {
   const EmbreeApi& api = embree();
   RTCDevice device = api.rtcNewDevice(nullptr);
-  if (device == nullptr) throw Error(Status::unsupported, "Embree cannot run on this processor.");
+  if (device == nullptr) throw Error(Status::unsupported, "Embree does not support this processor.");
   const auto version = api.rtcGetDeviceProperty(device, RTC_DEVICE_PROPERTY_VERSION);
   api.rtcReleaseDevice(device);
   return {
@@ -237,7 +237,7 @@ void embree_self_test() {
   if (info.version != RTC_VERSION_STRING) {
     throw Error(Status::version_mismatch, "Embree at " + info.path + " is version " + info.version +
                                               ", but Velour was built for " + RTC_VERSION_STRING +
-                                              ": install that version, or rebuild Velour.");
+                                              ". Install that version, or rebuild Velour.");
   }
   EmbreeScene scene;
   const Vec3 positions[] = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
@@ -250,7 +250,8 @@ void embree_self_test() {
                      std::abs(hit.u - 0.25f) < 1e-5f && std::abs(hit.v - 0.5f) < 1e-5f;
   if (!right || scene.occluded({{1, 1, 2}, 0, {0, 0, -1}})) {
     throw Error(Status::version_mismatch,
-                "Embree at " + info.path + " misses a known triangle: another copy of it may be in the way.");
+                "Embree at " + info.path +
+                    " does not work: its self test misses a triangle. Another copy of Embree may be loaded instead.");
   }
 }
 

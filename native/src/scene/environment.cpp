@@ -14,18 +14,19 @@ constexpr float kUniformPdf = 0.25f / kPi;
 [[noreturn]] void fail(const char* sentence) { throw Error(Status::bad_data, sentence); }
 
 void check(const EquirectangularPixels& p) {
-  if (p.width <= 0 || p.height <= 0) fail("The world's image has no pixels.");
-  if (p.width > 65535 || p.height > 65535) fail("The world's image is more than 65535 pixels wide or high.");
-  if (p.channels < 1 || p.channels > 4) fail("The world's image needs 1 to 4 channels.");
+  if (p.width <= 0 || p.height <= 0) fail("The environment image has no pixels.");
+  if (p.width > 65535 || p.height > 65535)
+    fail("The environment image is more than 65535 pixels wide or high. Scale it down.");
+  if (p.channels < 1 || p.channels > 4) fail("The environment image must have 1 to 4 channels.");
   const size_t count = static_cast<size_t>(p.width) * static_cast<size_t>(p.height) * static_cast<size_t>(p.channels);
-  if (p.values.size() != count) fail("The world's image has another number of pixels than its size says.");
+  if (p.values.size() != count) fail("The number of values of the environment image does not match its size.");
 }
 
 EnvironmentPlacement checked(float strength, const Mat3& world_to_image) {
-  if (!std::isfinite(strength)) fail("The world's strength is not finite.");
+  if (!std::isfinite(strength)) fail("The strength of the environment is not finite.");
   const Mat3 product = glm::transpose(world_to_image) * world_to_image - Mat3(1.0f);
   for (int i = 0; i < 9; ++i) {
-    if (!(std::abs(product[i / 3][i % 3]) < 1e-3f)) fail("The world's turn is not a rotation.");
+    if (!(std::abs(product[i / 3][i % 3]) < 1e-3f)) fail("The rotation of the environment is not a rotation matrix.");
   }
   return {std::max(strength, 0.0f), world_to_image};
 }
@@ -56,7 +57,7 @@ Environment Environment::image(const EquirectangularPixels& pixels, float streng
 }
 
 Environment Environment::placed(float strength, const Mat3& world_to_image) const {
-  if (!image_) throw Error(Status::invalid_argument, "The world has no image that could be placed otherwise.");
+  if (!image_) throw Error(Status::invalid_argument, "The environment has no image, so it cannot be rotated.");
   Environment e = *this;
   e.placement_ = checked(strength, world_to_image);
   e.mean_luminance_ = e.placement_.strength * image_->mean_luminance();
@@ -75,7 +76,7 @@ Environment Environment::load(const std::string& path, const PictureOptions& opt
 std::vector<std::string> Environment::notes() const {
   std::vector<std::string> notes = notes_;
   if (image_) {
-    const auto replaced = fault_sentences(image_->faults(), "The world's image");
+    const auto replaced = fault_sentences(image_->faults(), "The environment image");
     notes.insert(notes.end(), replaced.begin(), replaced.end());
   }
   return notes;

@@ -16,23 +16,23 @@ constexpr float kReach = 1.8e18f;
 
 void check_length(size_t found, size_t expected, const char* what) {
   if (found == 0 || found == expected) return;
-  refuse("A mesh has " + std::to_string(found) + " " + what + " where its triangles need " + std::to_string(expected) +
-         ".");
+  refuse("A mesh has " + std::to_string(found) + " " + what + ", but its triangles require " +
+         std::to_string(expected) + ".");
 }
 
 /// `more`: number of coordinates in all further sets; `first`: in the first set.
 void check_more_uvs(size_t more, size_t first) {
   if (more == 0 || (first > 0 && more % first == 0)) return;
   refuse("A mesh has " + std::to_string(more) +
-         " further corner texture coordinates, which are no whole sets beside the " + std::to_string(first) +
-         " of its first.");
+         " texture coordinates in further UV sets; the number must be a multiple of the " + std::to_string(first) +
+         " in its first UV set.");
 }
 
 /// Error message if a triangle names a missing corner or vertex.
 std::optional<std::string> missing(const MeshArrays& arrays, size_t triangle) {
   const auto lacks = [&](const char* what, size_t number, size_t count, const char* plural) {
-    return "Triangle " + std::to_string(triangle) + " names " + what + " " + std::to_string(number) +
-           " of a mesh with " + std::to_string(count) + " " + plural + ".";
+    return "Triangle " + std::to_string(triangle) + " has " + what + " index " + std::to_string(number) +
+           ", but the mesh has only " + std::to_string(count) + " " + plural + ".";
   };
   for (int k = 0; k < 3; ++k) {
     uint32_t vertex = arrays.triangles[triangle][k];
@@ -72,8 +72,8 @@ void MeshArrays::check() const {
   check_more_uvs(more_uvs.size(), corner_uvs.size());
   check_length(relief_uvs.size(), corners, "texture coordinates of normal maps");
   if (corners == 0 ? !corner_colors.empty() : corner_colors.size() % corners != 0) {
-    refuse("A mesh has " + std::to_string(corner_colors.size()) + " corner colours, which are no whole sets of its " +
-           std::to_string(corners) + " corners.");
+    refuse("A mesh has " + std::to_string(corner_colors.size()) +
+           " corner colors; the number must be a multiple of its " + std::to_string(corners) + " corners.");
   }
   check_length(material_slots.size(), n, "material slots");
   check_length(smooth.size(), n, "smooth flags");

@@ -130,7 +130,7 @@ class ObjReader {
     if (error != std::errc() || end != digits.data() + digits.size()) {
       const bool comma = found.find(',') != std::string_view::npos;
       refuse("'" + std::string(found.substr(0, 40)) + "' is not a number" +
-             (comma ? "; write decimals with a point." : "."));
+             (comma ? "; use a point as the decimal separator." : "."));
     }
     return static_cast<float>(value);
   }
@@ -160,11 +160,11 @@ class ObjReader {
     const std::string_view digits = text.starts_with('+') ? text.substr(1) : text;
     const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), index);
     if (error != std::errc() || end != digits.data() + digits.size() || index == 0 || index > INT32_MAX)
-      refuse("'" + std::string(text.substr(0, 40)) + "' is no index of a " + what + ".");
+      refuse("'" + std::string(text.substr(0, 40)) + "' is not a valid " + what + " index.");
     if (index > 0) return static_cast<uint32_t>(index - 1);
     if (-index > static_cast<int64_t>(count))
-      refuse("a face names " + std::string(what) + " " + std::to_string(index) + ", but there are " +
-             std::to_string(count) + " so far.");
+      refuse("a face has " + std::string(what) + " index " + std::to_string(index) + ", but the file has only " +
+             std::to_string(count) + " up to this line.");
     return static_cast<uint32_t>(static_cast<int64_t>(count) + index);
   }
 
@@ -186,7 +186,7 @@ class ObjReader {
     const size_t count = content_.corners.size() - first;
     if (count > PolygonTriangles::kMaxCorners)
       refuse("a face has " + std::to_string(count) + " corners, more than " +
-             std::to_string(PolygonTriangles::kMaxCorners) + "; cut it into smaller ones.");
+             std::to_string(PolygonTriangles::kMaxCorners) + ". Split it into smaller faces.");
     if (count < 3) {
       ++content_.too_small;
       content_.corners.resize(first);
@@ -200,8 +200,8 @@ class ObjReader {
   void check_indices() {
     const auto check = [&](uint32_t place, size_t count, const char* what) {
       if (place != kNone && place >= count)
-        refuse("a face names " + std::string(what) + " " + std::to_string(uint64_t{place} + 1) + " of " +
-               std::to_string(count) + ".");
+        refuse("a face has " + std::string(what) + " index " + std::to_string(uint64_t{place} + 1) +
+               ", but the file has only " + std::to_string(count) + ".");
     };
     for (size_t f = 0; f < content_.faces.size(); ++f) {
       line_number_ = face_lines_[f];
@@ -276,11 +276,11 @@ void add_notes(const ObjContent& content, const ObjArrays& arrays, const std::st
       mesh.add_note(path + ": " + std::to_string(count) + " of " + std::to_string(faces) + " faces have " + what + ".");
     }
   };
-  note(arrays.without_normals, "no normals and are flat");
-  note(arrays.without_uvs, "no texture coordinates; (0, 0) is used there");
+  note(arrays.without_normals, "no normals and are shaded flat");
+  note(arrays.without_uvs, "no texture coordinates; (0, 0) is used");
   if (content.too_small > 0)
     mesh.add_note(path + ": " + std::to_string(content.too_small) +
-                  " faces have fewer than 3 corners and are left out.");
+                  " faces have fewer than 3 corners and were left out.");
 }
 
 }  // namespace
@@ -288,7 +288,7 @@ void add_notes(const ObjContent& content, const ObjArrays& arrays, const std::st
 Mesh read_obj(const std::string& path) {
   const std::vector<uint8_t> bytes = read_file(path);
   const ObjContent content = ObjReader(bytes, path).read();
-  if (content.faces.empty()) throw Error(Status::bad_data, path + ": holds no faces.");
+  if (content.faces.empty()) throw Error(Status::bad_data, path + ": contains no faces.");
   const ObjArrays arrays(content);
   Mesh mesh({.positions = content.positions,
              .triangles = arrays.triangles,

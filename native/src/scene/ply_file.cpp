@@ -65,7 +65,7 @@ class Reader {
     const auto longest = rest.first(std::min<size_t>(kMaxLine, rest.size()));
     if (at_ == 0) find_line_end(longest);
     const auto end = std::find(longest.begin(), longest.end(), line_end_);
-    if (end == longest.end()) refuse("the header of the PLY file does not end.");
+    if (end == longest.end()) refuse("the PLY header has no end; the file is truncated or damaged.");
     std::string text(longest.begin(), end);
     at_ += text.size() + 1;
     if (!text.empty() && text.back() == '\r') text.pop_back();
@@ -77,7 +77,8 @@ class Reader {
   /// Throws unless the rest of the file can hold `count` items of at least `bytes` bytes each.
   void expect(uint64_t count, uint64_t bytes, const std::string& what) const {
     if (count > (bytes_.size() - at_) / std::max<uint64_t>(1, bytes)) {
-      refuse("it says that it holds " + std::to_string(count) + " " + what + ", but it is too short for them.");
+      refuse("the file claims to contain " + std::to_string(count) + " " + what +
+             ", but it is too short; it is truncated or damaged.");
     }
   }
 
@@ -97,11 +98,11 @@ class Reader {
     while (at_ < bytes_.size() && is_space(bytes_[at_])) ++at_;
     const auto* begin = reinterpret_cast<const char*>(bytes_.data()) + at_;
     const auto* end = reinterpret_cast<const char*>(bytes_.data()) + bytes_.size();
-    if (begin == end) refuse("the PLY file ends before its last number.");
+    if (begin == end) refuse("the file ends before its last number; it is truncated.");
     double value = 0;
     const auto [next, problem] = std::from_chars(*begin == '+' ? begin + 1 : begin, end, value);
     if (problem == std::errc::invalid_argument || (next != end && !is_space(static_cast<uint8_t>(*next)))) {
-      refuse("there is no number at byte " + std::to_string(at_) + " of the PLY file.");
+      refuse("there is no number at byte " + std::to_string(at_) + "; the file is damaged.");
     }
     at_ += static_cast<size_t>(next - begin);
     return value;
@@ -116,7 +117,7 @@ class Reader {
   }
 
   double binary_number(Number type) {
-    if (bytes_.size() - at_ < bytes_of(type)) refuse("the PLY file ends before its last number.");
+    if (bytes_.size() - at_ < bytes_of(type)) refuse("the file ends before its last number; it is truncated.");
     const double value = decoded(type);
     at_ += bytes_of(type);
     return value;
@@ -155,7 +156,7 @@ Property read_property(std::istringstream& words, const Reader& reader) {
     std::string name;
     words >> name;
     const auto number = number_named(name);
-    if (!number) reader.refuse("'" + name + "' is no type of a PLY file's property.");
+    if (!number) reader.refuse("'" + name + "' is not a valid PLY property type.");
     return *number;
   };
   Property property;
@@ -183,17 +184,17 @@ std::vector<Element> read_header(Reader& reader) {
     if (word == "format") {
       words >> value;
       if (value != "ascii" && value != "binary_little_endian" && value != "binary_big_endian") {
-        reader.refuse("its format is '" + value + "', not ascii, binary_little_endian or binary_big_endian.");
+        reader.refuse("its format is '" + value + "'; it must be ascii, binary_little_endian or binary_big_endian.");
       }
       reader.format = value == "ascii"                  ? Format::ascii
                       : value == "binary_little_endian" ? Format::little_endian
                                                         : Format::big_endian;
     } else if (word == "element") {
       Element element;
-      if (!(words >> element.name >> element.count)) reader.refuse("an element of its header has no name and count.");
+      if (!(words >> element.name >> element.count)) reader.refuse("an element in its header has no name or no count.");
       // If a second vertex list lacked normals, its corners would index past the end of the first list's normals.
       if (std::ranges::find(elements, element.name, &Element::name) != elements.end()) {
-        reader.refuse("its header has two elements named '" + element.name + "'; make them one.");
+        reader.refuse("its header has two elements named '" + element.name + "'; merge them.");
       }
       elements.push_back(element);
     } else if (word == "property") {
@@ -230,7 +231,7 @@ std::optional<size_t> place_of(const std::string& name) {
 
 uint64_t read_count(Reader& reader, const Property& property) {
   const double count = reader.number(*property.count);
-  if (!(count >= 0) || count > 1e9) reader.refuse("a list of the PLY file has no usable length.");
+  if (!(count >= 0) || count > 1e9) reader.refuse("a list has an invalid length; the file is damaged.");
   return static_cast<uint64_t>(count);
 }
 
@@ -244,7 +245,7 @@ void read_vertices(Reader& reader, const Element& element, Content& content) {
   for (const Property& p : element.properties) {
     if (const auto place = place_of(p.name); place && !p.count) there[*place] = true;
   }
-  if (!there[0] || !there[1] || !there[2]) reader.refuse("its vertices have no x, y and z.");
+  if (!there[0] || !there[1] || !there[2]) reader.refuse("its vertices do not have the properties x, y and z.");
   for (uint64_t i = 0; i < element.count; ++i) {
     std::array<float, 8> values{};
     for (const Property& p : element.properties) {
@@ -266,11 +267,11 @@ void read_polygon(Reader& reader, const Property& property, Content& content) {
   reader.expect(count, reader.format == Format::ascii ? 2 : bytes_of(property.type), "corners of a face");
   if (count > PolygonTriangles::kMaxCorners) {
     reader.refuse("a face has " + std::to_string(count) + " corners, more than " +
-                  std::to_string(PolygonTriangles::kMaxCorners) + "; cut it into smaller ones.");
+                  std::to_string(PolygonTriangles::kMaxCorners) + ". Split it into smaller faces.");
   }
   for (uint64_t i = 0; i < count; ++i) {
     const double vertex = reader.number(property.type);
-    if (!(vertex >= 0) || vertex > UINT32_MAX) reader.refuse("a face names a vertex by a number that is no index.");
+    if (!(vertex >= 0) || vertex > UINT32_MAX) reader.refuse("a face has an invalid vertex index.");
     content.corners.push_back(static_cast<uint32_t>(vertex));
   }
   content.face_sizes.push_back(static_cast<uint32_t>(count));
@@ -357,11 +358,12 @@ Mesh read_ply(const std::string& path) {
   const size_t vertices = content.positions.size();
   for (const uint32_t vertex : content.corners) {
     if (vertex >= vertices) {
-      reader.refuse("a face names vertex " + std::to_string(vertex) + " (from 0) of " + std::to_string(vertices) + ".");
+      reader.refuse("a face has vertex index " + std::to_string(vertex) + " (from 0), but the file has only " +
+                    std::to_string(vertices) + " vertices.");
     }
   }
   const std::vector<glm::uvec3> triangles = cut_faces(content);
-  if (triangles.empty()) reader.refuse("holds no faces.");
+  if (triangles.empty()) reader.refuse("contains no faces.");
   const std::vector<Vec3> normals = at_corners(content.normals, content.corners);
   const std::vector<Vec2> uvs = at_corners(content.uvs, content.corners);
   return Mesh({.positions = content.positions,

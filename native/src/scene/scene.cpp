@@ -22,16 +22,16 @@ float position_error(const Affine& map, const Vec3& magnitude) {
 }
 
 void require_finite(const Affine& map, const char* what) {
-  if (!map.finite()) refuse(std::string("The transform of ") + what + " holds a number that is not finite.");
+  if (!map.finite()) refuse(std::string("The transform of ") + what + " contains a number that is not finite.");
 }
 
 void require_placements(const std::vector<TextureMap>& placements, size_t materials) {
   if (!placements.empty() && placements.size() != materials) {
     refuse("An instance has " + std::to_string(materials) + " materials and " + std::to_string(placements.size()) +
-           " texture placements; give as many, or none.");
+           " texture placements; both numbers must be the same, or there must be no placements.");
   }
   if (!std::ranges::all_of(placements, &TextureMap::invertible)) {
-    refuse("A texture placement holds a number that is not finite, or leaves the texture without width.");
+    refuse("A texture placement contains a number that is not finite, or scales the texture to zero.");
   }
 }
 
@@ -71,9 +71,9 @@ uint32_t Scene::add_mesh(Mesh mesh) {
 }
 
 void Scene::remove_mesh(uint32_t number) {
-  if (number >= meshes_.size()) refuse("There is no mesh " + std::to_string(number) + " to remove.");
+  if (number >= meshes_.size()) refuse("Mesh " + std::to_string(number) + " does not exist and cannot be removed.");
   if (std::ranges::any_of(instances_, [&](const Instance& i) { return i.mesh == number; })) {
-    refuse("Mesh " + std::to_string(number) + " has instances; remove those first.");
+    refuse("Mesh " + std::to_string(number) + " has instances. Remove them first.");
   }
   geometry_changed();
   meshes_[number] = Mesh(MeshArrays{});
@@ -87,7 +87,8 @@ uint32_t Scene::add_material(SurfaceMaterial material) {
 }
 
 void Scene::set_material(uint32_t number, SurfaceMaterial material) {
-  if (number >= materials_.size()) refuse("There is no material " + std::to_string(number) + " to replace.");
+  if (number >= materials_.size())
+    refuse("Material " + std::to_string(number) + " does not exist and cannot be replaced.");
   SurfaceMaterial& place = materials_[number];
   ++revision_;
   if (!have_same_tops(place, material)) geometry_changed();
@@ -103,7 +104,7 @@ void Scene::set_material(uint32_t number, SurfaceMaterial material) {
 
 void Scene::replace_material(uint32_t number) {
   if (materials_.empty() || number >= materials_.size() - 1)
-    refuse("There is no material " + std::to_string(number) + " to replace.");
+    refuse("Material " + std::to_string(number) + " does not exist and cannot be replaced.");
   if (!have_same_tops(materials_[number], materials_.back())) geometry_changed();
   changed();
   materials_[number] = std::move(materials_.back());
@@ -111,10 +112,11 @@ void Scene::replace_material(uint32_t number) {
 }
 
 void Scene::set_gain(uint32_t material, const Rgb& gain) {
-  if (material >= materials_.size()) refuse("There is no material " + std::to_string(material) + " to tint.");
+  if (material >= materials_.size())
+    refuse("Material " + std::to_string(material) + " does not exist and cannot be tinted.");
   for (int c = 0; c < 3; ++c) {
     if (!(gain[c] >= 0 && std::isfinite(gain[c]))) {
-      refuse("A material cannot be made " + std::to_string(gain[c]) + " times as bright.");
+      refuse("The gain of a material is " + std::to_string(gain[c]) + "; it must be finite and at least 0.");
     }
   }
   ++revision_;
@@ -122,24 +124,26 @@ void Scene::set_gain(uint32_t material, const Rgb& gain) {
 }
 
 void Scene::set_hidden_backs(uint32_t material, uint8_t from) {
-  if (material >= materials_.size()) refuse("There is no material " + std::to_string(material) + " to cull.");
+  if (material >= materials_.size())
+    refuse("Material " + std::to_string(material) + " does not exist; its back faces cannot be hidden.");
   ++revision_;
   materials_[material].hidden_backs = from;
 }
 
 void Scene::set_drawn_to(uint32_t material, bool drawn) {
-  if (material >= materials_.size()) refuse("There is no material " + std::to_string(material) + " to draw rays to.");
+  if (material >= materials_.size())
+    refuse("Material " + std::to_string(material) + " does not exist; its emission cannot be sampled.");
   ++revision_;
   materials_[material].drawn_to = drawn;
 }
 
 void Scene::add_instance(uint32_t mesh, const Affine& object_to_world, std::vector<uint32_t> materials,
                          std::vector<TextureMap> placements, uint8_t hidden_from, float terminator) {
-  if (mesh >= meshes_.size()) refuse("There is no mesh " + std::to_string(mesh) + " to instance.");
+  if (mesh >= meshes_.size()) refuse("The instance has mesh " + std::to_string(mesh) + ", which does not exist.");
   require_finite(object_to_world, "an instance");
-  if (materials.empty()) refuse("An instance needs at least one material.");
+  if (materials.empty()) refuse("An instance must have at least one material.");
   for (uint32_t m : materials) {
-    if (m >= materials_.size()) refuse("There is no material " + std::to_string(m) + " for an instance.");
+    if (m >= materials_.size()) refuse("The instance has material " + std::to_string(m) + ", which does not exist.");
   }
   require_placements(placements, materials.size());
   geometry_changed();
@@ -156,10 +160,10 @@ uint32_t Scene::add_light(const Light& light) {
   const float numbers[] = {light.color.r, light.color.g, light.color.b, light.size.x,       light.size.y,
                            light.angle,   light.blend,   light.spread,  light.cone_scale.x, light.cone_scale.y};
   for (float x : numbers) {
-    if (!std::isfinite(x)) refuse("A light's colour, size, angle or scale is not finite.");
+    if (!std::isfinite(x)) refuse("The color, size, angle or scale of a light is not finite.");
   }
   if (!(light.cone_scale.x > 0.0f) || !(light.cone_scale.y > 0.0f))
-    refuse("The scale of a spot's cone is not positive.");
+    refuse("The cone scale of a spot light must be positive.");
   changed();
   lights_.push_back(light);
   return static_cast<uint32_t>(lights_.size() - 1);
@@ -242,15 +246,15 @@ SceneInfo Scene::count() const {
     info.bytes += meshes_[m].bytes();
     if (meshes_[m].dropped() == 0) continue;
     info.warnings.push_back("Mesh " + std::to_string(m) + ": " + std::to_string(meshes_[m].dropped()) +
-                            " triangles without area or with coordinates that are not finite are left out.");
+                            " triangles without area or with coordinates that are not finite were left out.");
   }
   if (flat_instances_ > 0) {
-    info.warnings.push_back(std::to_string(flat_instances_) + " instances have a zero scale and are left out.");
+    info.warnings.push_back(std::to_string(flat_instances_) + " instances have a scale of 0 and were left out.");
   }
   if (unlifted_ > 0) {
     info.warnings.push_back(std::to_string(unlifted_) +
-                            " instances have a material with a shell (VOTF) and no texture coordinates that cover "
-                            "their surface; they are shown without it.");
+                            " instances have a material with a silhouette (VOTF), but no texture coordinates that "
+                            "cover their surface; they were rendered without the silhouette. Unwrap their meshes.");
   }
   info.warnings.insert(info.warnings.end(), shell_warnings_.begin(), shell_warnings_.end());
   for (const Mesh& mesh : meshes_) info.warnings.insert(info.warnings.end(), mesh.notes().begin(), mesh.notes().end());

@@ -73,7 +73,8 @@ struct SurfacePoint {
 };
 
 /// Warning for rendered scenes; scenes that are only traced need no light.
-inline constexpr const char* kNoLightWarning = "The scene has no light.";
+inline constexpr const char* kNoLightWarning =
+    "The scene has no light, so its image is black. Add a light, an emissive mesh or an environment.";
 
 /// Placed texture coordinates of a hit, for materials that vary over the surface. (0, 0) without gradients if the mesh
 /// has no texture coordinates or they are not finite.

@@ -47,13 +47,14 @@ void ShellFolds::add(const Vec3 (&corner)[3], const Vec3 (&normal)[3], const She
 SurfaceMaterial& Scene::with_shell(uint32_t material, const char* to_what) {
   if (material < materials_.size() && materials_[material].shell) return materials_[material];
   throw Error(Status::invalid_argument,
-              "Material " + std::to_string(material) + " has no shell (VOTF) to " + to_what + ".");
+              "Material " + std::to_string(material) + " has no silhouette (VOTF) to " + to_what + ".");
 }
 
 void Scene::set_shell_tile(uint32_t material, float metres) {
   SurfaceMaterial& surface = with_shell(material, "scale");
   if (!(metres >= 0 && std::isfinite(metres))) {
-    throw Error(Status::invalid_argument, "The tile of a shell cannot be " + std::to_string(metres) + " metres wide.");
+    throw Error(Status::invalid_argument, "The tile width of a silhouette (VOTF) is " + std::to_string(metres) +
+                                              " m; it must be finite and at least 0.");
   }
   if (metres == surface.shell_tile) return;
   geometry_changed();
@@ -63,8 +64,8 @@ void Scene::set_shell_tile(uint32_t material, float metres) {
 void Scene::set_shell_softness(uint32_t material, float widths) {
   SurfaceMaterial& surface = with_shell(material, "soften");
   if (!(widths >= 0 && widths < 1)) {
-    throw Error(Status::invalid_argument, "The edge of a shell cannot fade out over " + std::to_string(widths) +
-                                              " of the tile's width; give a share from 0 to below 1.");
+    throw Error(Status::invalid_argument, "The edge softness of a silhouette (VOTF) is " + std::to_string(widths) +
+                                              " of the tile width; it must be at least 0 and below 1.");
   }
   ++revision_;
   surface.shell_softness = widths;
@@ -136,12 +137,12 @@ ShellFolds Scene::folds(const Instance& instance, uint32_t slot, const ShellHeig
 void Scene::warn_of_folds(const Instance& instance, uint32_t slot, const ShellHeights& shell) {
   const ShellFolds& folds = instance.top->folds[slot];
   if (folds.triangles == 0) return;
-  shell_warnings_.push_back("The shell (VOTF) of material " + std::to_string(instance.materials[slot]) +
-                            " reaches from " + in_metres(shell.bottom) + " to " + in_metres(shell.top) +
-                            " over the surface and folds over itself on " + std::to_string(folds.triangles) + " of " +
-                            std::to_string(folds.all) + " triangles, where the surface bends with radii down to " +
-                            in_metres(folds.least_radius) + "; make its tiles smaller (they are " +
-                            in_metres(instance.tile_width[slot]) + " wide).");
+  shell_warnings_.push_back(
+      "The silhouette (VOTF) of material " + std::to_string(instance.materials[slot]) + " reaches from " +
+      in_metres(shell.bottom) + " to " + in_metres(shell.top) + " above the surface and folds over itself on " +
+      std::to_string(folds.triangles) + " of " + std::to_string(folds.all) +
+      " triangles, where the surface has radii of curvature down to " + in_metres(folds.least_radius) +
+      ". Make its tiles smaller (they are " + in_metres(instance.tile_width[slot]) + " wide).");
 }
 
 /// Width in meters of a tile that covers one unit of the texture coordinates, averaged over the slot's triangles; 0 if

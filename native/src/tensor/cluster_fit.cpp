@@ -32,7 +32,8 @@ class ClusterSolver {
       const Eigen::Map<const Eigen::VectorXf> slice(matrix_.data() + i * matrix_.extent(1), matrix_.extent(1));
       square_.push_back(static_cast<double>(slice.squaredNorm()));
       if (!std::isfinite(square_.back())) {
-        wrong("Slice " + std::to_string(i) + " holds what is no number, or too large; leave it out or mend it.");
+        wrong("Slice " + std::to_string(i) +
+              " contains values that are not finite or too large. Remove or correct them.");
       }
     }
   }
@@ -171,18 +172,19 @@ class ClusterSolver {
 };
 
 void check(const TensorView& slices, const ClusterOptions& options) {
-  if (options.ranks.size() != slices.order()) wrong("A rank is needed for every mode of a tensor.");
+  if (options.ranks.size() != slices.order()) wrong("A tensor must have one rank per mode.");
   Index others = 1;
   for (size_t mode = 1; mode < slices.order(); ++mode) {
     others *= std::min(options.ranks[mode], slices.extent(mode));
   }
   if (options.ranks[0] > others) {
-    wrong("Slices of rank " + std::to_string(options.ranks[0]) + " cannot be made of " + std::to_string(others) +
-          " numbers; ask for larger ranks of the other modes.");
+    wrong("The rank of the slices is " + std::to_string(options.ranks[0]) +
+          ", more than the product of the other ranks, " + std::to_string(others) +
+          ". Increase the ranks of the other modes.");
   }
   if (options.clusters < 1 || options.members < 1 || options.members > options.clusters) {
     wrong(std::to_string(options.members) + " members of " + std::to_string(options.clusters) +
-          " clusters: it takes at least one of each, and no more members than clusters.");
+          " clusters are invalid: both must be at least 1, and there cannot be more members than clusters.");
   }
 }
 

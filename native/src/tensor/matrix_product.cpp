@@ -132,6 +132,45 @@ void multiply_simd(const StridedMatrix<const float>& a, const StridedMatrix<cons
   }
 }
 
+/// `kVectors` vectors of entries, from the one at `top`.
+template <size_t kVectors>
+HWY_INLINE void multiply_rows(const StridedMatrix<const float>& a, Index top, const float* x, float* product) {
+  const Lanes d;
+  const size_t lanes = hn::Lanes(d);
+  auto s0 = hn::Zero(d), s1 = s0, s2 = s0, s3 = s0;
+  const float* column = a.data + top;
+  for (Index j = 0; j < a.columns; ++j, column += a.column_stride) {
+    const auto factor = hn::Set(d, x[j]);
+    s0 = hn::MulAdd(factor, hn::LoadU(d, column), s0);
+    if constexpr (kVectors == 4) {
+      s1 = hn::MulAdd(factor, hn::LoadU(d, column + lanes), s1);
+      s2 = hn::MulAdd(factor, hn::LoadU(d, column + 2 * lanes), s2);
+      s3 = hn::MulAdd(factor, hn::LoadU(d, column + 3 * lanes), s3);
+    }
+  }
+  float* const to = product + top;
+  hn::StoreU(s0, d, to);
+  if constexpr (kVectors == 4) {
+    hn::StoreU(s1, d, to + lanes);
+    hn::StoreU(s2, d, to + 2 * lanes);
+    hn::StoreU(s3, d, to + 3 * lanes);
+  }
+}
+
+void multiply_vector_simd(const StridedMatrix<const float>& a, const float* x, float* product) {
+  const auto lanes = static_cast<Index>(hn::Lanes(Lanes()));
+  Index top = 0;
+  for (; top + 4 * lanes <= a.rows; top += 4 * lanes) multiply_rows<4>(a, top, x, product);
+  for (; top + lanes <= a.rows; top += lanes) multiply_rows<1>(a, top, x, product);
+  if (top == a.rows) return;
+  // What is left lies in a vector that begins before it, if there is room for one.
+  if (a.rows >= lanes) return multiply_rows<1>(a, a.rows - lanes, x, product);
+  for (; top < a.rows; ++top) {
+    product[top] = 0;
+    for (Index j = 0; j < a.columns; ++j) product[top] += a.data[top + j * a.column_stride] * x[j];
+  }
+}
+
 }  // namespace HWY_NAMESPACE
 }  // namespace velour
 HWY_AFTER_NAMESPACE();
@@ -140,10 +179,15 @@ HWY_AFTER_NAMESPACE();
 namespace velour {
 
 HWY_EXPORT(multiply_simd);
+HWY_EXPORT(multiply_vector_simd);
 
 void multiply(const StridedMatrix<const float>& a, const StridedMatrix<const float>& b,
               const StridedMatrix<float>& product) {
   VELOUR_SIMD_DISPATCH(multiply_simd)(a, b, product, false);
+}
+
+void multiply(const StridedMatrix<const float>& a, const float* x, float* product) {
+  VELOUR_SIMD_DISPATCH(multiply_vector_simd)(a, x, product);
 }
 
 void multiply_by_itself(const StridedMatrix<const float>& a, const StridedMatrix<float>& product) {

@@ -18,6 +18,10 @@ struct StridedMatrix {
 void multiply(const StridedMatrix<const float>& a, const StridedMatrix<const float>& b,
               const StridedMatrix<float>& product);
 
+/// `product` = a x for an `a` stored by columns (row_stride 1). Each entry is summed in the order of its factors, in
+/// floats.
+void multiply(const StridedMatrix<const float>& a, const float* x, float* product);
+
 /// `product` = a a^T, on and below the diagonal; entries above it are unspecified.
 void multiply_by_itself(const StridedMatrix<const float>& a, const StridedMatrix<float>& product);
 

@@ -88,7 +88,7 @@ TileParts make_gravel(const TileShape& shape) {
   }
   return {.mesh = builder.finish(),
           .materials = {mineral("floor", 0.12f, 0.02f), mineral("pale stone", 0.5f, 0.03f),
-                        mineral("grey stone", 0.32f, 0.0f), mineral("dark stone", 0.18f, -0.01f)},
+                        mineral("gray stone", 0.32f, 0.0f), mineral("dark stone", 0.18f, -0.01f)},
           .open = false,
           .open_area = 0.0};
 }

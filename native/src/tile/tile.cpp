@@ -45,7 +45,7 @@ template <typename T>
 void check(const TileKind& kind, const char* name, T value, T least, T largest) {
   if (value >= least && value <= largest) return;  // false for NaN
   std::ostringstream sentence;
-  sentence << "The " << name << " of a " << kind.name << " tile is " << value << "; it lies from " << least << " to "
+  sentence << "The " << name << " of a " << kind.name << " tile is " << value << "; it must be " << least << " to "
            << largest << ".";
   throw Error(Status::invalid_argument, sentence.str());
 }
@@ -53,8 +53,8 @@ void check(const TileKind& kind, const char* name, T value, T least, T largest) 
 void check_multiple(const TileKind& kind, const char* name, int value, int multiple) {
   if (value % multiple == 0) return;
   throw Error(Status::invalid_argument, std::string("The ") + name + " of a " + kind.name + " tile is " +
-                                            std::to_string(value) + "; only a multiple of " + std::to_string(multiple) +
-                                            " closes without a seam.");
+                                            std::to_string(value) + "; it must be a multiple of " +
+                                            std::to_string(multiple) + ", or the tile has a seam.");
 }
 
 void check(const TileKind& kind, const TileShape& shape) {
@@ -84,7 +84,7 @@ const TileKind& kind_named(const std::string& name) {
     if (name == kind.name) return kind;
     names += (names.empty() ? "" : ", ") + std::string(kind.name);
   }
-  throw Error(Status::invalid_argument, "There is no tile named '" + name + "'; there are " + names + ".");
+  throw Error(Status::invalid_argument, "Unknown tile '" + name + "'; use one of " + names + ".");
 }
 
 }  // namespace

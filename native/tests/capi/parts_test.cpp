@@ -123,7 +123,7 @@ TEST(CParts, WhatWasAddedIsNeverCountedTwice) {
     ASSERT_EQ(VLR_OK, vlr_job_wait(job, -1, nullptr, nullptr, nullptr)) << vlr_last_error();
     if (!before) add();
     EXPECT_EQ(VLR_INVALID_STATE, vlr_job_start(job));
-    EXPECT_NE(std::string(vlr_last_error()).find("make a new job"), std::string::npos) << vlr_last_error();
+    EXPECT_NE(std::string(vlr_last_error()).find("Create a new job"), std::string::npos) << vlr_last_error();
     std::vector<float> counts(64);
     ASSERT_EQ(VLR_OK, vlr_job_read_pass(job, "Sample Count", counts.data(), counts.size()));
     for (float count : counts) EXPECT_EQ(count, 80);

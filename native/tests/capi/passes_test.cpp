@@ -55,7 +55,7 @@ TEST(CPasses, LabelsReachThePixels) {
     EXPECT_EQ(ids[4 * i + 1], 1);
   }
   EXPECT_EQ(VLR_INVALID_ARGUMENT, vlr_job_read_pass(job, "Mist", object.data(), object.size()));
-  EXPECT_NE(std::string(vlr_last_error()).find("not asked for"), std::string::npos);
+  EXPECT_NE(std::string(vlr_last_error()).find("not requested"), std::string::npos);
   vlr_job_free(job);
 }
 

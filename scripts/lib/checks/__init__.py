@@ -1,1 +1,1 @@
-"""What scripts/test runs, how it counts, and what it says. Uses Python's own library alone."""
+"""The groups, counts and messages of scripts/test. Uses only Python's standard library."""

@@ -1,4 +1,4 @@
-"""What scripts/test --all has run: the next run does not repeat groups whose sources are the same."""
+"""Results of scripts/test --all: the next run does not repeat groups whose sources are unchanged."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from pathlib import Path
 from .cases import Case
 from .groups import ROOT
 
-# What no test of a group reads. Groups that are not named here may read everything.
+# Paths that no test of a group reads. Groups that are not listed may read everything.
 _UNREAD: dict[str, tuple[str, ...]] = {
     "native": ("addon/", "blend-tests/", "docs/"),
     "fuzz": ("addon/", "blend-tests/", "docs/"),
@@ -22,17 +22,17 @@ _UNREAD: dict[str, tuple[str, ...]] = {
 
 
 class Campaign:
-    """Groups that ended without a failure, by name, each with a hash of the sources that it was run on."""
+    """Groups that passed, by name, each with a hash of the sources that it was run on."""
 
     def __init__(self, file: Path, root: Path = ROOT):
         self._file, self._root = file, root
-        self._at_first: dict[str, str] = {}  # so that what changes while a group runs counts as a change
+        self._at_first: dict[str, str] = {}  # hashes before a run, so that changes during it are noticed
         self._ended: dict[str, dict] = {}
         with contextlib.suppress(OSError, ValueError, TypeError):
             self._ended = dict(json.loads(file.read_text()))
 
     def kept(self, name: str) -> list[Case] | None:
-        """What the group found, or None if it did not end or its sources have changed since."""
+        """The group's cases, or None if it has not passed or its sources have changed since."""
         self._at_first[name] = self._sources(name)
         try:
             ended = self._ended[name]
@@ -43,7 +43,7 @@ class Campaign:
             return None
 
     def keep(self, name: str, found: list[Case]) -> None:
-        """After kept said None and the group ended without a failure."""
+        """Call it after kept() returned None and the group passed."""
         self._ended[name] = {"sources": self._at_first[name], "cases": found}
         self._file.parent.mkdir(parents=True, exist_ok=True)
         partial = self._file.with_suffix(".partial")
@@ -51,8 +51,8 @@ class Campaign:
         os.replace(partial, self._file)
 
     def _sources(self, name: str) -> str:
-        """A hash of all files that git does not ignore, but those that no test of the group reads.
-        "blender 5.2" reads what "blender" does."""
+        """A hash of all files that git does not ignore, except those that no test of the group reads.
+        "blender 5.2" reads the same as "blender"."""
         unread = _UNREAD.get(name.split()[0], ())
         listed = ["git", "-C", self._root, "ls-files", "--cached", "--others", "--exclude-standard", "-z"]
         names = subprocess.run(listed, capture_output=True, check=True).stdout.split(b"\0")[:-1]

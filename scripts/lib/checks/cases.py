@@ -1,4 +1,4 @@
-"""Test cases as the reports of ctest, GoogleTest, pytest and blend-tests/run have them."""
+"""Test cases from the reports of ctest, GoogleTest, pytest and blend-tests/run."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ class Case(NamedTuple):
     name: str
     outcome: str  # PASSED, FAILED or SKIPPED
     seconds: float = 0.0
-    reason: str = ""  # of a skipped one
+    reason: str = ""  # why it was skipped
 
     @classmethod
     def of(cls, element: ElementTree.Element) -> Case:
@@ -41,7 +41,7 @@ def _reason(element: ElementTree.Element) -> str:
 
 
 def of_report(path: Path) -> list[Case]:
-    """The cases of a JUnit report; none where it is missing or was not written to its end."""
+    """The cases of a JUnit report; empty if it is missing or incomplete."""
     try:
         return [Case.of(element) for element in ElementTree.parse(path).iter("testcase")]
     except (OSError, ElementTree.ParseError):
@@ -51,8 +51,8 @@ def of_report(path: Path) -> list[Case]:
 def of_ctest(path: Path, programs: Path) -> list[Case]:
     """The cases of ctest's report.
 
-    A GoogleTest program is one test to ctest: where its own report, test_NAME.xml in the folder `programs`,
-    agrees with ctest, its cases take its place. A crash or a time-out stays a failure.
+    To ctest, a GoogleTest program is one test. It is replaced by the cases of its own report, test_NAME.xml
+    in the folder `programs`, if that agrees with ctest. A crash or a timeout remains a failure.
     """
     found = []
     for case in of_report(path):
@@ -67,7 +67,7 @@ def count(cases: Iterable[Case]) -> Counter:
 
 
 def reasons(cases: Iterable[Case]) -> list[str]:
-    """A sentence for each reason why tests were skipped."""
+    """A line for each reason why tests were skipped."""
     found = Counter(case.reason for case in cases if case.outcome == SKIPPED)
     return [f"skipped: {number} x {reason}" for reason, number in sorted(found.items())]
 

@@ -1,4 +1,4 @@
-"""The groups of tests: each runs its tools and returns the cases that they report."""
+"""The groups of tests: each function runs its tools and returns the cases that they report."""
 
 from __future__ import annotations
 
@@ -14,18 +14,18 @@ from .cases import FAILED, PASSED, SKIPPED, Case
 
 ROOT = Path(__file__).resolve().parents[3]
 PYTHON = "/usr/bin/python3"
-_NOT_HERE = (3, 124)  # what scripts/blenders exits with where a Blender cannot be had, and timeout
+_NOT_HERE = (3, 124)  # exit statuses of scripts/blenders and scripts/fuzz if unavailable, and of timeout
 _SETUP_SECONDS = 1800
-# Lines of blend-tests/run that a failure does not need.
+# Lines of blend-tests/run that are omitted after a failure.
 _PASSED = r": ok, [0-9]+ passed|^Warning: [0-9]+ x "
 
 
 @dataclass
 class Run:
-    """What all groups share."""
+    """Options that all groups share."""
 
     preset: str = "release"
-    long: bool = False  # also the tests that only scripts/test --all runs
+    long: bool = False  # run the tests that only scripts/test --all runs
     scenes: Sequence[str] = ()
     update: bool = False
 
@@ -47,7 +47,7 @@ class Run:
 
 
 def check(run: Run, name: str, *command: str | Path) -> Case:
-    """One test that a command passes by its exit status."""
+    """Runs a command as one test, which passes if its exit status is 0."""
     log, start = run.results / f"{name}.log", time.monotonic()
     status = running.run(command, log, **run.variables)
     if status != 0:
@@ -78,7 +78,7 @@ def style(run: Run) -> list[Case]:
 
 
 def _python_programs() -> list[Path]:
-    """Those without a suffix."""
+    """Python programs without a suffix."""
     files = [
         path for folder in ("scripts", "blend-tests") for path in (ROOT / folder).iterdir() if path.is_file()
     ]
@@ -102,7 +102,7 @@ def native(run: Run) -> list[Case]:
 def python(run: Run) -> list[Case]:
     report, log = run.results / "python.xml", run.results / "python.log"
     report.unlink(missing_ok=True)
-    # A file's tests share what takes long to make.
+    # loadfile: the tests of a file share expensive fixtures.
     command = [PYTHON, "-m", "pytest", "-n", "2", "--dist", "loadfile", "--junitxml", report]
     status = running.run(command, log, running.last(r"\[ *(\d+%)\]", "of the tests"), **run.variables)
     return _judged("pytest", status, cases.of_report(report), log)
@@ -137,8 +137,8 @@ def _scenes(run: Run, name: str, before: Sequence[str | Path], *options: str | P
 
 
 def other_blender(run: Run, version: str) -> list[Case]:
-    """The groups blender and scenes with the package, in a folder without what Velour is built with. The
-    long tests are left to one Blender: what they add is samples."""
+    """The groups blender and scenes with the package, in a folder without the build dependencies. Omits the
+    long tests, which only add samples."""
     run = replace(run, long=False)
     limit = ["timeout", str(_SETUP_SECONDS)]
     status = running.run(
@@ -169,7 +169,7 @@ def fuzz(run: Run) -> list[Case]:
 
 
 def _judged(name: str, status: int, found: list[Case], log: Path, leave_out: str | None = None) -> list[Case]:
-    """A run that failed without a failed test counts as one."""
+    """A run that failed without a failed test counts as a failed test."""
     if status == 0:
         return found
     running.show_end(log, leave_out)

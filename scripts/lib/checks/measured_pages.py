@@ -1,4 +1,4 @@
-"""Pages of measurements whose sources have changed since the commit that they name: told, never a failure."""
+"""Reports pages of measurements whose sources changed since the commit that they name. Never a failure."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ _COMMIT = re.compile(r"(?:one run|this page): [0-9-]+,\s+commit\s+([0-9a-f]{7,40
 _FITS = ("brdf", "fit", "model", "srbf", "sphere")
 _PICTURES = ("material", "render", "scene", "srbf", "sphere")
 _BTFS = ("btf", "capture", "compress", "tensor", "tile")
-# What each page's script measures: folders of native/src.
+# Folders of native/src that the script of each page measures.
 PAGES = {
     "docs/chart/README.md": _FITS + _PICTURES,
     "docs/chart_btf.md": _BTFS,
@@ -32,7 +32,7 @@ PAGES = {
 
 
 def told(root: Path) -> list[str]:
-    """A sentence for each page that may be old; one alone where git knows nothing of these sources."""
+    """A sentence for each page that may be outdated; a single one if these sources have no git history."""
     if _git(root, "rev-parse", "HEAD") is None:
         return ["Whether pages of measurements are old is not known: these sources have no git history."]
     sentences = []
@@ -52,6 +52,6 @@ def told(root: Path) -> list[str]:
 
 
 def _git(root: Path, *arguments: str) -> str | None:
-    """None where it fails."""
+    """Output of a git command; None if it fails."""
     done = subprocess.run(["git", "-C", root, *arguments], capture_output=True, text=True)
     return done.stdout.strip() if done.returncode == 0 else None

@@ -1,4 +1,4 @@
-"""Runs commands whose output goes to a log, and says how far they are."""
+"""Runs commands with their output in a log, and prints their progress."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 
 _SAY_SECONDS = 15  # between two lines of progress
-_END_LINES = 100  # of a log that are shown after a failure
+_END_LINES = 100  # maximum number of a log's last lines that are shown after a failure
 
 
 def say(text: str) -> None:
@@ -23,7 +23,7 @@ def say(text: str) -> None:
 def run(
     command: Sequence[str | Path], log: Path, progress: Callable[[str], str] | None = None, **variables: str
 ) -> int:
-    """The exit status. `progress` makes a sentence from what the log holds so far; Ctrl-C ends the command's
+    """Returns the exit status. `progress` makes a message from the log so far; Ctrl-C ends the command's
     children as well."""
     log.parent.mkdir(parents=True, exist_ok=True)
     with log.open("wb") as output:
@@ -47,9 +47,10 @@ def run(
 
 
 def _end(child: subprocess.Popen) -> None:
-    """Whatever is left of its group; what it started in groups of their own is for it to end, in ten seconds.
+    """Ends the remaining processes of its group. It has ten seconds to end those that it started in groups of
+    their own.
 
-    Not by SIGINT, which processes started from a shell's background ignore.
+    Does not use SIGINT, which processes started from a shell's background ignore.
     """
     if child.poll() is not None:
         return

@@ -1,1 +1,1 @@
-"""Batch rendering of a .blend on engines that exist: docs/reference/farm.md."""
+"""Batch rendering of a .blend with existing render managers: docs/reference/farm.md."""

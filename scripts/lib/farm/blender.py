@@ -1,4 +1,4 @@
-"""How Blender is started, on a node and where jobs are made."""
+"""Starts Blender, on a node and where jobs are made."""
 
 from __future__ import annotations
 
@@ -16,13 +16,13 @@ from .job import Job, Unit
 
 # "Error: ..." of Blender 3 and 4, "... | ERROR ..." of 5, "ValueError: ..." of Python.
 _ERROR = re.compile(r"\b(?:\w*Error|ERROR)\b.*")
-_OUT_OF_TIME = re.compile(r"Stopped at sample \d+ of \d+;")  # Velour's words once it has kept the film
-stopped = threading.Event()  # SIGTERM has come
+_OUT_OF_TIME = re.compile(r"Stopped at sample \d+ of \d+;")  # Velour's message after it has saved the film
+stopped = threading.Event()  # set once SIGTERM has arrived
 FAILED = 7  # the exit status of a script that raises; Blender's own failures have 1
 
 
 def start(job: Job) -> list[str]:
-    """The command up to the .blend. What stands before --python-exit-code does not know of it."""
+    """The command up to the .blend. --python-exit-code applies only to the arguments after it."""
     command = [job.blender, "-b", "-noaudio", "--python-exit-code", str(FAILED)]
     if not job.preferences:
         command.append("--factory-startup")
@@ -33,11 +33,11 @@ def start(job: Job) -> list[str]:
 def render(job: Job, unit: Unit, picture: Path) -> list[str]:
     """`picture`: its path without number and extension.
 
-    -E: a node without Velour fails. Else Blender takes EEVEE, writes a picture and says that all is well.
+    -E makes a node without Velour fail. Otherwise Blender renders with EEVEE and reports success.
     """
     command = [*start(job), "-E", "VELOUR", "-t", str(job.threads), "-o", f"{picture}####"]
     command += ["-F", job.format, "-x", "1", "-f", str(unit.frame)]
-    # Nothing is lost of a picture that Blender could not write whole: who looks at it removes the film.
+    # Blender keeps the film, in case it cannot write the whole picture; we remove it after the check.
     own = ["--velour-parts", str(job.film(unit.frame)), "--velour-keep-parts"]
     if unit.part:
         own += ["--velour-samples", f"{unit.part}/{job.parts}"]
@@ -47,8 +47,8 @@ def render(job: Job, unit: Unit, picture: Path) -> list[str]:
 
 
 def execute(command: list[str], log: Path) -> int:
-    """The exit status; all that is said goes to `log`. SIGTERM is handed on, and Blender's end waited for:
-    Velour keeps what it has of the frame. After it nothing is started any more."""
+    """Returns the exit status; all output goes to `log`. Forwards SIGTERM and waits for Blender to end, so
+    that Velour saves what it has of the frame. After SIGTERM, nothing is started."""
     log.parent.mkdir(parents=True, exist_ok=True)
     with open(log, "wb") as file, heeding_sigterm() as children:
         if stopped.is_set():
@@ -77,7 +77,7 @@ def execute(command: list[str], log: Path) -> int:
 
 @contextlib.contextmanager
 def heeding_sigterm() -> Iterator[list[subprocess.Popen]]:
-    """Meanwhile SIGTERM sets `stopped`, and ends nothing but the children in the list."""
+    """Within this context, SIGTERM sets `stopped` and ends only the children in the list."""
     children: list[subprocess.Popen] = []
 
     def stop(_number, _frame):
@@ -93,7 +93,8 @@ def heeding_sigterm() -> Iterator[list[subprocess.Popen]]:
 
 
 def _environment(command: list[str]) -> dict[str, str]:
-    """A distribution's Blender looks for its Python along PATH: not a version manager's, please."""
+    """Puts Blender's folder first on PATH, where a distribution's Blender looks for its Python: it must not
+    find that of a version manager."""
     program = shutil.which(command[0])
     if not program:
         return dict(os.environ)
@@ -102,7 +103,7 @@ def _environment(command: list[str]) -> dict[str, str]:
 
 
 def ending(status: int, log: Path) -> str:
-    """Why Blender ended as it did, with the last error that it named."""
+    """Why Blender ended, with the last error that it printed."""
     number = -status if status < 0 else status - 128  # a script around Blender adds 128
     if number in set(signal.Signals):
         words = f"Blender was ended by {signal.Signals(number).name}"
@@ -113,7 +114,7 @@ def ending(status: int, log: Path) -> str:
 
 
 def ran_out_of_time(log: Path) -> bool:
-    """Whether the .blend's own time limit ended Blender, so that the next run goes on from there."""
+    """Whether the .blend's own time limit ended Blender, so that the next run continues from there."""
     return bool(_OUT_OF_TIME.search(_last_error(log)))
 
 

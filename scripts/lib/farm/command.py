@@ -1,4 +1,4 @@
-"""scripts/farm: makes jobs, submits them to Slurm, reports their state (docs/reference/farm.md)."""
+"""scripts/farm: makes a job of a .blend, submits what remains to Slurm, status: docs/reference/farm.md."""
 
 from __future__ import annotations
 
@@ -50,7 +50,7 @@ def _parse(arguments: list[str] | None) -> argparse.Namespace:
 
 def _submit(given: argparse.Namespace) -> int:
     found = make(given)
-    slurm.refuse_while_running(found)  # elements that wait read what is saved here when they begin
+    slurm.refuse_while_running(found)  # queued array elements would read the files that are saved here
     found.save()
     for writer in (program, slurm, flamenco, openjd):
         writer.write(found.folder if writer is program else found)
@@ -70,7 +70,7 @@ def _submit(given: argparse.Namespace) -> int:
 
 
 def _forget(notes: dict[Path, int]) -> None:
-    """Failures that are to be rendered again, by when they were noted: some may have failed again by now."""
+    """Removes notes of failures that are rendered again, unless a frame has failed again since `noted`."""
     for path, noted in notes.items():
         with contextlib.suppress(FileNotFoundError):
             if path.stat().st_mtime_ns == noted:
@@ -97,7 +97,7 @@ def _count(text: str) -> int:
 
 
 def _memory(text: str) -> int:
-    """MiB."""
+    """Parses a size in MiB."""
     match = re.fullmatch(r"(\d+)([MGT]?)", text)
     if not match or not int(match[1]):
         raise argparse.ArgumentTypeError("MiB, or a number with M, G or T, is needed")

@@ -1,7 +1,8 @@
-"""The header of an OpenEXR file, and whether the file is whole, without any library: nodes may have none.
+"""Reads the header of an OpenEXR file and checks that the file is complete, without a library: nodes may have
+none.
 
 Layout: "OpenEXR File Layout" of the OpenEXR documentation. Scanline images of one or several parts, as
-Blender writes them; a file that says anything else is refused.
+Blender writes them; all other files are refused.
 """
 
 from __future__ import annotations
@@ -18,14 +19,14 @@ _TILED, _DEEP, _MULTIPART = 0x200, 0x800, 0x1000
 _LARGEST_ATTRIBUTE = 1 << 24  # bytes; manifests of Cryptomatte are the largest
 _MOST_PARTS = 4096
 _MOST_LINES = 1 << 20
-# Scanlines of a chunk, by the compression's number: none, RLE, ZIPS, ZIP, PIZ, PXR24, B44, B44A, DWAA, DWAB.
+# Scanlines per chunk, by compression number: none, RLE, ZIPS, ZIP, PIZ, PXR24, B44, B44A, DWAA, DWAB.
 _LINES = (1, 1, 1, 16, 32, 16, 32, 32, 32, 256)
 _ZLIB = (2, 3)
-_PIXEL_BYTES = (4, 2, 4)  # of a channel: uint, half, float
+_PIXEL_BYTES = (4, 2, 4)  # bytes per channel: uint, half, float
 
 
 class ExrError(ValueError):
-    """One sentence, without the file's name: what is wrong with it."""
+    """Its message says what is wrong with the file, in one sentence without the file's name."""
 
 
 @dataclass(frozen=True)
@@ -45,7 +46,7 @@ class Part:
 
     @property
     def lines(self) -> tuple[int, int]:
-        """The first scanline, and how many there are."""
+        """The first scanline, and the number of scanlines."""
         if len(self.attributes.get("dataWindow", b"")) != 16:
             raise ExrError("it has no data window")
         _, first, _, last = struct.unpack("<4i", self.attributes["dataWindow"])
@@ -58,7 +59,7 @@ class Part:
         return -(-self.lines[1] // _LINES[self.compression])
 
     def unpacked_bytes(self, line: int) -> int:
-        """Of the chunk that begins with that scanline."""
+        """Unpacked size of the chunk that begins with scanline `line`."""
         first, count = self.lines
         left, _, right, _ = struct.unpack("<4i", self.attributes["dataWindow"])
         lines = min(_LINES[self.compression], first + count - line)
@@ -66,14 +67,14 @@ class Part:
 
 
 def text_attribute(path: str | os.PathLike, name: str) -> str | None:
-    """Of the first part that has it; raises ExrError, OSError."""
+    """The attribute of the first part that has it. Raises ExrError and OSError."""
     with open(path, "rb") as file:
         found = (part.text(name) for part in _parts(file))
         return next((text for text in found if text is not None), None)
 
 
 def check_whole(path: str | os.PathLike) -> None:
-    """Raises ExrError unless every scanline of every part is in the file; what zlib packed is unpacked."""
+    """Raises ExrError unless every scanline of every part is in the file and all zlib data unpack."""
     size = Path(path).stat().st_size
     with open(path, "rb") as file:
         parts = _parts(file)
@@ -103,7 +104,7 @@ def _check_chunk(file: BinaryIO, offset: int, size: int, multipart: bool, number
     if not 0 <= length <= size - file.tell():
         raise ExrError("it ends too early")
     unpacked = part.unpacked_bytes(line)
-    if part.compression in _ZLIB and length != unpacked:  # else: packing would have made it no smaller
+    if part.compression in _ZLIB and length != unpacked:  # equal: stored as is, packing would not save bytes
         _check_packed(_read(file, length), unpacked)
     return line
 
@@ -118,7 +119,7 @@ def _check_packed(data: bytes, unpacked: int) -> None:
 
 
 def _pixel_bytes(channels: bytes) -> int:
-    """Of all channels of a pixel. Each: a name that ends with 0, its type, flags, sampling along x and y."""
+    """Bytes of all channels of a pixel. A channel: its name, ended by 0, type, flags, x and y sampling."""
     total, at = 0, 0
     while at < len(channels) and channels[at]:
         at = channels.find(b"\0", at) + 1
@@ -148,7 +149,7 @@ def _parts(file: BinaryIO) -> list[Part]:
 
 
 def _part(file: BinaryIO) -> Part:
-    """Of a header; without attributes at the end of all headers."""
+    """Reads a header; it has no attributes at the end of all headers."""
     attributes = {}
     while name := _name(file):
         _name(file)  # its type

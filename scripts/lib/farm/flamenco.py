@@ -8,7 +8,7 @@ from . import program, ranges
 from .job import Job, replace_text
 
 SCRIPT, SUBMISSION = "velour_frames.js", "flamenco.json"
-TYPE = "velour-frames"  # what Flamenco makes of the script's name
+TYPE = "velour-frames"  # Flamenco derives this from the script's name
 
 _JOB_TYPE = """\
 // A job type of Flamenco 3: frames of a job that scripts/farm of Velour made. It belongs into the folder

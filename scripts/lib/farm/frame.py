@@ -1,8 +1,8 @@
 """One task on a node: renders frames that are not done, checks each picture, and only then gives it its name.
 
-Runs alone, by Python's own library: frame.pyz of a job's folder, beside job.json. Exit status: 0 all that was
-asked for is done; 1 something failed, with a sentence on stderr and in failed/; 2 wrong usage; 3 ended by
-SIGTERM or the .blend's time limit, nothing failed, and the next run goes on from there.
+Needs only Python's standard library: frame.pyz in a job's folder, beside job.json. Exit status: 0 everything
+requested is done; 1 something failed, with a message on stderr and in failed/; 2 wrong usage; 3 ended by
+SIGTERM or the .blend's time limit, nothing failed, and the next run continues from there.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ _BETTER_FIRST = (DONE, UNFINISHED, FAILED)
 
 
 class UnfinishedError(Exception):
-    """Why a frame that did not fail is not done: what it has is kept, and the next run goes on from there."""
+    """Why a frame that did not fail is not done: its film is kept, and the next run continues from there."""
 
 
 def main(arguments: list[str] | None = None) -> int:
@@ -76,7 +76,7 @@ def _run_all(task: job.Job, units: list[job.Unit]) -> int:
 
 
 def _run(task: job.Job, unit: job.Unit) -> int:
-    """The exit status of a frame, or of a part of it: the last one makes the picture of all."""
+    """Renders a frame or a part of it; the last part makes the picture of all. Returns the exit status."""
     if not problem(task, task.picture(unit.frame)):
         print(f"frame {unit.frame}: is done", flush=True)
         return DONE
@@ -92,7 +92,7 @@ def _run(task: job.Job, unit: job.Unit) -> int:
 
 
 def _attempt(task: job.Job, unit: job.Unit, render: Callable[[job.Job, job.Unit, Path], str]) -> int:
-    """The exit status. Nobody else writes to the folder that `render` makes its picture in."""
+    """Returns the exit status. `render` makes its picture in a folder that nobody else writes to."""
     folder = task.partial(unit.frame) / job.nobody_elses_name()
     left = sentence = ""
     try:
@@ -104,21 +104,21 @@ def _attempt(task: job.Job, unit: job.Unit, render: Callable[[job.Job, job.Unit,
         sentence = str(error)
     finally:
         shutil.rmtree(folder, ignore_errors=True)
-    # Another run may have finished the frame, and cleared away what this one had.
+    # Another run may have finished the frame, and removed the files of this one.
     if not (left or sentence) or not problem(task, task.picture(unit.frame)):
         task.failure(unit).unlink(missing_ok=True)
         print(f"{unit}: {'rendered' if unit.part else task.picture(unit.frame)}", flush=True)
         return DONE
     print(f"farm: {unit}: {left or sentence}", file=sys.stderr, flush=True)
     if left:
-        task.failure(unit).unlink(missing_ok=True)  # of an attempt before
+        task.failure(unit).unlink(missing_ok=True)  # failure of an earlier attempt
         return UNFINISHED
     _note(task.failure(unit), sentence)
     return FAILED
 
 
 def _note(path: Path, sentence: str) -> None:
-    """What keeps a picture from being written, such as a full disk, may keep its failure from it, too."""
+    """Whatever prevents writing a picture, such as a full disk, may also prevent writing its failure."""
     try:
         path.parent.mkdir(exist_ok=True)
         job.replace_text(path, sentence + "\n")
@@ -127,7 +127,7 @@ def _note(path: Path, sentence: str) -> None:
 
 
 def _render(task: job.Job, unit: job.Unit, path: Path) -> str:
-    """What went wrong, or ""."""
+    """Returns what went wrong, or ""."""
     picture = Path(f"{path}{unit.frame:04d}.exr")
     wrong = _blender(task, unit, path, lambda: not problem(task, picture))
     if wrong:
@@ -136,12 +136,12 @@ def _render(task: job.Job, unit: job.Unit, path: Path) -> str:
     if wrong:
         return f"the picture is not counted as done: {wrong}; {task.log(unit)} has what Blender said."
     os.replace(picture, task.picture(unit.frame))
-    shutil.rmtree(task.partial(unit.frame), ignore_errors=True)  # what killed runs left, too
+    shutil.rmtree(task.partial(unit.frame), ignore_errors=True)  # including files of killed runs
     return ""
 
 
 def _render_part(task: job.Job, unit: job.Unit, path: Path) -> str:
-    """Likewise. What counts is the film; the picture is held to the same as others, and forgotten."""
+    """Returns what went wrong, or "". The result is the film; the picture is only checked, like others."""
     picture = Path(f"{path}{unit.frame:04d}.exr")
     wrong = _blender(task, unit, path, lambda: not _problem(task, picture))
     if wrong:
@@ -154,7 +154,7 @@ def _render_part(task: job.Job, unit: job.Unit, path: Path) -> str:
 
 
 def _blender(task: job.Job, unit: job.Unit, path: Path, is_good: Callable[[], bool]) -> str:
-    """What went wrong, or ""; `is_good()` says whether the picture is as it should be."""
+    """Returns what went wrong, or "". `is_good()` checks the picture."""
     if wrong := sources.changed(task):
         return wrong
     log = task.log(unit)
@@ -162,7 +162,7 @@ def _blender(task: job.Job, unit: job.Unit, path: Path, is_good: Callable[[], bo
     if not status:
         return sources.changed(task)
     if blender.stopped.is_set():
-        if is_good():  # the signal came while Blender wrote it, and ended Blender then
+        if is_good():  # the signal arrived when Blender had already written it
             return sources.changed(task)
         raise UnfinishedError("ended by SIGTERM; the next run goes on from there")
     if blender.ran_out_of_time(log):
@@ -171,7 +171,7 @@ def _blender(task: job.Job, unit: job.Unit, path: Path, is_good: Callable[[], bo
 
 
 def problem(task: job.Job, picture: Path) -> str:
-    """Why a picture is none of this job, or not whole; "" of one that is done."""
+    """Why a picture does not belong to this job or is incomplete; "" if it is done."""
     return _problem(task, picture) or _not_all_samples(picture)
 
 
@@ -181,7 +181,7 @@ def _not_all_samples(picture: Path) -> str:
 
 
 def _problem(task: job.Job, picture: Path) -> str:
-    """Of a picture that may have some samples alone."""
+    """problem() of a picture that may have only some of its samples."""
     try:
         return (
             _another_velour(task, exr.text_attribute(picture, "velour.version"))
@@ -204,7 +204,7 @@ def _another_velour(task: job.Job, version: str | None) -> str:
 
 
 def _another_blender(task: job.Job, version: str | None) -> str:
-    """The third number is of corrections alone."""
+    """Ignores the third number of the version: those are bug-fix releases."""
     series, asked = (str(text).split(".")[:2] for text in (version, task.blender_version))
     return "" if series == asked else f"Blender {version} rendered it, the job is for {task.blender_version}"
 

@@ -1,4 +1,4 @@
-"""Runs in Blender with a .blend open: what a job has to know of it, as JSON.
+"""Runs in Blender with a .blend open: writes what a job must know about it as JSON.
 
 Arguments after "--": the add-on's module, the number of parts of a frame, the file to write.
 """
@@ -51,7 +51,7 @@ def look(addon, parts):
 
 
 def output_strip(scene):
-    """One for which Blender puts out the sequencer: any but sounds; Blender 3.4 does for muted ones, too."""
+    """A strip that makes Blender output the sequencer: any but sounds; in Blender 3.4, even muted ones."""
     editor = scene.sequence_editor
     if not editor or not scene.render.use_sequencer:
         return None
@@ -60,12 +60,12 @@ def output_strip(scene):
 
 
 def is_file(library):
-    """Not what is packed into the .blend, by Blender 5 also single data-blocks."""
+    """False for libraries packed into the .blend; Blender 5 also packs single data-blocks."""
     return not (library.packed_file or getattr(library, "is_archive", False))
 
 
 def file_output(scene):
-    """A node of the compositor that writes pictures, also one within a group; None if there is none."""
+    """A node of the compositor that writes pictures, possibly within a group; None if there is none."""
     if not scene.render.use_compositing:
         return None
     if hasattr(scene, "compositing_node_group"):  # since Blender 5

@@ -1,4 +1,4 @@
-"""A job: what is rendered, how, and by which Velour. It is OUTPUT/farm/job.json; pictures go to OUTPUT."""
+"""A job: what is rendered, how, and by which Velour. Saved as OUTPUT/farm/job.json; pictures go to OUTPUT."""
 
 from __future__ import annotations
 
@@ -14,14 +14,14 @@ FOLDER = "farm"
 
 
 class JobError(RuntimeError):
-    """One sentence: what is wrong and what to do."""
+    """Its message says in one sentence what is wrong and what to do."""
 
 
 class Unit(NamedTuple):
-    """What is rendered in one go."""
+    """A frame or a part of one, rendered by one run of Blender."""
 
     frame: int
-    part: int = 0  # of the job's, from 1 on; 0: the whole frame
+    part: int = 0  # from 1 to the job's parts; 0: the whole frame
 
     @property
     def name(self) -> str:
@@ -35,22 +35,22 @@ class Unit(NamedTuple):
 class Job:
     blend: str  # absolute path
     blend_hash: str  # SHA-256, when the job was made
-    libraries: dict[str, str]  # that it links: SHA-256 by paths, such as begin with // in it without that
+    libraries: dict[str, str]  # SHA-256 of linked libraries by path; relative paths without Blender's //
     name: str  # pictures are NAME_0012.exr
     format: str  # OPEN_EXR or OPEN_EXR_MULTILAYER
     velour: str  # the version
     blender_version: str  # such as 3.4.1
     models: dict[str, list[str]]  # hashes of what each measured material of the .blend is rendered from
     frames: list[int]
-    tasks: int  # that the frames are dealt out to, or their parts
-    parts: int = 1  # that the samples of a frame are shared out to
+    tasks: int  # number of tasks that share the frames, or their parts
+    parts: int = 1  # number of parts that share the samples of a frame
     blender: str = "blender"  # on the nodes
-    addon: str = "velour"  # its module: bl_ext.user_default.velour of an extension
-    threads: int = 0  # of Blender; 0: all that the node has
-    memory_mib: int = 0  # to ask for; 0: what the engine gives
-    preferences: bool = False  # the node's user preferences rather than factory settings
-    scripts: bool = False  # those inside the .blend may run
-    folder: Path = field(default=Path(), compare=False)  # of job.json
+    addon: str = "velour"  # module name; bl_ext.user_default.velour for an extension
+    threads: int = 0  # for Blender; 0: all threads of the node
+    memory_mib: int = 0  # requested memory; 0: the render manager's default
+    preferences: bool = False  # use the node's user preferences instead of factory settings
+    scripts: bool = False  # scripts inside the .blend may run
+    folder: Path = field(default=Path(), compare=False)  # folder of job.json
 
     @property
     def output(self) -> Path:
@@ -60,11 +60,11 @@ class Job:
         return self.output / f"{self.name}_{frame:04d}.exr"
 
     def failure(self, unit: Unit) -> Path:
-        """Says in a sentence why it failed, where it did."""
+        """File with the message why the unit failed; exists only if it did."""
         return self.folder / "failed" / f"{unit.name}.txt"
 
     def failures(self, frame: int) -> list[Path]:
-        """Those there are, of the frame and of its parts."""
+        """Existing failure files of the frame and of its parts."""
         units = [Unit(frame), *self.parts_of(frame)]
         return [path for path in map(self.failure, units) if path.is_file()]
 
@@ -72,26 +72,26 @@ class Job:
         return self.folder / "logs" / f"{unit.name}.log"
 
     def partial(self, frame: int) -> Path:
-        """Where pictures of a frame are until they are known to be good."""
+        """Folder of a frame's pictures until they have been checked."""
         return self.folder / "partial" / f"{frame:04d}"
 
     def film(self, frame: int) -> Path:
-        """Where Velour keeps what parts have, and what runs leave that are ended."""
+        """Folder where Velour keeps the films of parts and of interrupted runs."""
         return self.partial(frame) / "film"
 
     def part_done(self, unit: Unit) -> Path:
-        """Is there once the film has the part."""
+        """File that exists once the film contains the part."""
         return self.film(unit.frame) / f"{unit.part}-of-{self.parts}.done"
 
     def parts_of(self, frame: int) -> list[Unit]:
-        """None of a frame that is rendered at once."""
+        """The parts of a frame; empty if it is rendered in one piece."""
         return [Unit(frame, number) for number in range(1, self.parts + 1)] if self.parts > 1 else []
 
     def units(self, frames: list[int]) -> list[Unit]:
         return [unit for frame in frames for unit in self.parts_of(frame) or [Unit(frame)]]
 
     def task(self, number: int) -> list[Unit]:
-        """What a task renders: all is dealt out in turn, so neighbours run side by side."""
+        """Units of a task. They are distributed round-robin, so neighboring frames run at the same time."""
         if number not in range(self.tasks):
             raise JobError(f"there is no task {number}; the job has {self.tasks}, counted from 0.")
         return self.units(self.frames)[number :: self.tasks]
@@ -105,7 +105,7 @@ class Job:
 
 
 def load(path: Path) -> Job:
-    """From a job.json, its folder, or the folder of pictures."""
+    """Loads a job from its job.json, the folder of that, or the folder of pictures."""
     found = next((p for p in (path, path / "job.json", path / FOLDER / "job.json") if p.is_file()), None)
     if found is None:
         raise JobError(f"{path} holds no job; scripts/farm makes one from a .blend.")
@@ -120,7 +120,7 @@ def replace_text(path: Path, text: str) -> None:
 
 
 def replace_bytes(path: Path, data: bytes) -> None:
-    """The file is the old one or the new one, never a part; nobody reads what a killed process leaves."""
+    """Replaces the file atomically. A killed process may leave a temporary file, which nobody reads."""
     temporary = path.with_name(f".{path.name}.{nobody_elses_name()}")
     try:
         temporary.write_bytes(data)
@@ -131,5 +131,5 @@ def replace_bytes(path: Path, data: bytes) -> None:
 
 
 def nobody_elses_name() -> str:
-    """For files of this process alone: nodes share folders, and have the same process ids."""
+    """A name for files of this process alone: nodes share folders and may have equal process ids."""
     return f"{socket.gethostname()}-{secrets.token_hex(8)}"

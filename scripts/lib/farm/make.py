@@ -1,4 +1,4 @@
-"""A job from a .blend: Blender is asked once what it holds, so that each node can be held to that."""
+"""Makes a job from a .blend. Blender reports its contents once; each node is checked against this report."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ HERE = Path(__file__).resolve().parent
 
 
 def make(given: argparse.Namespace) -> job.Job:
-    """Saves nothing; a job that is there must be of the same .blend, the same models and the same Velour."""
+    """Saves nothing. An existing job must have the same .blend, the same models and the same Velour."""
     blend = given.path.resolve()
     if not blend.is_file():
         raise job.JobError(f"{blend} is no file.")
@@ -47,7 +47,7 @@ def make(given: argparse.Namespace) -> job.Job:
 
 
 def _check_path(output: Path) -> None:
-    """Raises JobError: Slurm's scripts and the paths of Blender 5 read these signs otherwise."""
+    """Raises JobError for characters with a special meaning in Slurm's scripts or the paths of Blender 5."""
     signs = sorted({sign for sign in str(output) if sign in '"\\{}' or not sign.isprintable()})
     if signs:
         raise job.JobError(f"{output}: a path with {' '.join(map(repr, signs))} in it cannot be an --output.")
@@ -71,7 +71,7 @@ def _ask_blender(made: job.Job) -> None:
 
 
 def _refuse_another(made: job.Job, before: job.Job) -> None:
-    """Frames of two states of a scene must not become one sequence."""
+    """Raises JobError: frames of two states of a scene must not become one sequence."""
     kept = {
         "blend": "path of the .blend",
         "blend_hash": ".blend",

@@ -10,11 +10,11 @@ from .job import Job, replace_text
 
 FILE = "openjd.json"
 _LONGEST_NAME, _LONGEST_TEXT = 64, 1024  # characters
-_NOTICE_SECONDS = 120  # to end the pass and keep it
+_NOTICE_SECONDS = 120  # time to finish and save the pass
 
 
 def write(job: Job) -> None:
-    """Nothing where OpenJD could not read it: other engines may, so that is said, and no error."""
+    """Prints a message and writes nothing if OpenJD could not read it: other managers may still work."""
     if len(_frames(job)) > _LONGEST_TEXT:
         (job.folder / FILE).unlink(missing_ok=True)
         print(f"{FILE} is not written: OpenJD takes no list of frames that long; make jobs of fewer frames.")
@@ -32,7 +32,8 @@ def template(job: Job) -> dict:
 
 
 def _name(job: Job) -> str:
-    """Two braces would begin an expression, and control characters are refused."""
+    """The job's name without double braces, which begin an expression, and control characters, which OpenJD
+    refuses."""
     readable = re.sub(r"[\x00-\x1f\x7f-\x9f]|\{\{|\}\}", "_", job.name)
     return f"velour {readable}"[:_LONGEST_NAME]
 

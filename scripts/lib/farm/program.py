@@ -1,4 +1,4 @@
-"""frame.pyz: what a node runs, in one file that needs nothing of this repository."""
+"""Writes frame.pyz: the program for nodes, in one file that needs nothing else of this repository."""
 
 from __future__ import annotations
 

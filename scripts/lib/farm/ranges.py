@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import re
 
-LAST = 1048574  # of Blender
+LAST = 1048574  # Blender's last frame
 
 
 def parse(text: str) -> list[int]:
-    """Ascending, each once; raises ValueError with a sentence."""
+    """The frames in ascending order, without duplicates. Raises ValueError with a one-sentence message."""
     found = set()
     for part in text.split(","):
         match = re.fullmatch(r"\s*(\d+)(?:\s*-\s*(\d+)(?::(\d+))?)?\s*", part)
@@ -23,7 +23,7 @@ def parse(text: str) -> list[int]:
 
 
 def words(numbers: list[int], steps: bool = False) -> str:
-    """As short as may be; without steps, which not every engine knows, unless they are asked for."""
+    """The shortest text for the numbers. `steps`: may use steps, which not every render manager supports."""
     left, found = sorted(numbers), []
     while left:
         count, step = _run(left, steps)
@@ -34,7 +34,7 @@ def words(numbers: list[int], steps: bool = False) -> str:
 
 
 def _run(numbers: list[int], steps: bool) -> tuple[int, int]:
-    """How many of the first are equally far apart, and how far; two are a run only if they are neighbours."""
+    """Length and step of the first run of equally spaced numbers. Two numbers are a run only if adjacent."""
     step = numbers[1] - numbers[0] if len(numbers) > 1 else 1
     if step > 1 and not steps:
         return 1, 1

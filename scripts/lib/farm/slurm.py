@@ -1,4 +1,4 @@
-"""Slurm: an array job, one element a task of the job."""
+"""Slurm: an array job with one element per task of the job."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from . import program, ranges
 from .job import Job, JobError, replace_text
 
 SCRIPT, SUBMITTED = "slurm.sh", "slurm.id"
-_NOTICE_SECONDS = 120  # to end the pass and keep it
+_NOTICE_SECONDS = 120  # time to finish and save the pass
 
 
 def write(job: Job) -> None:
@@ -25,30 +25,30 @@ def script(job: Job) -> str:
         f"#SBATCH --job-name=velour-{re.sub(r'[^A-Za-z0-9._-]', '_', job.name)}",
         f'#SBATCH --output="{said}/logs/slurm-%A_%a.txt"',
         "#SBATCH --nodes=1 --ntasks=1",
-        f"#SBATCH --signal=B:TERM@{_NOTICE_SECONDS}",  # to the program, which hands it on
+        f"#SBATCH --signal=B:TERM@{_NOTICE_SECONDS}",  # to the program, which forwards it
     ]
     if job.threads:
         lines.append(f"#SBATCH --cpus-per-task={job.threads}")
     if job.memory_mib:
         lines.append(
             f"#SBATCH --mem={job.memory_mib}M"
-        )  # of the node: --mem-per-cpu would grow with the threads
+        )  # per node: --mem-per-cpu would grow with the threads
     command = ["exec", "python3", str(job.folder / program.NAME), str(job.folder / "job.json"), "--task"]
     return "\n".join([*lines, f'{shlex.join(command)} "$SLURM_ARRAY_TASK_ID"', ""])
 
 
 def submit(job: Job, tasks: list[int], options: list[str]) -> str:
-    """The number of the job that Slurm made; raises JobError."""
+    """Returns the number of the Slurm job. Raises JobError."""
     array = f"--array={ranges.words(tasks)}"
     command = ["sbatch", "--parsable", array, *options, str(job.folder / SCRIPT)]
     said = _slurm(*command, otherwise="; --no-submit only writes the job.")
-    number = said.strip().split(";")[0]  # ";CLUSTER" follows where there are several
+    number = said.strip().split(";")[0]  # ";CLUSTER" follows if there are several
     replace_text(job.folder / SUBMITTED, number + "\n")
     return number
 
 
 def refuse_while_running(job: Job) -> None:
-    """Raises JobError while a part of what was submitted last waits or runs, or where nobody can say."""
+    """Raises JobError while any of the last submission is queued or running, or if nobody can tell."""
     file = job.folder / SUBMITTED
     if not file.is_file():
         return

@@ -1,4 +1,4 @@
-"""What a job is rendered from: its .blend and the libraries that it links, as they were when it was made."""
+"""The sources of a job: its .blend and the libraries that it links, as they were when the job was made."""
 
 from __future__ import annotations
 
@@ -8,11 +8,11 @@ from pathlib import Path
 
 from .job import Job, JobError
 
-_known: dict[tuple, str] = {}  # a task has many frames, and a .blend may have gigabytes
+_known: dict[tuple, str] = {}  # hashes: a task has many frames, and a .blend may have gigabytes
 
 
 def changed(job: Job) -> str:
-    """Which of them is another by now, and what to do; "" if none is."""
+    """Names a source that has changed, and says what to do; "" if none has."""
     expected = {Path(job.blend): job.blend_hash}
     expected |= {_place(job.blend, name): found for name, found in job.libraries.items()}
     for path, was in expected.items():
@@ -28,7 +28,7 @@ def changed(job: Job) -> str:
 
 
 def libraries(blend: str, names: list[str]) -> dict[str, str]:
-    """Job.libraries of these paths; raises JobError where one is not there: Blender would go on without."""
+    """Job.libraries of these paths. Raises JobError if one is missing: Blender would continue without it."""
     found = {}
     for name in names:
         try:
@@ -42,7 +42,7 @@ def libraries(blend: str, names: list[str]) -> dict[str, str]:
 
 
 def _place(blend: str, name: str) -> Path:
-    return Path(os.path.normpath(Path(blend).parent / name))  # of an absolute name: that
+    return Path(os.path.normpath(Path(blend).parent / name))  # an absolute name stays itself
 
 
 def sha256(path: Path) -> str:

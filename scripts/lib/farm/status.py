@@ -1,4 +1,4 @@
-"""What is done of a job, what failed and why, and what is left."""
+"""The status of a job: what is done, what failed and why, and what remains."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from .job import Job, Unit
 @dataclass(frozen=True)
 class Status:
     done: list[int]
-    failed: dict[int, str]  # why
+    failed: dict[int, str]  # reasons by frame
     left: list[int]
 
     @property
@@ -33,7 +33,7 @@ class Status:
 
 
 def look(job: Job) -> Status:
-    """Every picture is read: one that another program damaged is not done."""
+    """Reads every picture: one that another program damaged does not count as done."""
     done, failed, left = [], {}, []
     for number in job.frames:
         why = job.failures(number)
@@ -57,5 +57,5 @@ def _is_left(job: Job, unit: Unit, frames: set[int]) -> bool:
         return False
     if not unit.part or not job.part_done(unit).is_file():
         return True
-    # The picture is: one task is enough to make it of all parts.
+    # Only the picture remains: one task is enough to make it from all parts.
     return unit.part == 1 and all(job.part_done(each).is_file() for each in job.parts_of(unit.frame))

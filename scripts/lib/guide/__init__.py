@@ -1,5 +1,5 @@
-"""The user guide's pictures and numbers, taken while somebody goes through its steps in the real Blender.
+"""Takes the user guide's pictures and numbers while performing its steps in the real Blender.
 
-`command`, `pages` and `pictures` run outside of Blender; the rest is run by `inside` in its window.
-May not go in here: what the guide does not tell the reader to do.
+`command`, `pages` and `pictures` run outside Blender; `inside` runs the rest in Blender's window. Chapters
+may do only what the guide tells the reader to do.
 """

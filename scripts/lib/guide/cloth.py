@@ -1,4 +1,4 @@
-"""The model of the weave on a cloth, in a file of its own."""
+"""The chapter cloth: the model of the weave on a cloth, in a separate file."""
 
 import bpy
 import numpy as np
@@ -30,7 +30,7 @@ def steps(desk, _measurement, _facts):
 
 
 def _add_cloth():
-    """A hanging curtain, a metre wide, with a UV map that is as even."""
+    """A hanging curtain, a meter wide, with a UV map as uniform as the flat grid."""
     bpy.ops.mesh.primitive_grid_add(
         x_subdivisions=120, y_subdivisions=120, size=1, rotation=(np.pi / 2, 0, 0)
     )

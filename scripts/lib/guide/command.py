@@ -1,4 +1,4 @@
-"""scripts/guide, once everything is built: one Blender a chapter, then the pages."""
+"""scripts/guide, after the build: runs one Blender per chapter, then writes the pages."""
 
 from __future__ import annotations
 
@@ -19,8 +19,8 @@ from support import process
 
 CHAPTERS = ("install", "first_material", "library", "tolerance", "scene_model", "tile", "cloth")
 MEASUREMENT = "brdf/cc_iris_purple_gem_rgb.bsdf"
-SCREEN = "1000x2300"  # wide enough for the whole window in a page, high enough for the longest panel
-SECONDS = 1800  # a chapter, on a busy machine
+SCREEN = "1000x2300"  # the whole window fits a page at this width, the longest panel at this height
+SECONDS = 1800  # time limit for a chapter, on a busy machine
 FILES = ROOT / "build/guide"
 
 
@@ -51,7 +51,7 @@ def main() -> int:
 
 
 def _run(chapter: str, blender: str, measurement: Path, folder: Path) -> str:
-    """Why it failed, or nothing."""
+    """Returns why it failed, or ""."""
     print(f"{chapter} ...", flush=True)
     shutil.rmtree(folder, ignore_errors=True)
     folder.mkdir(parents=True)

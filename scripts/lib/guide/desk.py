@@ -1,4 +1,4 @@
-"""The window as the guide shows it: a 3D viewport beside a high Properties editor; pictures of its parts."""
+"""The window as the guide shows it: a 3D viewport beside a tall Properties editor; pictures of its parts."""
 
 from __future__ import annotations
 
@@ -12,10 +12,10 @@ from support import framebuffer, inputs, scenes, window
 from . import headers, panels
 
 PROPERTIES_WIDTH = 440
-WINDOW_HEIGHT = 660  # of pictures of the whole window, the bar at its top included
+WINDOW_HEIGHT = 660  # pictures of the whole window, including its top bar
 _HEADER = 13  # half the height of a panel's header
-_MARGIN = 6  # around panels on pictures
-_PATIENCE = 1200  # seconds that a job may take
+_MARGIN = 6  # around panels in pictures
+_PATIENCE = 1200  # maximum seconds of a job
 _CLICKS = 5
 
 
@@ -24,7 +24,7 @@ def area(kind: str) -> bpy.types.Area:
 
 
 def inside(kind: str):
-    """The context of what the artist does in an editor."""
+    """A context override for the artist's actions in an editor."""
     editor = area(kind)
     return window.in_context(window=window.first(), area=editor, region=main_region(editor))
 
@@ -34,13 +34,13 @@ def main_region(editor: bpy.types.Area) -> bpy.types.Region:
 
 
 class Desk:
-    """Methods that take their time yield the seconds until the next turn of Blender's event loop."""
+    """Generator methods yield the seconds until their next turn in Blender's event loop."""
 
     def __init__(self, folder: Path):
         self.folder = folder
 
     def arrange(self):
-        """Outliner closed, Properties wide, the viewport as high as the pictures of the window."""
+        """Closes the Outliner, widens the Properties, and makes the viewport as high as window pictures."""
         with inside("OUTLINER"):
             bpy.ops.screen.area_close()
         yield 0.3
@@ -52,13 +52,13 @@ class Desk:
         yield from self._move_border(view.x + view.width // 2, view.y - 1, lower - view.y)
 
     def show(self, tab: str):
-        """A tab of the Properties editor."""
+        """Shows a tab of the Properties editor."""
         area("PROPERTIES").spaces.active.context = tab
         yield 0.8
         yield from self._read()
 
     def fold(self, tab: str, label: str, is_open: bool):
-        """Opens or closes a panel, by clicks on its header: it may still move while its editor is drawn."""
+        """Opens or closes a panel by clicking its header, repeatedly, since it may move during a redraw."""
         for _ in range(_CLICKS):
             header = next(place.header for place in self._places(tab, self._screen()) if place.label == label)
             if header.is_open == is_open:
@@ -68,14 +68,14 @@ class Desk:
         raise TimeoutError(f"panel {label!r} of tab {tab} does not fold")
 
     def click(self, x: int, y: int):
-        """The left button, at window coordinates."""
+        """Clicks the left button at window coordinates."""
         for kind, value in (("MOUSEMOVE", "NOTHING"), ("LEFTMOUSE", "PRESS"), ("LEFTMOUSE", "RELEASE")):
             window.first().event_simulate(type=kind, value=value, x=x, y=y)
             yield 0.15
         yield 0.4
 
     def point(self, x: int, y: int):
-        """The mouse, and no button."""
+        """Moves the mouse without a button."""
         window.first().event_simulate(type="MOUSEMOVE", value="NOTHING", x=x, y=y)
         yield 0.3
 
@@ -86,12 +86,12 @@ class Desk:
         yield 0.4
 
     def plot(self, kind: str):
-        """Chooses it in the panel of plots, until it is drawn."""
+        """Selects a plot in the Plots panel and waits until it is drawn."""
         bpy.context.window_manager.velour.plot.kind = kind
         yield from self.drawn(kind)
 
     def drawn(self, kind: str):
-        """Until the plot that a panel shows is drawn."""
+        """Waits until the plot that a panel shows is drawn."""
         preview = importlib.import_module(f"{inputs.ADDON}.ui.plot_preview")
         for _ in range(5 * _PATIENCE):
             area("PROPERTIES").tag_redraw()
@@ -103,7 +103,7 @@ class Desk:
         raise TimeoutError(f"the plot {kind} is not drawn")
 
     def _read(self):
-        """Until panels have read what they tell of files."""
+        """Waits until panels have read the summaries of files."""
         summaries = importlib.import_module(f"{inputs.ADDON}.ui.summaries")
         for _ in range(_PATIENCE):
             area("PROPERTIES").tag_redraw()
@@ -113,14 +113,14 @@ class Desk:
         raise TimeoutError("the panels still read")
 
     def start(self, operator, **arguments):
-        """A long action, as its button in the 3D viewport's window starts it."""
+        """Starts a long operator as its button does, in the context of the 3D viewport."""
         with inside("VIEW_3D"):
             state = operator("INVOKE_DEFAULT", **arguments)
         if state != {"RUNNING_MODAL"}:
             raise RuntimeError(f"{operator.idname()} did not start: {state}")
 
     def job(self, until: float = 2.0):
-        """Until what was started is done, or has come so far."""
+        """Waits until the job is done, or has reached the fraction `until`."""
         state = bpy.context.window_manager.velour
         for _ in range(10 * _PATIENCE):
             yield 0.1
@@ -129,7 +129,7 @@ class Desk:
         raise TimeoutError(f"{state.subject}: {state.stage} takes too long")
 
     def picture_of_panels(self, name: str, tab: str, first: str | None, last: str | None = None):
-        """From the header of one panel, or the top of the tab, to the end of another, or of the same."""
+        """From the header of panel `first` (None: top of the tab) to the end of `last` (None: `first`)."""
         pixels = self._screen()
         found = self._places(tab, pixels)
         labels = [place.label for place in found]
@@ -140,7 +140,7 @@ class Desk:
         self._write(name, pixels[top:bottom, region.x : region.x + region.width])
 
     def picture_of_editor(self, name: str, kind: str, height: int | None = None):
-        """An area of the window, or its upper part."""
+        """A picture of an area of the window, or of its upper `height` rows."""
         pixels, editor = self._screen(), area(kind)
         top = _top(pixels, editor)
         rows = slice(top, top + (height or editor.height))
@@ -150,7 +150,7 @@ class Desk:
         self._write(name, self._screen()[:height, :width])
 
     def side_by_side(self, name: str, parts: list[str]):
-        """Renders of one size in a row, as one picture; they are gone then."""
+        """Joins renders of equal size into one picture, side by side, and removes them."""
         paths = [self.folder / f"{part}.png" for part in parts]
         pixels = [(255 * scenes.read(path)[..., :3]).round().astype(np.uint8) for path in paths]
         for path in paths:
@@ -172,7 +172,7 @@ class Desk:
             return panels.places(tab, found)
 
     def _screen(self):
-        """[height x width x 3] bytes, the highest row first."""
+        """[height x width x 3] bytes, the top row first."""
         with window.override():
             bpy.ops.wm.redraw_timer(type="DRAW_WIN_SWAP", iterations=1)
         return framebuffer.at_rest(self.folder / framebuffer.FILE)[::-1]
@@ -182,12 +182,12 @@ class Desk:
 
 
 def _top(pixels, part: bpy.types.Area | bpy.types.Region) -> int:
-    """Its highest row on a picture of the screen."""
+    """The top row of an area or region in a picture of the screen."""
     return len(pixels) - part.y - part.height
 
 
 def _last_row(pixels, region: bpy.types.Region) -> int:
-    """Of what stands in the region: below it the ground is empty."""
+    """The last row of the region's contents: the background below is empty."""
     top = _top(pixels, region)
     rows = pixels[top : top + region.height, region.x : region.x + region.width - 20].astype(int)
     filled = rows.max(axis=(1, 2)) - rows.min(axis=(1, 2)) > 20

@@ -1,4 +1,4 @@
-"""What Velour says of a material, for the numbers of the pages."""
+"""Velour's information about a material, for the numbers of the pages."""
 
 import importlib
 
@@ -6,7 +6,7 @@ from support import inputs, scenes
 
 
 def model_info(image) -> dict:
-    """Of the model that an image datablock holds."""
+    """info() of the model that an image datablock holds."""
     files = importlib.import_module(f"{inputs.ADDON}.export.files")
     with files.read_model(image, image.name) as model:
         return model.info()

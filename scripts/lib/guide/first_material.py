@@ -1,4 +1,4 @@
-"""A measurement on a monkey: imported, fitted, rendered."""
+"""The chapter first_material: a measurement on a monkey, imported, fitted and rendered."""
 
 import bpy
 from support import viewport, window
@@ -9,7 +9,7 @@ from .facts import fit_facts
 
 SIZE = (640, 440)
 SAMPLES = 256
-SEEN = 32  # samples that the viewport has on its picture
+SEEN = 32  # samples that the viewport shows on its picture
 
 
 def steps(desk, measurement, facts):
@@ -41,7 +41,7 @@ def _make_scene():
 
 
 def _open_import_menu(desk):
-    """File > Import, in the bar at the top; Esc closes both menus."""
+    """Opens File > Import in the top bar; Esc closes both menus."""
     top = window.first().height - 13
     yield from desk.click(46, top)
     yield from desk.press("I", 46, top)
@@ -49,7 +49,7 @@ def _open_import_menu(desk):
     desk.picture_of_window("import_menu", height=570, width=760)
     for _ in range(2):
         yield from desk.press("ESC", 46, top)
-    yield from desk.point(100, 200)  # where nothing lights up under it
+    yield from desk.point(100, 200)  # where hovering highlights nothing
 
 
 def _rendered_viewport(desk):

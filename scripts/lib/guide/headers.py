@@ -1,4 +1,4 @@
-"""Where the headers of panels are on a picture of a Properties editor, by the arrow in each."""
+"""Finds the headers of panels in a picture of a Properties editor by their arrows."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-# As Blender 3.4 draws them at an interface scale of 1; digits are brightness, 0 that of the ground.
+# The arrows as Blender 3.4 draws them at an interface scale of 1; digits are brightness, 0 the background.
 _OPEN = ("054000000180", "019500001930", "001950019300", "000195193000", "000019930000", "000001300000")
 _CLOSED = (
     "02700000",
@@ -20,19 +20,19 @@ _CLOSED = (
     "01940000",
     "02400000",
 )
-_ALIKE = 0.08  # mean difference of brightness that still is the arrow
-_CONTRAST = 60  # of 255, between arrow and ground
-STRIP = 44  # pixels from the editor's left edge that hold the arrows of panels and of panels in them
+_ALIKE = 0.08  # maximum mean difference of brightness from an arrow
+_CONTRAST = 60  # minimum contrast of arrow and background, of 255
+STRIP = 44  # width in pixels, from the editor's left edge, that holds the arrows of panels and subpanels
 
 
 class Header(NamedTuple):
-    row: int  # of the arrow's middle, from the top
+    row: int  # the arrow's center, from the top
     x: int
     is_open: bool
 
 
 def find(strip: np.ndarray) -> list[Header]:
-    """From the top. `strip`: [height x width x 3] bytes, the highest row first."""
+    """The headers from top to bottom. `strip`: [height x width x 3] bytes, the top row first."""
     grey = strip.astype(np.float32).mean(axis=2)
     found = [Header(*place, is_open) for arrow, is_open in _ARROWS for place in _places(grey, arrow)]
     return sorted(found)

@@ -1,4 +1,4 @@
-"""Runs inside Blender's window: one chapter. `--python inside.py -- FOLDER`; FOLDER/task.json names it."""
+"""Runs a chapter inside Blender's window: `--python inside.py -- FOLDER`; FOLDER/task.json names it."""
 
 import importlib
 import json
@@ -19,13 +19,13 @@ from guide.desk import Desk
 def main():
     folder = Path(sys.argv[sys.argv.index("--") + 1])
     task = json.loads((folder / "task.json").read_text())
-    # Once the window is there.
+    # The window must exist first.
     bpy.app.timers.register(lambda: _start(folder, task), first_interval=1.0)
 
 
 def _start(folder, task):
     blender.enable_addon()
-    bpy.context.preferences.view.show_tooltips = False  # they come and go
+    bpy.context.preferences.view.show_tooltips = False  # they would appear in pictures at random
 
     def steps(folder):
         chapter = importlib.import_module(f"guide.{task['chapter']}")

@@ -1,4 +1,4 @@
-"""The add-on in the preferences."""
+"""The chapter install: the add-on in the preferences."""
 
 import bpy
 

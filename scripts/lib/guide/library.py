@@ -1,4 +1,4 @@
-"""A folder of measurements, looked through in the Material tab."""
+"""The chapter library: browsing a folder of measurements in the Material tab."""
 
 import importlib
 
@@ -9,7 +9,7 @@ from support import inputs, window
 from . import scene
 from .desk import inside
 
-_PANEL = "Library of Measurements"
+_PANEL = "Measurement Library"
 _FOLDER = "measurements"
 
 
@@ -24,7 +24,7 @@ def steps(desk, measurement, facts):
     browse = importlib.import_module(f"{inputs.ADDON}.operators.browse")
     browse.addon_preferences(
         bpy.context
-    ).measurements = f"//{_FOLDER}/"  # as Blender names what is beside a file
+    ).measurements = f"//{_FOLDER}/"  # Blender's notation for paths relative to the .blend
     settings = bpy.context.window_manager.velour.browser
     settings.chosen = str(desk.folder / _FOLDER / measurement.name)
     yield from desk.show("MATERIAL")

@@ -1,4 +1,4 @@
-"""The numbers of a chapter, written where its page has markers for them."""
+"""Writes the numbers of a chapter between the markers of its page."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ def write(chapter: str, facts: dict) -> None:
 
 
 def link(picture: Path) -> None:
-    """Where pages show it: it may be of another kind than before."""
+    """Updates the links to a picture in all pages: its file type may have changed."""
     for page in GUIDE.glob("*.md"):
         text = page.read_text(encoding="utf-8")
         linked = re.sub(rf"\(images/{picture.stem}\.\w+\)", f"(images/{picture.name})", text)
@@ -61,7 +61,7 @@ def _tolerances(facts: dict) -> str:
         ]
         for row in facts["fits"]
     ]
-    return table(["Tolerance", "Max Lobes", "Lobes", "Size", "Relative error"], rows)
+    return table(["Max Error", "Max Lobes", "Lobes", "Size", "Relative error"], rows)
 
 
 def _scene(facts: dict) -> str:
@@ -75,11 +75,11 @@ def _tile(facts: dict) -> str:
         f"The weave of the pictures: the capture has {_mb(facts['capture_bytes'])}, the material"
         f" {_mb(facts['model_bytes'])},\n{facts['capture_bytes'] / facts['model_bytes']:.0f} times less."
         f" **Size** tells 1:{facts['ratio']:.0f}: that is beside the captured values alone, as half floats.\n"
-        f"With its outline the material has {_mb(facts['outlined_bytes'])}.\n"
+        f"With its silhouette the material has {_mb(facts['outlined_bytes'])}.\n"
     )
 
 
-_PAGES = {"tile": "cloth"}  # of a chapter that has none of its own
+_PAGES = {"tile": "cloth"}  # page of a chapter that has none of its own
 _PARTS = {
     "first_material": {"fit": _first_material},
     "tolerance": {"tolerances": _tolerances},

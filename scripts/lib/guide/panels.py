@@ -15,11 +15,11 @@ from .headers import Header
 class Place(NamedTuple):
     label: str
     header: Header
-    end: int | None  # the row of the next header; None: it is the last
+    end: int | None  # row of the next header; None: the last panel
 
 
 def places(tab: str, headers: list[Header]) -> list[Place]:
-    """Which header is whose; the lowest panels may be out of sight. The context must be the editor's."""
+    """Assigns headers to panels; the lowest panels may be out of view. The context must be the editor's."""
     named = list(_named(_shown(tab, ""), tab, iter(headers)))
     if len(named) < len(headers):
         raise ValueError(f"tab {tab}: {len(headers)} headers on the screen, {len(named)} panels known")
@@ -50,7 +50,7 @@ def _shown(tab: str, parent: str) -> list[type]:
 
 
 def _registered() -> list[type]:
-    """Blender's own as they are defined; then ours as they are registered."""
+    """Blender's own panels in order of definition, then ours in order of registration."""
     ours = [
         c for c in importlib.import_module(f"{inputs.ADDON}.ui").CLASSES if issubclass(c, bpy.types.Panel)
     ]

@@ -1,4 +1,4 @@
-"""Pictures as a page can carry them."""
+"""Compresses pictures for the pages."""
 
 from __future__ import annotations
 
@@ -7,13 +7,14 @@ from pathlib import Path
 from PIL import Image
 
 MOST_BYTES = 150_000
-_OF_PANELS = 2000  # colours at most; more are a render, which a palette would dither or cut into steps
-_PALETTES = (256, 128, 64)  # colours, the best first
+_OF_PANELS = 2000  # maximum number of colors of panels; more are a render, which a palette would degrade
+_PALETTES = (256, 128, 64)  # numbers of colors, the best first
 _QUALITIES = (94, 90, 86, 80)
 
 
 def keep(path: Path, folder: Path) -> Path:
-    """As good as a page can carry it: panels as PNG with a palette, what shows a render as JPEG. Its file."""
+    """Saves a picture at the best quality within MOST_BYTES: panels as PNG with a palette, renders as JPEG.
+    Returns the file."""
     with Image.open(path) as opened:
         picture = opened.convert("RGB")
     is_render = picture.getcolors(_OF_PANELS) is None
@@ -36,5 +37,5 @@ def _save_png(picture: Image.Image, to: Path, colors: int) -> None:
 
 
 def _save_jpeg(picture: Image.Image, to: Path, quality: int) -> None:
-    """Colours as fine as brightness, for the letters of panels."""
+    """Without chroma subsampling, for the text of panels."""
     picture.save(to, quality=quality, subsampling=0)

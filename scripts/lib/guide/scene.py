@@ -1,4 +1,4 @@
-"""What the guide's pictures show: a monkey, or a cloth, under one of the worlds that come with Blender."""
+"""The scene of the guide's pictures: a monkey, or a cloth, under an environment that comes with Blender."""
 
 import math
 import os
@@ -11,7 +11,7 @@ _ROTATION = 250.0  # degrees: the sun comes from the left
 
 
 def start(samples: int = 128, size: tuple[int, int] = (640, 420)) -> bpy.types.Scene:
-    """The cube and the lamp of a new file are gone, the engine is Velour."""
+    """Removes the cube and the light of a new file, and selects Velour as the engine."""
     for name in ("Cube", "Light"):
         bpy.data.objects.remove(bpy.data.objects[name])
     scene = bpy.context.scene
@@ -51,7 +51,7 @@ def look_at(target: tuple[float, float, float], origin: tuple[float, float, floa
 
 
 def render(folder, name: str, size: tuple[int, int] | None = None) -> None:
-    """F12, and the picture saved as it is seen."""
+    """Renders like F12, and saves the picture as displayed."""
     scene = bpy.context.scene
     if size:
         scene.render.resolution_x, scene.render.resolution_y = size

@@ -1,4 +1,4 @@
-"""A table top in car paint, seen from a few angles under a soft sky: a model for that scene."""
+"""The chapter scene_model: a table top in car paint, seen from few angles under a soft environment."""
 
 import bpy
 from support import scenes
@@ -35,5 +35,5 @@ def steps(desk, measurement, facts):
         model_info(image)["parameter_bytes"] for image in (node.image, node.velour.scene_model)
     )
     yield from desk.plot("LOBES")
-    desk.picture_of_panels("scene_model", "MATERIAL", "Model for the Scene")
+    desk.picture_of_panels("scene_model", "MATERIAL", "Scene Model")
     desk.side_by_side("scene_model_pictures", ["part-full", "part-scene"])

@@ -1,4 +1,4 @@
-"""A weave: modelled, captured, and made a material with an outline."""
+"""The chapter tile: a weave, modeled, captured, and made into a material with a silhouette (VOTF)."""
 
 import bpy
 from support import scenes
@@ -69,6 +69,6 @@ def _outline(desk, facts):
     yield from desk.job()
     facts["outlined_bytes"] = model_info(node.image)["bytes"]
     yield from desk.show("MATERIAL")
-    yield from desk.fold("MATERIAL", "Outline (VOTF)", is_open=True)
+    yield from desk.fold("MATERIAL", "Silhouette (VOTF)", is_open=True)
     yield from desk.drawn("OUTLINE")
-    desk.picture_of_panels("outline", "MATERIAL", "Outline (VOTF)")
+    desk.picture_of_panels("outline", "MATERIAL", "Silhouette (VOTF)")

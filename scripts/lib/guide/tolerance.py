@@ -1,4 +1,4 @@
-"""The same measurement with several tolerances, side by side."""
+"""The chapter tolerance: the same measurement fitted with several tolerances, side by side."""
 
 import bpy
 from support import scenes
@@ -9,7 +9,7 @@ from .facts import fit_facts
 
 SIZE = (250, 250)
 SAMPLES = 256
-FITS = ((0.5, 2), (0.1, 16), (0.02, 16))  # tolerance, most lobes
+FITS = ((0.5, 2), (0.1, 16), (0.02, 16))  # tolerance, maximum number of lobes
 
 
 def steps(desk, measurement, facts):

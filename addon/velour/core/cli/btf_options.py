@@ -1,4 +1,4 @@
-"""What numbers of a measured BTF mean: options of every verb that reads one."""
+"""Options of every verb that reads a measured BTF: what its numbers mean."""
 
 from __future__ import annotations
 
@@ -17,32 +17,42 @@ def gamma(text: str) -> float:
 
 
 def tile_size(text: str) -> tuple[float, ...]:
-    """X,Y in metres."""
+    """X,Y in meters."""
     return numbers.reals(2, 1e-9, 1e9)(text)
 
 
 def add_arguments(parser: argparse.ArgumentParser, layer_option: str = "--layer") -> None:
     group = parser.add_argument_group("measured BTFs")
     group.add_argument(
-        "--values", choices=table.BTF_VALUES, help="what numbers mean; as they say, or radiance (.btf: brdf)"
+        "--values",
+        choices=table.BTF_VALUES,
+        help="meaning of the stored values (default: as the files state, else radiance; .btf: brdf)",
     )
     group.add_argument(
-        "--gamma", type=gamma, metavar="srgb|linear|G", help="of pictures of whole numbers; srgb"
+        "--gamma",
+        type=gamma,
+        metavar="srgb|linear|G",
+        help="transfer curve of integer images (default: srgb)",
     )
-    group.add_argument("--colors", choices=table.BTF_COLORS, help="of pictures; rec709")
+    group.add_argument("--colors", choices=table.BTF_COLORS, help="color space of images (default: rec709)")
     group.add_argument(
-        "--angles", choices=table.BTF_ANGLES, help="of a CSV index; degrees, unless they look like radians"
+        "--angles",
+        choices=table.BTF_ANGLES,
+        help="unit of angles in a CSV index (default: degrees, refused if they look like radians)",
     )
     group.add_argument(
-        layer_option, dest="btf_layer", metavar="NAME", help="layer or channel of OpenEXR pictures"
+        layer_option, dest="btf_layer", metavar="NAME", help="layer or channel of OpenEXR images"
     )
     group.add_argument(
-        "--tile-size", type=tile_size, metavar="X,Y", help="metres, where the set does not say"
+        "--tile-size",
+        type=tile_size,
+        metavar="X,Y",
+        help="size of the tile in meters (default: as the files state)",
     )
 
 
 def given(args: argparse.Namespace) -> dict:
-    """The options that the user gave, as Btf.load() takes them."""
+    """The options that the user gave, as keywords of Btf.load()."""
     names = {"values": args.values, "gamma": args.gamma, "colors": args.colors, "tile_metres": args.tile_size}
     names |= {"layer": args.btf_layer, "angles": args.angles}
     return {name: value for name, value in names.items() if value is not None}

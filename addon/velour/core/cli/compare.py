@@ -23,18 +23,18 @@ PEER_KEYS = ("seconds", "parameter_bytes")
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("input", metavar="INPUT", help="the measurement or BTF")
+    parser.add_argument("input", metavar="INPUT", help="measurement or BTF to compare with")
     judged = parser.add_mutually_exclusive_group(required=True)
     judged.add_argument(
-        "model", metavar="MODEL", nargs="?", help="the model to judge by it; of a BTF also another BTF"
+        "model", metavar="MODEL", nargs="?", help="model to evaluate; for a BTF also another BTF"
     )
     judged.add_argument(
         "--ggx", dest="peer", action="store_const", const="ggx",
-        help="judge the GGX lobe over a diffuse base that suits it best",
+        help="evaluate the best-fitting GGX lobe over a diffuse base",
     )  # fmt: skip
     judged.add_argument(
         "--principled", dest="peer", action="store_const", const="principled",
-        help="judge the Principled material that suits it best, and print its values",
+        help="evaluate the best-fitting Principled material, and print its values",
     )  # fmt: skip
 
 
@@ -50,7 +50,10 @@ def run(args: argparse.Namespace) -> dict:
 
 def _compare_btf(args: argparse.Namespace) -> dict:
     if args.peer:
-        raise refuse(f"{args.input} is a BTF; --{args.peer} suits measurements of BRDFs.")
+        raise refuse(
+            f"{args.input} is a BTF, but --{args.peer} needs a BRDF measurement; give a model or a BTF"
+            " instead."
+        )
     with contextlib.ExitStack() as handles:
         btf = handles.enter_context(Btf.load(args.input))
         kind = library.file_info(args.model)["kind"]

@@ -10,60 +10,73 @@ from . import btf_options, numbers, output, scene_options
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("input", metavar="BTF", help="a folder, a CSV index or a .btf file")
-    parser.add_argument("-o", "--output", metavar="MODEL", required=True, help="the model to write")
+    parser.add_argument("input", metavar="BTF", help="BTF to fit: a folder, a CSV index or a .btf file")
+    parser.add_argument(
+        "-o", "--output", metavar="MODEL", required=True, help="model file to write (.velour)"
+    )
     parser.add_argument(
         "--method",
         choices=table.COMPRESS_METHODS,
-        help="srbf: multivariate SRBFs over a relief (default); kcta: clustered tensors, of which a texel"
-        " has a few; cta: one; tucker: one for all; svd: truncated singular values; svd-view: of each view"
-        " for itself",
+        help="srbf: multivariate SRBFs over a relief (default); kcta: clustered tensors, several per texel;"
+        " cta: clustered tensors, one per texel; tucker: one tensor for all texels; svd: truncated SVD;"
+        " svd-view: truncated SVD of each view",
     )
     parser.add_argument(
-        "--companding", choices=table.COMPANDINGS, help="sums of f itself or of its root; root"
+        "--companding",
+        choices=table.COMPANDINGS,
+        help="fit f itself (none) or its square root (default: root)",
     )
     parser.add_argument(
         "--tolerance", type=numbers.real(1e-6, 0.999), metavar="E",
-        help="the smallest model whose relative L2 error of companded values is at most E, within --bytes",
+        help="maximum relative L2 error of companded values; the smallest model that meets it is chosen",
     )  # fmt: skip
     size = parser.add_mutually_exclusive_group()
     size.add_argument(
         "--bytes", type=numbers.size_in_bytes, metavar="SIZE",
-        help="bytes, or K, M, G, of all coefficients; 1:400 of the BTF as half floats (svd: 1:200), or a few",
+        help="maximum size of all coefficients in bytes, or with K, M, G, T (default: 1/400 of the BTF as"
+        " half floats, 1/200 for svd; with --tolerance: as needed)",
     )  # fmt: skip
     size.add_argument(
-        "--ratio", type=numbers.real(1, 1e9), metavar="R", help="the same: an R-th of the BTF as half floats"
+        "--ratio", type=numbers.real(1, 1e9), metavar="R", help="like --bytes: 1/R of the BTF as half floats"
     )
     parser.add_argument(
         "--memory", type=numbers.size_in_bytes, metavar="SIZE",
-        help="bytes, or K, M, G, T, that the fit may hold at once beside the program itself; no limit",
+        help="maximum memory of the fit in addition to the program, in bytes or with K, M, G, T (default:"
+        " no limit)",
     )  # fmt: skip
     parser.add_argument(
         "--resume", action="store_true",
-        help="goes on with a fit to MODEL that was stopped: its stages are in MODEL.checkpoint",
+        help="continue an interrupted fit from MODEL.checkpoint",
     )  # fmt: skip
-    parser.add_argument("--held-out", metavar="BTF", help="pairs that the fit does not see, to judge it by")
+    parser.add_argument("--held-out", metavar="BTF", help="BTF with held-out pairs for validation")
     parser.add_argument(
         "--for-scene", metavar="SCENE.json",
-        help="as small as pictures of what was observed (velour observe) allow",
+        help="fit a scene model for this scene usage (written by velour observe)",
     )  # fmt: skip
     parser.add_argument(
-        "--full-model", metavar="FULL", help="with --for-scene: the full model; without: it is fitted first"
+        "--full-model",
+        metavar="FULL",
+        help="with --for-scene: the full model to start from (default: fitted first)",
     )
-    parser.add_argument("--seed", type=numbers.seed, metavar="K")
-    parser.add_argument("--threads", type=numbers.whole(0, 1024), metavar="T", help="0: all")
+    parser.add_argument("--seed", type=numbers.seed, metavar="K", help="random seed")
+    parser.add_argument(
+        "--threads", type=numbers.whole(0, 1024), metavar="T", help="number of threads (0: all)"
+    )
     tensors = parser.add_argument_group("clustered tensors")
     tensors.add_argument(
         "--clusters", type=numbers.whole(1, 256), metavar="C",
-        help="cta, kcta; what leaves least within the bytes",
+        help="number of clusters for cta and kcta (default: the one with the smallest error)",
     )  # fmt: skip
     tensors.add_argument(
-        "--members", type=numbers.whole(1, 8), metavar="K", help="kcta: clusters of a texel; the same"
+        "--members",
+        type=numbers.whole(1, 8),
+        metavar="K",
+        help="clusters per texel for kcta (default: the number with the smallest error)",
     )
     tensors.add_argument(
         "--no-relief",
         action="store_true",
-        help="texels of the reference plane, not of the structure's surface",
+        help="place texels on the reference plane instead of the structure's surface",
     )
     btf_options.add_arguments(parser)
 

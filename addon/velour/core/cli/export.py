@@ -9,8 +9,8 @@ from . import btf_options, output
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("btf", metavar="BTF", help="a folder, a CSV index or a .btf file")
-    parser.add_argument("-o", "--output", metavar="FOLDER", required=True, help="the folder to make")
+    parser.add_argument("btf", metavar="BTF", help="BTF to export: a folder, a CSV index or a .btf file")
+    parser.add_argument("-o", "--output", metavar="FOLDER", required=True, help="folder to create")
     btf_options.add_arguments(parser)
 
 

@@ -21,46 +21,59 @@ KEYS = (
     "warnings",
     "order",
 )
-OWN_KEYS = ("view_range", "scene")  # of parametric models; of reduced ones
+OWN_KEYS = ("view_range", "scene")  # for parametric models; for scene models
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("input", metavar="INPUT", help="a measurement")
+    parser.add_argument("input", metavar="INPUT", help="measurement to fit")
     parser.add_argument(
-        "-o", "--output", metavar="MODEL", required=True, help="the model file to write (.velour)"
+        "-o", "--output", metavar="MODEL", required=True, help="model file to write (.velour)"
     )
     parser.add_argument(
-        "--model", choices=table.MODELS, help="parametric: few lobes for all views; scattered: lobes a view"
+        "--model",
+        choices=table.MODELS,
+        help="parametric: few lobes for all views (default); scattered: separate lobes per view",
     )
-    parser.add_argument("--kernel", choices=table.KERNELS, help="of a scattered model's lobes")
+    parser.add_argument(
+        "--kernel", choices=table.KERNELS, help="shape of the lobes of a per-view model (default: gaussian)"
+    )
     parser.add_argument(
         "--tolerance", type=numbers.real(1e-6, 1), metavar="T",
-        help="relative L2 asked for at every view up to 75 degrees, 2 T beyond (0.02)",
+        help="maximum relative L2 error at every view up to 75 degrees, twice that beyond (default: 0.02)",
     )  # fmt: skip
     parser.add_argument(
-        "--max-lobes", type=numbers.whole(1, 64), metavar="N", help="lobes in all; scattered: a view (16)"
+        "--max-lobes",
+        type=numbers.whole(1, 64),
+        metavar="N",
+        help="maximum number of lobes, per view for a per-view model (default: 16)",
     )
     parser.add_argument(
         "--bytes",
         type=numbers.size_in_bytes,
         metavar="SIZE",
-        help="bytes, or K, M: bound on the model's size",
+        help="maximum size of the model in bytes, or with K, M, G, T (default: no limit)",
     )
     parser.add_argument(
         "--limit-albedo",
         action="store_true",
-        help="lower the model where more light would leave than arrives",
+        help="reduce the model where it would reflect more light than arrives",
     )
     parser.add_argument("--symmetric", action="store_true", help="make the model reciprocal")
-    parser.add_argument("--all-data", action="store_true", help="hold nothing out: for production")
-    parser.add_argument("--seed", type=numbers.seed, metavar="K")
-    parser.add_argument("--threads", type=numbers.whole(0, 1024), metavar="T", help="0: all")
+    parser.add_argument(
+        "--all-data", action="store_true", help="hold out no data for validation (for production)"
+    )
+    parser.add_argument("--seed", type=numbers.seed, metavar="K", help="random seed")
+    parser.add_argument(
+        "--threads", type=numbers.whole(0, 1024), metavar="T", help="number of threads (0: all)"
+    )
     parser.add_argument(
         "--for-scene", metavar="SCENE.json",
-        help="reduce a parametric model to what was observed (velour observe), its pictures no worse",
+        help="fit a parametric scene model for this scene usage (written by velour observe)",
     )  # fmt: skip
     parser.add_argument(
-        "--full-model", metavar="FULL", help="with --for-scene: the full model; without: it is fitted first"
+        "--full-model",
+        metavar="FULL",
+        help="with --for-scene: the full model to start from (default: fitted first)",
     )
 
 
@@ -72,7 +85,7 @@ def run(args: argparse.Namespace) -> dict:
         report = job.run(output.progress_of(args))
         with job.result_model() as model:
             model.save(args.output)
-    if args.json:  # else the summary says them
+    if args.json:  # otherwise the summary lists them
         for warning in report["warnings"]:
             output.log.warning("%s", warning)
     return {key: report[key] for key in (*KEYS, *OWN_KEYS) if key in report}

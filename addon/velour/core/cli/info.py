@@ -9,7 +9,7 @@ from . import btf_options
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("file", metavar="PATH", help="a measurement, a BTF, a model or an observation")
+    parser.add_argument("file", metavar="PATH", help="measurement, BTF, model or scene usage")
     btf_options.add_arguments(parser)
 
 

@@ -1,4 +1,4 @@
-"""Parses, runs a verb, turns what goes wrong into one sentence and an honest status."""
+"""Parses the arguments, runs a verb, and turns errors into one sentence and an exit status."""
 
 from __future__ import annotations
 
@@ -13,25 +13,25 @@ from ...native.version import version_text
 from . import output
 from .exit_status import DONE, FAILED, INTERRUPTED, UNFINISHED, UnfinishedError
 
-_VERBS = {  # by module of this package
-    "info": "what a measurement, BTF, model or observation holds",
-    "fit": "fit a model to a measurement",
-    "compare": "error of a model against a measurement or BTF",
-    "plot": "draw what a model is made of, its error or its albedo",
-    "render": "render a mesh with a measured material under a world",
-    "merge": "make one picture of parts that render wrote",
-    "observe": "learn under which views and lights a scene shows its material",
-    "capture": "make a measurement of a modelled surface",
-    "votf": "add to a model the outline and the holes of a modelled surface",
-    "tile": "make a procedural tile of mesostructure as a mesh",
-    "export": "write a BTF as a folder of pictures",
+_VERBS = {  # each is a module of this package
+    "info": "show the contents of a measurement, BTF, model or scene usage",
+    "fit": "fit a model to a BRDF measurement",
+    "compare": "compute the error of a model against a measurement or BTF",
+    "plot": "plot the lobes, the error, the albedo or the silhouette of a model",
+    "render": "render a mesh with a measured material in an environment",
+    "merge": "merge parts of an image that were rendered separately",
+    "observe": "record the scene usage of a material: the views and lights under which a scene shows it",
+    "capture": "capture the BTF of a modeled tile, or the BRDF of a microsurface",
+    "votf": "add the silhouette (VOTF) of a modeled tile or a BTF to a model",
+    "tile": "create a procedural mesostructure tile as a mesh",
+    "export": "export a BTF as a folder of images",
     "compress": "fit a model to a BTF",
 }
 _LEVELS = ("error", "warning", "info", "debug")
 
 
 def main(arguments: list[str] | None = None) -> int:
-    """The exit status: 0 done, 1 failed, 3 ended early, 130 interrupted. Wrong usage leaves with 2."""
+    """Returns the exit status: 0 done, 1 failed, 3 ended early, 130 interrupted. Wrong usage exits with 2."""
     arguments = sys.argv[1:] if arguments is None else arguments
     args = _parser(arguments).parse_args(arguments)
     try:
@@ -48,7 +48,7 @@ def main(arguments: list[str] | None = None) -> int:
     except KeyboardInterrupt:
         return _fail("Interrupted.", INTERRUPTED)
     except BrokenPipeError:
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())  # or the flush at exit complains again
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())  # or the flush at exit fails again
         return FAILED
     except (VelourError, OSError, MemoryError) as error:
         return _fail(_sentence(error), FAILED)
@@ -56,7 +56,7 @@ def main(arguments: list[str] | None = None) -> int:
 
 def _fail(sentence: str, status: int) -> int:
     if sys.stderr.isatty():
-        sys.stderr.write("\r\x1b[K")  # what a progress bar may have left
+        sys.stderr.write("\r\x1b[K")  # erases what a progress bar may have left
     output.log.error("%s", sentence)
     return status
 
@@ -70,7 +70,7 @@ def _sentence(error: Exception) -> str:
 def _parser(arguments: list[str]) -> argparse.ArgumentParser:
     """Adds only the options of the verb in `arguments`: importing the modules of all verbs takes time."""
     parser = argparse.ArgumentParser(
-        prog="velour", description="Measured materials: fit, judge and render.", allow_abbrev=False
+        prog="velour", description="Fits, evaluates and renders measured materials.", allow_abbrev=False
     )
     parser.add_argument("--version", action="version", version=f"velour {version_text()}")
     verbs = parser.add_subparsers(title="verbs", metavar="VERB", required=True)
@@ -90,12 +90,25 @@ def _add_options(verb: argparse.ArgumentParser, name: str) -> None:
 
 
 def _add_common(verb: argparse.ArgumentParser) -> None:
-    group = verb.add_argument_group("everywhere")
-    group.add_argument("--json", action="store_true", help="one JSON object on stdout and nothing else there")
-    group.add_argument("--json-file", metavar="PATH", help="the JSON object in a file")
-    group.add_argument("--quiet", action="store_true", help="no progress, no messages, no summary")
-    group.add_argument("--log-level", choices=_LEVELS, default=_level_of_environment(), help="or VELOUR_LOG")
-    group.add_argument("--simd", metavar="NAME", help="pin the instruction set (results depend on it)")
+    group = verb.add_argument_group("common options")
+    group.add_argument(
+        "--json", action="store_true", help="print one JSON object to stdout, and nothing else"
+    )
+    group.add_argument("--json-file", metavar="PATH", help="write the JSON object to a file")
+    group.add_argument(
+        "--quiet", action="store_true", help="print no progress, no summary, and no messages except errors"
+    )
+    group.add_argument(
+        "--log-level",
+        choices=_LEVELS,
+        default=_level_of_environment(),
+        help="messages to print on stderr (default: $VELOUR_LOG, or warning)",
+    )
+    group.add_argument(
+        "--simd",
+        metavar="NAME",
+        help="instruction set to use, which affects the last bits of results (default: the best one)",
+    )
 
 
 def _level_of_environment() -> str:

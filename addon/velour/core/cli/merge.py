@@ -10,10 +10,14 @@ from . import output
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("parts", nargs="+", metavar="PART.exr", help="what render --samples or --crop wrote")
-    parser.add_argument("-o", "--output", metavar="OUT.exr", required=True, help=".exr or .png")
     parser.add_argument(
-        "--partial", action="store_true", help="samples may be missing, of all pixels the same: fewer samples"
+        "parts", nargs="+", metavar="PART.exr", help="parts written by velour render --samples or --crop"
+    )
+    parser.add_argument(
+        "-o", "--output", metavar="OUT.exr", required=True, help="image to write (.exr or .png)"
+    )
+    parser.add_argument(
+        "--partial", action="store_true", help="allow missing samples, the same ones for all pixels"
     )
 
 
@@ -24,8 +28,10 @@ def run(args: argparse.Namespace) -> dict:
     merged = picture_parts.merge(parts, args.partial)
     if "," in merged.simd:
         output.log.warning(
-            "The parts were rendered with different instruction sets (%s), which are equal within noise, "
-            "not bit for bit; --simd pins one.", merged.simd,
+            "The parts were rendered with different instruction sets (%s), so the image equals a single "
+            "render within noise, but not bit for bit. For identical bits, use the same --simd for all"
+            " parts.",
+            merged.simd,
         )  # fmt: skip
     picture_parts.write(args.output, merged)
     return {

@@ -1,4 +1,4 @@
-"""Types of arguments: each turns text into a value or says what is wrong with it (wrong usage, status 2)."""
+"""Argument types: each parses text into a value or says what is wrong with it (wrong usage, status 2)."""
 
 from __future__ import annotations
 
@@ -8,13 +8,13 @@ from typing import NamedTuple
 
 
 def whole(low: int, high: int = 2**32 - 1):
-    """A whole number in [low, high]."""
+    """Parser of an integer in [low, high]."""
 
     def parse(text: str) -> int:
         try:
             value = int(text)
         except ValueError:
-            raise argparse.ArgumentTypeError(f"{text!r} is not a whole number") from None
+            raise argparse.ArgumentTypeError(f"{text!r} is not an integer") from None
         if not low <= value <= high:
             raise argparse.ArgumentTypeError(f"{value} is not between {low} and {high}")
         return value
@@ -26,7 +26,7 @@ seed = whole(0, 2**64 - 1)
 
 
 def real(low: float = -math.inf, high: float = math.inf):
-    """A finite number in [low, high]."""
+    """Parser of a finite number in [low, high]."""
 
     def parse(text: str) -> float:
         try:
@@ -50,25 +50,25 @@ def picture_size(text: str) -> tuple[int, int]:
 
 
 def reals(count: int, low: float = -math.inf, high: float = math.inf):
-    """`count` numbers with commas between them."""
+    """Parser of `count` numbers separated by commas."""
 
     def parse(text: str) -> tuple[float, ...]:
         parts = text.split(",")
         if len(parts) != count:
-            raise argparse.ArgumentTypeError(f"{text!r} is not {count} numbers with commas between them")
+            raise argparse.ArgumentTypeError(f"{text!r} is not {count} comma-separated numbers")
         return tuple(map(real(low, high), parts))
 
     return parse
 
 
 def span(text: str) -> tuple[int, int]:
-    """BEGIN:END, two whole numbers in order."""
+    """BEGIN:END, two integers in ascending order."""
     ends = text.split(":")
     if len(ends) != 2:
         raise argparse.ArgumentTypeError(f"{text!r} is not BEGIN:END")
     begin, end = map(whole(0, 2**30), ends)
     if begin >= end:
-        raise argparse.ArgumentTypeError(f"{text!r} is empty: the end must be above the begin")
+        raise argparse.ArgumentTypeError(f"{text!r} is empty: the end must be greater than the begin")
     return begin, end
 
 
@@ -82,7 +82,7 @@ def pixels(text: str) -> tuple[int, int, int, int]:
 
 
 def size_in_bytes(text: str) -> int:
-    """Bytes, or K, M, G, T of 1024 each; 2^63 at most."""
+    """Bytes, or K, M, G, T (powers of 1024); 2^63 at most."""
     number, unit = (text[:-1], text[-1]) if text[-1:].upper() in ("K", "M", "G", "T") else (text, "")
     doublings = 10 * " KMGT".index(unit.upper() or " ")
     return whole(1, 2**63 >> doublings)(number) << doublings
@@ -95,10 +95,10 @@ class Camera(NamedTuple):
 
 
 def camera(text: str) -> Camera:
-    """EX,EY,EZ,TX,TY,TZ,FOV: metres, and the vertical angle of view in degrees."""
+    """EX,EY,EZ,TX,TY,TZ,FOV: meters, and the vertical field of view in degrees."""
     values = reals(7)(text)
     if not 0 < values[6] < 180:
         raise argparse.ArgumentTypeError(
-            f"the angle of view is {values[6]:g}; it lies between 0 and 180 degrees"
+            f"the field of view is {values[6]:g} degrees; it must be between 0 and 180"
         )
     return Camera(values[:3], values[3:6], math.radians(values[6]))

@@ -9,21 +9,26 @@ from ...native import Observation, Scene, observe_job
 from . import numbers, output, scene
 
 KEYS = ("seconds", "frames", "camera_rays", "hits", "weight", "share", "views", "light_density", "hash")
-OWN_KEYS = ("surface",)  # of materials that vary over it
+OWN_KEYS = ("surface",)  # for materials that vary over the surface
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     scene.add_arguments(parser)
-    parser.add_argument("-o", "--output", metavar="SCENE.json", required=True)
+    parser.add_argument("-o", "--output", metavar="SCENE.json", required=True, help="scene usage to write")
     parser.add_argument(
-        "--bounces", type=numbers.whole(0, 1024), metavar="B", help="of the render; 0: direct light only"
+        "--bounces",
+        type=numbers.whole(0, 1024),
+        metavar="B",
+        help="indirect bounces of the render (0: direct light only)",
     )
     parser.add_argument(
         "--merge", action="append", default=[], metavar="OTHER.json",
-        help="adds what another observation saw; may be given again",
+        help="add the scene usage in another file; may be repeated",
     )  # fmt: skip
-    parser.add_argument("--seed", type=numbers.seed, metavar="K")
-    parser.add_argument("--threads", type=numbers.whole(0, 1024), metavar="T", help="0: all")
+    parser.add_argument("--seed", type=numbers.seed, metavar="K", help="random seed")
+    parser.add_argument(
+        "--threads", type=numbers.whole(0, 1024), metavar="T", help="number of threads (0: all)"
+    )
 
 
 def run(args: argparse.Namespace) -> dict:
@@ -36,7 +41,9 @@ def run(args: argparse.Namespace) -> dict:
         report = job.run(output.progress_of(args))
         observation = handles.enter_context(job.result_observation())
         if not report["hits"]:
-            output.log.warning("The picture does not show the material.")
+            output.log.warning(
+                "The image does not show the material, so it adds nothing to the scene usage; check --camera."
+            )
         for other in others:
             observation.merge(other)
         observation.save(args.output)

@@ -1,4 +1,4 @@
-"""What a verb says: one JSON object or a summary on stdout, messages and progress on stderr."""
+"""Output of a verb: one JSON object or a summary on stdout, messages and progress on stderr."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ def set_up_log(level: str) -> None:
 
 
 def progress_of(args: argparse.Namespace) -> ProgressBar | ProgressLines | None:
-    """A bar where someone can see it, lines where a log wants to know."""
+    """A progress bar on a terminal; elsewhere log lines, at level info."""
     if args.quiet:
         return None
     if sys.stderr.isatty():
@@ -32,7 +32,7 @@ def progress_of(args: argparse.Namespace) -> ProgressBar | ProgressLines | None:
 
 
 def tell(args: argparse.Namespace, line: str) -> None:
-    """Where someone can see it, as the bar, or a log wants to know."""
+    """Prints a line on a terminal; elsewhere logs it, at level info."""
     if args.quiet:
         return
     if sys.stderr.isatty():
@@ -42,7 +42,7 @@ def tell(args: argparse.Namespace, line: str) -> None:
 
 
 def deliver(args: argparse.Namespace, report: dict) -> None:
-    """Hands the verb's report over in all forms asked for."""
+    """Writes the verb's report in all requested forms."""
     if args.json_file:
         files.write_json(args.json_file, report)
     if args.json:
@@ -79,19 +79,19 @@ def _shown(value) -> str:
 
 
 def check_writable(path: str) -> None:
-    """Says before the long work, not after it, that the result cannot be written.
+    """Raises OSError before the long work, not after it, if the result cannot be written.
 
-    Permissions do not tell: disks are mounted read-only, and servers have rules of their own.
+    It creates a file, because permissions do not tell about read-only mounts and rules of file servers.
     """
     folder = Path(path).absolute().parent
     if not folder.is_dir():
-        raise OSError(f"The folder {folder} of the output {path} does not exist; make it first.")
+        raise OSError(f"The folder {folder} of the output {path} does not exist; create it first.")
     if Path(path).is_dir():
-        raise OSError(f"The output {path} is a folder; name a file.")
+        raise OSError(f"The output {path} is a folder; give the name of a file.")
     try:
         tempfile.TemporaryFile(dir=folder).close()
     except OSError as error:
         raise OSError(
-            f"The folder {folder} of the output {path} cannot be written to ({error.strerror}); name another,"
-            " or change its permissions."
+            f"The folder {folder} of the output {path} is not writable ({error.strerror}); choose another"
+            " one, or change its permissions."
         ) from error

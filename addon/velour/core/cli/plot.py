@@ -13,22 +13,30 @@ _DARK = {"background": (0.19, 0.19, 0.19), "foreground": (0.9, 0.9, 0.9)}
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("model", metavar="MODEL", help="the model")
-    parser.add_argument("-o", "--output", metavar="PATH", required=True, help=".png, .svg or .csv")
-    parser.add_argument("--kind", choices=table.PLOTS, default="lobes", help="what is plotted")
+    parser.add_argument("model", metavar="MODEL", help="model to plot")
     parser.add_argument(
-        "--measurement", metavar="INPUT", help="what the model was fitted to: shown beside it"
+        "-o", "--output", metavar="PATH", required=True, help="file to write (.png, .svg or .csv)"
+    )
+    parser.add_argument("--kind", choices=table.PLOTS, default="lobes", help="what to plot (default: lobes)")
+    parser.add_argument(
+        "--measurement",
+        metavar="INPUT",
+        help="measurement that the model was fitted to, shown for comparison",
     )
     parser.add_argument(
         "--view",
         type=numbers.real(0, 89.9),
         metavar="DEG",
         default=30.0,
-        help="of the lobes: from the normal",
+        help="angle between the normal and the view whose lobes are shown (default: 30)",
     )
-    parser.add_argument("--azimuth", type=numbers.real(), metavar="DEG", default=0.0, help="of the views")
-    parser.add_argument("--side", type=numbers.whole(64, 8192), metavar="N", help="pixels; 800")
-    parser.add_argument("--dark", action="store_true", help="light on dark, not for paper")
+    parser.add_argument(
+        "--azimuth", type=numbers.real(), metavar="DEG", default=0.0, help="azimuth of the views (default: 0)"
+    )
+    parser.add_argument(
+        "--side", type=numbers.whole(64, 8192), metavar="N", help="width and height in pixels (default: 800)"
+    )
+    parser.add_argument("--dark", action="store_true", help="light colors on a dark background")
 
 
 def run(args: argparse.Namespace) -> dict:

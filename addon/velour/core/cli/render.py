@@ -36,68 +36,102 @@ KEYS = (
     "samples",
     "memory",
 )
-_MOST_SPP = 1 << 16  # of a render that a noise target ends
+_MOST_SPP = 1 << 16  # for a render that a noise target ends
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     scene.add_arguments(parser)
-    parser.add_argument("-o", "--output", metavar="OUT.exr", required=True, help=".exr or .png")
-    parser.add_argument("--spp", type=numbers.whole(1), metavar="N", help="light directions a pixel")
+    parser.add_argument(
+        "-o", "--output", metavar="OUT.exr", required=True, help="image to write (.exr or .png)"
+    )
+    parser.add_argument(
+        "--spp", type=numbers.whole(1), metavar="N", help="light directions per pixel (default: 64)"
+    )
     parser.add_argument(
         "--split",
         type=numbers.whole(1, table.MOST_SPLIT),
         metavar="N",
-        help=f"of them share a camera ray (8), at most {table.MOST_SPLIT}",
+        help=f"light directions per camera ray (default: 8, at most {table.MOST_SPLIT})",
     )
-    parser.add_argument("--bounces", type=numbers.whole(0, 1024), metavar="B", help="0: direct light only")
-    parser.add_argument("--strategy", choices=table.STRATEGIES, default="mis", help="mis")
     parser.add_argument(
-        "--share", type=numbers.real(0, 1), metavar="S", help="what the lights draw of mis (0.5)"
+        "--bounces", type=numbers.whole(0, 1024), metavar="B", help="indirect bounces (0: direct light only)"
     )
-    parser.add_argument("--heuristic", choices=table.HEURISTICS, help="weights of mis under a sky (balance)")
-    parser.add_argument("--sequence", choices=table.SEQUENCES, help="of random numbers (sobol)")
-    parser.add_argument("--seed", type=numbers.seed, metavar="K")
-    parser.add_argument("--threads", type=numbers.whole(0, 1024), metavar="T", help="0: all")
-    parser.add_argument("--time-limit", type=numbers.real(0, 1e9), metavar="SECONDS")
     parser.add_argument(
-        "--noise", type=numbers.real(1e-6, 1e6), metavar="E", help="relative error of each block of pixels"
+        "--strategy", choices=table.STRATEGIES, default="mis", help="sampling strategy (default: mis)"
+    )
+    parser.add_argument(
+        "--share",
+        type=numbers.real(0, 1),
+        metavar="S",
+        help="mis: fraction of directions sampled from lights (default: 0.5)",
+    )
+    parser.add_argument(
+        "--heuristic",
+        choices=table.HEURISTICS,
+        help="mis: heuristic of the weights for the environment (default: balance)",
+    )
+    parser.add_argument(
+        "--sequence", choices=table.SEQUENCES, help="sequence of random numbers (default: sobol)"
+    )
+    parser.add_argument("--seed", type=numbers.seed, metavar="K", help="random seed")
+    parser.add_argument(
+        "--threads", type=numbers.whole(0, 1024), metavar="T", help="number of threads (0: all)"
+    )
+    parser.add_argument(
+        "--time-limit",
+        type=numbers.real(0, 1e9),
+        metavar="SECONDS",
+        help="time limit, after which the render ends with a whole pass",
+    )
+    parser.add_argument(
+        "--noise",
+        type=numbers.real(1e-6, 1e6),
+        metavar="E",
+        help="relative error at which a block of pixels gets no more samples",
     )
     parser.add_argument(
         "--denoise",
         action="store_true",
-        help="by Open Image Denoise; with --noise, E is the error of the denoised picture",
+        help="denoise with Open Image Denoise; with --noise, E is the error of the denoised image",
     )
-    parser.add_argument("--noisy-image", metavar="FILE", help="keeps the picture without --denoise, too")
-    light_paths = parser.add_argument_group("against fireflies, as in Cycles; each biases the picture")
+    parser.add_argument("--noisy-image", metavar="FILE", help="with --denoise: also write the noisy image")
+    light_paths = parser.add_argument_group("firefly reduction as in Cycles; each option biases the image")
     light_paths.add_argument(
-        "--clamp-direct", type=numbers.real(0, 1e9), metavar="L", help="largest value of a direct sample"
+        "--clamp-direct", type=numbers.real(0, 1e9), metavar="L", help="maximum value of a direct sample"
     )
     light_paths.add_argument(
-        "--clamp-indirect", type=numbers.real(0, 1e9), metavar="L", help="largest value of an indirect sample"
+        "--clamp-indirect", type=numbers.real(0, 1e9), metavar="L", help="maximum value of an indirect sample"
     )
     light_paths.add_argument(
         "--filter-glossy",
         type=numbers.real(0, 1e6),
         metavar="G",
-        help="blurs glossy surfaces behind blurry bounces",
+        help="blur glossy surfaces after blurry bounces",
     )
     light_paths.add_argument(
         "--no-reflective-caustics", dest="reflective_caustics", action="store_const", const=0,
-        help="no glossy reflections behind diffuse bounces",
+        help="leave out glossy reflections after diffuse bounces",
     )  # fmt: skip
     parser.add_argument(
         "--cache",
         metavar="FOLDER",
-        help="keeps fits of worlds (product); ${XDG_CACHE_HOME:-~/.cache}/velour, of an extension its own",
+        help="folder for fits of environments, used by product (default: ${XDG_CACHE_HOME:-~/.cache}/velour,"
+        " or the folder of Blender's extension)",
     )
     parser.add_argument(
-        "--no-cache", dest="cache", action="store_const", const="", help="neither reads nor keeps them"
+        "--no-cache",
+        dest="cache",
+        action="store_const",
+        const="",
+        help="neither read nor write fits of environments",
     )
     render_part.add_arguments(parser)
-    parser.add_argument("--reference", metavar="REF.exr", help="picture to compare with: rmse, relmse")
+    parser.add_argument(
+        "--reference", metavar="REF.exr", help="image to compare with (reports rmse and relmse)"
+    )
     parser.add_argument(
         "--full-model", metavar="FULL",
-        help="serves pictures that the material, a model reduced to other scenes, was not made for",
+        help="full model, used if --material is a scene model that was not fitted for this image",
     )  # fmt: skip
 
 
@@ -107,10 +141,12 @@ def run(args: argparse.Namespace) -> dict:
     output.check_writable(args.output)
     if args.noisy_image:
         if not args.denoise:
-            raise refuse("--noisy-image keeps what --denoise takes the noise out of; give that, too.")
+            raise refuse(
+                "--noisy-image writes the image before denoising, so it needs --denoise; add that option."
+            )
         output.check_writable(args.noisy_image)
     if args.denoise:
-        library.denoiser()  # refused before the render, not after it
+        library.denoiser()  # if it is missing, fails before the render, not after it
     estimate = memory.check(args)
     with contextlib.ExitStack() as handles:
         reference = _read_reference(args)
@@ -125,7 +161,7 @@ def run(args: argparse.Namespace) -> dict:
         loaded = time.perf_counter()
         job = handles.enter_context(render_job(described, **options, **render_part.options_of(left)))
         with stopping(job.start()):
-            output.log.info("Rendering the samples %d:%d.", *left.ranges[0])
+            output.log.info("Rendering samples %d:%d.", *left.ranges[0])
             job.wait(output.progress_of(args))
             report = job.report() | {"denoised": None}
             picture = job.read_pass("Combined")
@@ -151,7 +187,7 @@ def run(args: argparse.Namespace) -> dict:
 
 
 def _denoised(job: Job, args: argparse.Namespace) -> tuple[np.ndarray, dict, float]:
-    """The picture, what is known of its error, and seconds."""
+    """The denoised picture, a report on its error, and the seconds taken."""
     start = time.perf_counter()
     with denoise_job(job, args.threads or 0) as denoising:
         denoising.run()
@@ -162,10 +198,11 @@ def _denoised(job: Job, args: argparse.Namespace) -> tuple[np.ndarray, dict, flo
 def _choose_model(
     described: Scene, material: int, args: argparse.Namespace, handles: contextlib.ExitStack
 ) -> float | None:
-    """The share that a reduced model was not made for; the full model takes its place if need be."""
+    """The share of the scene usage that a scene model was not fitted for; None for other models. Replaces the
+    scene model by the full one if necessary."""
     if library.file_info(args.material).get("scene") is None:
         if args.full_model:
-            raise refuse(f"{args.material} is no model that was fitted for a scene; leave --full-model out.")
+            raise refuse(f"{args.material} is not a scene model; leave out --full-model.")
         return None
     model = handles.enter_context(Model.load(args.material))
     full = handles.enter_context(Model.load(args.full_model)) if args.full_model else None
@@ -180,10 +217,12 @@ def _choose_model(
     instead = (
         "the full model is used"
         if full
-        else "give the full model with --full-model, or fit it for this scene"
+        else "the scene model is used nevertheless; give the full model with --full-model, or fit another"
+        " scene model"
     )
     output.log.warning(
-        "%.2g %% of what the picture shows of the material is outside of what %s was fitted for; %s.",
+        "%.2g %% of the scene usage of this image is outside the range that the scene model %s was fitted"
+        " for; %s.",
         100 * share, args.material, instead,
     )  # fmt: skip
     if full:
@@ -192,20 +231,20 @@ def _choose_model(
 
 
 def _read_reference(args: argparse.Namespace) -> np.ndarray | None:
-    """Linear RGB of --reference; refused before the render, not after it, when the size is another."""
+    """Linear RGB of --reference. Refuses a wrong size before the render, not after it."""
     if not args.reference:
         return None
     pixels = images.read_picture(args.reference)
     for note in images.picture_notes(args.reference):
         output.log.warning("%s", note)
     needed = render_part.size(args)
-    if pixels.shape[1::-1] != needed:  # a part, to be compared with the same part
+    if pixels.shape[1::-1] != needed:  # maybe a part, to compare with the same part
         pixels = images.read_picture(args.reference, as_stored=True)
     height, width, channels = pixels.shape
     if (width, height) != needed or channels < 3:
         raise refuse(
             f"The reference {args.reference} is {width}x{height} with {channels} channels; "
-            f"{needed[0]}x{needed[1]} with at least 3 are needed."
+            f"an image of {needed[0]}x{needed[1]} with at least 3 channels is needed."
         )
     return pixels[..., :3].copy()
 
@@ -232,23 +271,30 @@ def _tell(args: argparse.Namespace, report: dict, info: dict) -> None:
     for warning in info["warnings"]:
         output.log.warning("%s", warning)
     if report["nan_samples"]:
-        output.log.warning("%d samples were not finite and were left out.", report["nan_samples"])
+        output.log.warning("%d samples were not finite numbers and were left out.", report["nan_samples"])
     if report["denoised"] and report["denoised"]["relmse_bound"] is not None:
         bound = report["denoised"]["relmse_bound"]
-        output.log.info("The relmse of the denoised picture is at most %.3g.", bound)
+        output.log.info("The relmse of the denoised image is at most %.3g.", bound)
         if args.noise and not render_part.meets_noise(args.noise, report):
             output.log.warning(
-                "That is above the noise target of %g, a relmse of %.3g.", args.noise, args.noise**2
+                "The denoised image misses the noise target of %g (a relmse of %.3g). Raise --spp or"
+                " --time-limit.",
+                args.noise,
+                args.noise**2,
             )
     if report["blocks_unfinished"]:
         output.log.warning(
-            "%d blocks of pixels are above the noise target of %g; the worst has %.3g.",
+            "%d blocks of pixels miss the noise target of %g; the worst error is %.3g. Raise --spp or"
+            " --time-limit.",
             report["blocks_unfinished"], args.noise, report["block_noise"],
         )  # fmt: skip
     if report["biased_by"]:
         output.log.info(
-            "The picture is biased by %s; its noise does not tell of that.", ", ".join(report["biased_by"])
+            "The image is biased by %s, which its noise does not include.", ", ".join(report["biased_by"])
         )
     if report["sky"]:
-        output.log.info("%(lobes)d lobes for the world, relative L2 %(relative_l2).3f.", report["sky"])
-    output.log.info("%d passes, %d light directions a pixel.", report["passes"], report["spp"])
+        output.log.info(
+            "The environment was fitted with %(lobes)d lobes, relative L2 error %(relative_l2).3f.",
+            report["sky"],
+        )
+    output.log.info("%d passes, %d light directions per pixel.", report["passes"], report["spp"])

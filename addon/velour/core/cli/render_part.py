@@ -1,4 +1,4 @@
-"""Which part of a picture a render makes, and what its file says of that."""
+"""The part of a picture that a render makes, and its description in the file."""
 
 from __future__ import annotations
 
@@ -15,11 +15,11 @@ from ..files import sha256
 from ..picture_parts import Part, Range
 from . import numbers
 
-_FILES = ("mesh", "proposal", "world", "full_model")  # told apart by what is in them
+_FILES = ("mesh", "proposal", "world", "full_model")  # identified by their content
 _NUMBERS = ("spp", "bounces", "share", "seed", "noise")
 _NUMBERS += ("clamp_direct", "clamp_indirect", "filter_glossy", "reflective_caustics", "denoise")
 _NAMES = {"strategy": table.STRATEGIES, "heuristic": table.HEURISTICS, "sequence": table.SEQUENCES}
-# What says nothing of the whole picture. All other options do, also those that are still to come.
+# Options that do not affect the whole picture. All others do, including those added later.
 _ELSEWHERE = {
     "output", "noisy_image", "samples", "crop", "threads", "time_limit", "memory", "cache", "reference",
     "json", "json_file", "quiet", "log_level", "simd", "run",
@@ -27,27 +27,31 @@ _ELSEWHERE = {
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    group = parser.add_argument_group("parts of a picture, for velour merge")
+    group = parser.add_argument_group("parts of an image, for velour merge")
     group.add_argument(
-        "--samples", type=numbers.span, metavar="A:B", help="of the --spp light directions of a pixel these"
+        "--samples", type=numbers.span, metavar="A:B", help="range of the --spp light directions per pixel"
     )
     group.add_argument(
-        "--crop", type=numbers.pixels, metavar="X0:X1,Y0:Y1", help="these pixels, from the upper left corner"
+        "--crop",
+        type=numbers.pixels,
+        metavar="X0:X1,Y0:Y1",
+        help="range of pixels, counted from the upper left corner",
     )
 
 
 def check(args: argparse.Namespace, options: dict) -> None:
-    """Refuses what can be seen to go wrong before anything is read; `options` of render_job()."""
+    """Refuses wrong options before anything is read. `options`: those of render_job()."""
     if not (args.samples or args.crop):
         return
     if Path(args.output).suffix != ".exr":
         raise refuse(
-            f"{args.output}: parts of pictures are written as .exr, which says what they are parts of."
+            f"The output {args.output} is part of an image, which only an .exr file can record; change the"
+            " extension to .exr."
         )
     if args.denoise:
-        raise refuse("--denoise takes a whole picture; leave --samples and --crop out, or --denoise.")
+        raise refuse("--denoise needs the whole image; leave out --samples and --crop, or --denoise.")
     if args.noise is not None:
-        raise refuse("--noise looks at a whole picture; leave --samples and --crop out, or --noise.")
+        raise refuse("--noise needs the whole image; leave out --samples and --crop, or --noise.")
     if args.crop:
         _check_crop(args.crop, args.size)
     if args.samples:
@@ -58,27 +62,28 @@ def _check_crop(crop: tuple[int, int, int, int], picture: tuple[int, int]) -> No
     x0, y0, x1, y1 = crop
     if x1 > picture[0] or y1 > picture[1]:
         raise refuse(
-            f"--crop {x0}:{x1},{y0}:{y1} is not within the picture's {picture[0]}x{picture[1]} pixels."
+            f"--crop {x0}:{x1},{y0}:{y1} exceeds the image of {picture[0]}x{picture[1]} pixels; change it,"
+            " or --size."
         )
 
 
 def _check_samples(samples: Range, raw: structs.RenderOptions) -> None:
     text = f"--samples {samples[0]}:{samples[1]}"
     if samples[1] > raw.spp:
-        raise refuse(f"{text} goes beyond --spp {raw.spp}, the samples of the whole picture: give that, too.")
+        raise refuse(f"{text} exceeds --spp {raw.spp}; set --spp to the samples of the whole image.")
     split = min(raw.split, raw.spp)
     if any(end % split and end != raw.spp for end in samples):
-        raise refuse(f"The ends of {text} must be multiples of --split {split}, which share a camera ray.")
+        raise refuse(f"The ends of {text} must be multiples of --split {split}, the samples per camera ray.")
 
 
 def size(args: argparse.Namespace) -> tuple[int, int]:
-    """Width and height of what is rendered."""
+    """Width and height of the rendered part."""
     x0, y0, x1, y1 = args.crop or (0, 0, *args.size)
     return x1 - x0, y1 - y0
 
 
 def asked(args: argparse.Namespace, options: dict) -> Part:
-    """The part that is to be rendered with `options` of render_job()."""
+    """The part to render with `options` of render_job()."""
     made = _made(args, options)
     width, height = size(args)
     left, _, _, bottom = args.crop or (0, 0, *args.size)
@@ -88,8 +93,8 @@ def asked(args: argparse.Namespace, options: dict) -> Part:
 
 
 def options_of(part: Part) -> dict:
-    """As render_job() takes them."""
-    if part.made["noise"] or part.made["denoise"]:  # which go with no part
+    """The part as options of render_job()."""
+    if part.made["noise"] or part.made["denoise"]:  # these require the whole picture
         return {}
     (begin, end), (rows, columns) = part.ranges[0], part.window
     return {
@@ -103,8 +108,8 @@ def options_of(part: Part) -> dict:
 
 
 def rendered(part: Part, report: dict) -> tuple[Range, ...]:
-    """The samples that each pixel has, for merge; none with a noise target, where pixels have their own
-    numbers of them, and none of denoised pictures."""
+    """The samples that each pixel has, for merging. Empty with a noise target, where the numbers of samples
+    differ between pixels, and for denoised pictures."""
     if part.made["noise"] or part.made["denoise"]:
         return ()
     begin = part.ranges[0][0]
@@ -112,7 +117,7 @@ def rendered(part: Part, report: dict) -> tuple[Range, ...]:
 
 
 def is_complete(asked: Part, whole: Part, report: dict) -> bool:
-    """Whether `whole` has all that was asked for; with a noise target or --denoise `report` tells."""
+    """Whether `whole` has all requested samples; with a noise target or --denoise, `report` decides."""
     if asked.made["noise"] and meets_noise(asked.made["noise"], report):
         return True
     if asked.made["noise"] or asked.made["denoise"]:
@@ -121,7 +126,7 @@ def is_complete(asked: Part, whole: Part, report: dict) -> bool:
 
 
 def meets_noise(noise: float, report: dict) -> bool:
-    """Whether the picture's error is at most the target: of each block, or denoised of the whole."""
+    """Whether the error is at most the target: that of each block, or of the whole denoised picture."""
     if not report["denoised"]:
         return report["blocks_unfinished"] == 0
     bound = report["denoised"]["relmse_bound"]
@@ -129,7 +134,7 @@ def meets_noise(noise: float, report: dict) -> bool:
 
 
 def _made(args: argparse.Namespace, options: dict) -> dict:
-    """All that the whole picture depends on, by the options' names; files by their contents."""
+    """Everything that the whole picture depends on, by option name; files by the hash of their content."""
     raw = render_options(options)
     made = {name: value for name, value in vars(args).items() if name not in _ELSEWHERE}
     made |= {name: sha256(path) for name in _FILES if (path := getattr(args, name))}
@@ -137,10 +142,10 @@ def _made(args: argparse.Namespace, options: dict) -> dict:
     made |= {name: getattr(raw, name) for name in _NUMBERS}
     made |= {name: names[getattr(raw, name)] for name, names in _NAMES.items()}
     made |= {"split": min(raw.split, raw.spp), "version": version_text()}
-    return json.loads(json.dumps(made))  # as it comes back from a file
+    return json.loads(json.dumps(made))  # as it is read back from a file
 
 
 def _material_hash(path: str) -> str:
-    """A BTF may be many files, and knows the hash of all."""
+    """SHA-256 of the material; a BTF may be many files and has one hash of them all."""
     info = library.file_info(path)
     return info["sha256"] if info["kind"] == "btf" else sha256(path)

@@ -1,4 +1,4 @@
-"""The scene that verbs look at: a mesh with one material under a world, and a camera."""
+"""The scene of a verb: a mesh with one material under a world, and a camera."""
 
 from __future__ import annotations
 
@@ -10,49 +10,65 @@ from ...native import Measurement, Model, Scene, library
 from ...native.errors import refuse
 from . import btf_options, numbers, texture_options
 
-# A y-up model stands upright in the z-up world: (x, y, z) -> (x, -z, y), as Blender's OBJ import does it.
+# A y-up mesh stands upright in the z-up world: (x, y, z) -> (x, -z, y), as in Blender's OBJ import.
 _UP = {"y": ((1, 0, 0, 0), (0, 0, -1, 0), (0, 1, 0, 0)), "z": ((1, 0, 0, 0), (0, 1, 0, 0), (0, 0, 1, 0))}
 
 _OWN_SAMPLES = {"model": "a model", "btf": "a BTF"}
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("--mesh", metavar="M", required=True, help="Wavefront OBJ")
+    parser.add_argument("--mesh", metavar="M", required=True, help="mesh file (.obj or .ply)")
     parser.add_argument(
-        "--up", choices=tuple(_UP), default="y", help="the axis of the mesh that points up (y)"
+        "--up", choices=tuple(_UP), default="y", help="axis of the mesh that points up (default: y)"
     )
     parser.add_argument(
-        "--material", metavar="MATERIAL", required=True, help="a model, or a measurement or BTF itself"
+        "--material",
+        metavar="MATERIAL",
+        required=True,
+        help="model, or measurement or BTF to render directly",
     )
     parser.add_argument(
-        "--proposal", metavar="MODEL", help="with a measurement: the model that draws its samples"
+        "--proposal",
+        metavar="MODEL",
+        help="with a measurement: model that directions are sampled from (default: a coarse fit)",
     )
     parser.add_argument(
-        "--neighbors", type=numbers.whole(0, 16), default=0, metavar="K", help="views mixed; 0: auto"
+        "--neighbors",
+        type=numbers.whole(0, 16),
+        default=0,
+        metavar="K",
+        help="views mixed by a per-view model (0: automatic)",
     )
-    parser.add_argument("--world", metavar="HDR", required=True, help="equirectangular picture")
-    parser.add_argument("--layer", default="", metavar="NAME", help="layer or channel of an OpenEXR world")
+    parser.add_argument("--world", metavar="HDR", required=True, help="equirectangular environment image")
+    parser.add_argument(
+        "--layer", default="", metavar="NAME", help="layer or channel of an OpenEXR environment"
+    )
     parser.add_argument(
         "--world-rotation", type=numbers.real(), default=0.0, metavar="DEG",
-        help="turns the world about +z, counter-clockwise seen from above",
+        help="rotation of the environment about +z, counterclockwise seen from above (default: 0)",
     )  # fmt: skip
     parser.add_argument(
         "--camera", type=numbers.camera, metavar="EYE,TARGET,FOV",
-        help="x,y,z,x,y,z,degrees in the z-up world; default: frames the mesh",
+        help="x,y,z,x,y,z,degrees in z-up world space (default: frames the mesh)",
     )  # fmt: skip
     btf_options.add_arguments(parser, "--btf-layer")
     parser.add_argument(
         "--memory", type=numbers.size_in_bytes, metavar="SIZE",
-        help="bytes, or K, M, G, T, that a render may take (what the system gives), and a BTF itself (4G)",
+        help="memory limit in bytes, or with K, M, G, T: of a render (default: the system's limit), and of a"
+        " BTF that is rendered directly (default: 4G)",
     )  # fmt: skip
     parser.add_argument(
-        "--size", type=numbers.picture_size, default=(640, 480), metavar="WxH", help="640x480"
+        "--size",
+        type=numbers.picture_size,
+        default=(640, 480),
+        metavar="WxH",
+        help="pixels (default: 640x480)",
     )
     texture_options.add_arguments(parser)
 
 
 def fill(scene: Scene, args: argparse.Namespace, handles: contextlib.ExitStack) -> int:
-    """Fills and commits `scene`, which keeps what `handles` holds; the number of the material."""
+    """Fills and commits `scene`, whose resources `handles` owns. Returns the number of the material."""
     mesh = scene.load_mesh(args.mesh)
     material = _add_material(scene, args, handles)
     scene.add_instance(mesh, _UP[args.up], [material], texture_options.placements(args))
@@ -72,10 +88,13 @@ def fill(scene: Scene, args: argparse.Namespace, handles: contextlib.ExitStack) 
 def _add_material(scene: Scene, args: argparse.Namespace, handles: contextlib.ExitStack) -> int:
     kind = library.file_info(args.material)["kind"]
     if kind != "model" and (given := texture_options.given_shell(args)):
-        raise refuse(f"{args.material} is no model and has no shell; leave {' and '.join(given)} out.")
+        raise refuse(
+            f"{args.material} is not a model, so it has no silhouette (VOTF); leave out"
+            f" {' and '.join(given)}."
+        )
     if kind in _OWN_SAMPLES and args.proposal:
         what = _OWN_SAMPLES[kind]
-        raise refuse(f"{args.material} is {what} and draws its own samples; leave --proposal out.")
+        raise refuse(f"{args.material} is {what}, which is sampled without a proposal; leave out --proposal.")
     if kind == "btf":
         btf = handles.enter_context(btf_options.load(args.material, args))
         return scene.add_btf_material(btf, args.memory or 0)

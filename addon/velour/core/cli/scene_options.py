@@ -1,4 +1,4 @@
-"""What a model is reduced to: options of every verb that fits one for a scene."""
+"""Options of every verb that fits a scene model."""
 
 from __future__ import annotations
 
@@ -10,8 +10,8 @@ from ...native.errors import refuse
 
 
 def load(args: argparse.Namespace, opened: contextlib.ExitStack) -> dict:
-    """--for-scene and --full-model as the jobs take them; `opened` closes them."""
+    """--for-scene and --full-model as options of the jobs; `opened` closes their files."""
     if args.full_model and not args.for_scene:
-        raise refuse("--full-model goes with --for-scene: it is what a fit for a scene starts from.")
+        raise refuse("--full-model is only used to fit a scene model; add --for-scene, or leave it out.")
     given = {"for_scene": (Observation, args.for_scene), "full_model": (Model, args.full_model)}
     return {name: opened.enter_context(kind.load(path)) for name, (kind, path) in given.items() if path}

@@ -12,23 +12,43 @@ _SHAPE = ("size", "count", "resolution", "thickness", "gap", "irregularity", "se
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("kind", metavar="KIND", help="weave, twill, net, chainmail, gravel, corduroy")
-    parser.add_argument("-o", "--output", metavar="MESH.obj", required=True, help="an MTL goes beside it")
+    parser.add_argument("kind", metavar="KIND", help="weave, twill, net, chainmail, gravel or corduroy")
+    parser.add_argument(
+        "-o",
+        "--output",
+        metavar="MESH.obj",
+        required=True,
+        help="mesh file to write, with an .mtl file beside it",
+    )
     add_shape_arguments(parser)
 
 
 def add_shape_arguments(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("--size", type=numbers.real(0), metavar="METRES", help="side of the cell")
-    parser.add_argument("--count", type=numbers.whole(1), metavar="N", help="pitches along it")
-    parser.add_argument("--resolution", type=numbers.whole(1), metavar="N", help="points around a yarn")
-    parser.add_argument("--thickness", type=numbers.real(0), metavar="T", help="in pitches")
-    parser.add_argument("--gap", type=numbers.real(0), metavar="G", help="in pitches")
-    parser.add_argument("--irregularity", type=numbers.real(0, 1), metavar="I", help="0: as drawn by rule")
-    parser.add_argument("--seed", type=numbers.seed, metavar="K")
+    parser.add_argument("--size", type=numbers.real(0), metavar="METERS", help="side of the tile")
+    parser.add_argument(
+        "--count", type=numbers.whole(1), metavar="N", help="number of pitches along each side"
+    )
+    parser.add_argument(
+        "--resolution",
+        type=numbers.whole(1),
+        metavar="N",
+        help="number of points around a yarn, wire, pebble or rib",
+    )
+    parser.add_argument("--thickness", type=numbers.real(0), metavar="T", help="thickness in pitches")
+    parser.add_argument(
+        "--gap", type=numbers.real(0), metavar="G", help="gap between yarns, cords or ribs in pitches"
+    )
+    parser.add_argument(
+        "--irregularity",
+        type=numbers.real(0, 1),
+        metavar="I",
+        help="irregularity of the shape, from 0 (regular) to 1",
+    )
+    parser.add_argument("--seed", type=numbers.seed, metavar="K", help="random seed")
 
 
 def shape_of(args: argparse.Namespace) -> dict:
-    """What is said of the shape: keywords of Tile.create."""
+    """The shape options given, as keywords of Tile.create."""
     return {name: getattr(args, name) for name in _SHAPE if getattr(args, name) is not None}
 
 

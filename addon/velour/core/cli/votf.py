@@ -17,29 +17,38 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "subject",
         metavar="TILE|MESH|BTF",
-        help=subject.HELP + "; or a captured BTF, or pictures of one with alpha",
+        help=subject.HELP + ", or a captured BTF, or BTF images with alpha",
     )
     parser.add_argument(
-        "--material", metavar="MODEL", required=True, help="what the structure is made of; of a BRDF or a BTF"
+        "--material", metavar="MODEL", required=True, help="model of the structure's material (BRDF or BTF)"
     )
-    parser.add_argument("-o", "--output", metavar="MODEL", required=True, help="the model file to write")
     parser.add_argument(
-        "--texels", type=numbers.whole(4, 4096), metavar="N", help="along x (128; of a BTF its own)"
+        "-o", "--output", metavar="MODEL", required=True, help="model file to write (.velour)"
+    )
+    parser.add_argument(
+        "--texels",
+        type=numbers.whole(4, 4096),
+        metavar="N",
+        help="resolution along x (default: 128; for a BTF its own)",
     )
     parser.add_argument(
         "--surface",
         type=numbers.real(),
         metavar="Z",
-        help="height in the tile that lies on the surface (0), its units; of a BTF over the lowest point",
+        help="height in the tile that is placed on the surface, in its units (default: 0); for a BTF, height"
+        " above its lowest point",
     )
     parser.add_argument(
         "--check-views",
         type=numbers.whole(0, 65536),
         metavar="N",
-        help="random views that the result is compared with rays under (64); of a BTF its own",
+        help="number of views in which the result is compared with traced rays, or with a BTF's own views"
+        " (default: 64; 0: none)",
     )
-    parser.add_argument("--seed", type=numbers.seed, metavar="K")
-    parser.add_argument("--threads", type=numbers.whole(0, 1024), metavar="T", help="0: all")
+    parser.add_argument("--seed", type=numbers.seed, metavar="K", help="random seed")
+    parser.add_argument(
+        "--threads", type=numbers.whole(0, 1024), metavar="T", help="number of threads (0: all)"
+    )
     subject.add_place_arguments(parser.add_argument_group("meshes"))
 
 
@@ -62,7 +71,10 @@ def _job(args: argparse.Namespace, model: Model, handles: contextlib.ExitStack):
     if _is_data(args.subject):
         for name in _OF_GEOMETRY:
             if getattr(args, name) is not None:
-                raise refuse(f"--{name.replace('_', '-')} is for tiles and meshes; {args.subject} is a BTF.")
+                raise refuse(
+                    f"--{name.replace('_', '-')} applies to tiles and meshes only; leave it out for the BTF"
+                    f" {args.subject}."
+                )
         return votf_data_job(handles.enter_context(Btf.load(args.subject)), model, **given)
     scene = handles.enter_context(Scene())
     place = subject.add_to(scene, args)
@@ -71,5 +83,5 @@ def _job(args: argparse.Namespace, model: Model, handles: contextlib.ExitStack):
 
 
 def _is_data(name: str) -> bool:
-    """A file or folder that is no mesh."""
+    """Whether `name` is a file or folder but not a mesh."""
     return Path(name).exists() and Path(name).suffix.lower() not in subject.MESHES

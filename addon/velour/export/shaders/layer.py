@@ -87,10 +87,10 @@ def unlike_reflection(layers):
     """Names of the parts of the layers that a reflectance cannot represent."""
     kinds = []
     if any(layer.kind == "emission" or layer.glow for layer in layers):
-        kinds.append("what glows")
+        kinds.append("emission")
     clear = [layer for layer in layers if layer.kind == "transparent"]
     if any(layer.pictures or min(layer.values["base_color"]) < 1.0 for layer in clear):
-        kinds.append("coloured transparency")
+        kinds.append("colored transparency")
     return kinds
 
 

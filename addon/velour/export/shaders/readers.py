@@ -35,7 +35,9 @@ _COAT_LOBE = "whole" if bpy.app.version >= (4, 5) else "single"
 # No property reveals it: rough diffuse conserves energy since Principled has a diffuse roughness.
 _INTERREFLECTION = bpy.app.version >= (4, 3)
 # No property reveals it: a random walk between facets before 4.0, a factor on single scattering since.
-_RANDOM_WALK = "its distribution 'Multiscatter GGX' is shown as Blender 4's; it differs by a few per cent."
+_RANDOM_WALK = (
+    "its distribution 'Multiscatter GGX' is rendered as in Blender 4, with differences of a few percent."
+)
 _LINK_ONLY = ("Clearcoat Normal", "Tangent")
 
 
@@ -49,7 +51,7 @@ def _read_principled(plug, reader):
     values |= _layered(plug, reader) if _is_layered(plug) else _disney(plug, reader, values, pictures)
     glow = _glow(plug.input("Emission Color", "Emission"), plug.input("Emission Strength"), reader)
     if glow and "coat" in values:
-        reader.note(plug, "its coat does not dim what it emits.")
+        reader.note(plug, "its coat does not dim its emission.")
     _note_ignored(plug, reader)
     return [Layer("principled", values, pictures, relief=read_relief(plug, reader), glow=glow)]
 
@@ -67,9 +69,7 @@ def _disney(plug, reader, values, pictures):
     if share == 0.0 or gray <= 0.0:
         return {"formula": "disney"}
     if "base_color" in pictures:
-        reader.note(
-            plug, "'Specular Tint' of a base colour that is no single colour is not supported; ignored."
-        )
+        reader.note(plug, "'Specular Tint' is not supported with a varying base color; ignored.")
         return {"formula": "disney"}
     tint = tuple(1.0 - share + share * c / gray for c in values["base_color"])
     return {"formula": "disney", "specular_tint": tint}
@@ -100,7 +100,9 @@ def _lobe(plug, reader):
             reader.note(plug, _RANDOM_WALK)
         return "whole"
     if distribution not in ("GGX", "SHARP"):
-        reader.note(plug, f"its distribution '{_label(plug.node, 'distribution')}' is shown as GGX.")
+        reader.note(
+            plug, f"its distribution '{_label(plug.node, 'distribution')}' is not supported; rendered as GGX."
+        )
     return "separable" if _SEPARABLE_SHADOWS else "single"
 
 
@@ -112,7 +114,7 @@ def _specular(plug, reader):
         return level
     index = max(reader.value(plug.input("IOR")), 1e-3)
     if index < 1.0:
-        reader.note(plug, f"'IOR' below 1 is not supported; it reflects as one of {1 / index:.3g}.")
+        reader.note(plug, f"'IOR' below 1 is not supported; rendered with IOR {1 / index:.3g}.")
     return level * ((index - 1.0) / (index + 1.0)) ** 2 / _USUAL_F0
 
 

@@ -26,12 +26,12 @@ def read_relief(plug, reader):
         reader.note_link(plug.input("Normal"), f" ('{fed.node.name}' is not a Normal Map)")
         return None
     if fed.node.space != "TANGENT":
-        reader.note(fed, "only normal maps of tangent space are supported; ignored.")
+        reader.note(fed, "only normal maps in tangent space are supported; ignored.")
         return None
     _, picture = reader.number(fed.input("Color"))
     strength = max(reader.value(fed.input("Strength")), 0.0)
     if isinstance(picture, CornerColors):
-        reader.note_link(fed.input("Color"), " (it is no picture)")
+        reader.note_link(fed.input("Color"), " (it is not an image)")
         return None
     if picture is None or strength == 0.0:
         return None

@@ -28,12 +28,12 @@ def surface_layers(material, notes):
     reader = Reader(owner, notes)
     layers = simplified(_read(plug, reader))
     if reader.steps_left <= 0 or len(layers) > _MOST_LAYERS:
-        notes.add(f"{owner}: it is mixed of more than {_MOST_LAYERS} shaders; rendered grey.")
+        notes.add(f"{owner}: mixing more than {_MOST_LAYERS} shaders is not supported; rendered gray.")
         return [grey()]
     if not _shadows_are_clear(material) and any(
         part.kind == "transparent" for each in layers for part in split(each)
     ):
-        notes.add(f"{owner}: opaque shadows of what is transparent are not supported; light passes.")
+        notes.add(f"{owner}: opaque shadows of transparent surfaces are not supported; light passes through.")
     return layers
 
 
@@ -56,7 +56,7 @@ def _read(plug, reader):
     read = READERS.get(node.bl_idname)
     if read is None:
         reader.notes.add(
-            f"{reader.owner}: node '{node.name}' ({node.bl_label}) is not supported; rendered grey."
+            f"{reader.owner}: node '{node.name}' ({node.bl_label}) is not supported; rendered gray."
         )
         return [grey()]
     return read(plug, reader)

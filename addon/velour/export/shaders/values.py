@@ -45,7 +45,10 @@ class Reader:
         self.notes.add(f"{self.owner}: node '{plug.node.name}': {sentence}")
 
     def note_link(self, plug, reason=""):
-        self.note(plug, f"the link to '{plug.socket.name}' is ignored; its own value is used{reason}.")
+        self.note(
+            plug,
+            f"the link to '{plug.socket.name}' is not supported{reason}; the value of the input is used.",
+        )
 
 
 def own_value(socket, asked=None):

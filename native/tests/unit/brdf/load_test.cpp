@@ -79,11 +79,11 @@ TEST(Load, CornellBehindCommentsOfAnyLength) {
 TEST(Load, NamesOtherFormatsAndWhatToDo) {
   const std::pair<std::string, const char*> others[] = {
       {"\x89HDF\r\n\x1a\n....", "AxF"},       {"7z\xbc\xaf\x27\x1c....", ".sbsar"},
-      {"PK\x03\x04....", "VRscans"},          {"<?xml version='1.0'?>\n<materialx version='1.38'>", "MaterialX"},
-      {"# ASTM E1392\nVARS theta_i", "ASTM"}, {"nothing that is known", "no measurement"}};
+      {"PK\x03\x04....", ".vrscan"},          {"<?xml version='1.0'?>\n<materialx version='1.38'>", "MaterialX"},
+      {"# ASTM E1392\nVARS theta_i", "ASTM"}, {"nothing that is known", "not a measurement"}};
   const std::string path = test::scratch_folder() / "a.bin";
   for (const auto& [head, words] : others) {
-    if (std::string(words) != "no measurement") test::record_input(words, "any", "refused by name, with what to do");
+    if (std::string(words) != "not a measurement") test::record_input(words, "any", "refused by name, with what to do");
     write_file(path, std::vector<uint8_t>(head.begin(), head.end()));
     EXPECT_NE(test::refusal([&] { load_measurement(path); }).find(words), std::string::npos)
         << test::refusal([&] { load_measurement(path); });

@@ -171,7 +171,7 @@ TEST(Rgl, RefusesLies) {
   };
   EXPECT_NE(with("theta_i", {4}, {0, 2, 1, 1.5f}).find("theta_i has"), std::string::npos);
   EXPECT_NE(with("theta_i", {4}, {0, 0.5f, NAN, 1.5f}).find("theta_i has nan"), std::string::npos);
-  EXPECT_NE(with("theta_i", {3}, {0, 0.5f, 1.0f}).find("where theta_i has 3"), std::string::npos);
+  EXPECT_NE(with("theta_i", {3}, {0, 0.5f, 1.0f}).find("but theta_i has 3"), std::string::npos);
   EXPECT_NE(with("ndf", {2, 2}, {1, 1, -1, 1}).find("ndf has -1"), std::string::npos);
   EXPECT_NE(with("sigma", {1, 4}, {1, 1, 1, 1}).find("sigma has an extent of 1"), std::string::npos);
   EXPECT_NE(with("vndf", {1, 4, 2, 2}, std::vector<float>(16, INFINITY)).find("vndf has inf"), std::string::npos);

@@ -310,24 +310,24 @@ TEST(WindowBsdf, WhatCannotBeReadIsNamed) {
     return text;
   };
   const std::pair<std::string, const char*> files[] = {
-      {tree_document("{1", 4), "lacks a '}'"},
-      {tree_document("{1}}", 4), "goes on after the tree's last brace at '}'"},
-      {tree_document("{1 2}", 4), "a cell of 2 values, where 1, 16, 256"},
+      {tree_document("{1", 4), "lacks '}'"},
+      {tree_document("{1}}", 4), "continues after the last brace of the tree at '}'"},
+      {tree_document("{1 2}", 4), "a cell of 2 values instead of 1, 16, 256"},
       {tree_document("{}", 3), "a cell of 0 values"},
-      {tree_document("{{1}{2}}", 3), "lacks a '{' at '}'"},
-      {tree_document("{1 x}", 3), "lacks a '}' at 'x}'"},
-      {tree_document("", 3), "lacks a '{' at its end"},
+      {tree_document("{{1}{2}}", 3), "lacks '{' at '}'"},
+      {tree_document("{1 x}", 3), "lacks '}' at 'x}'"},
+      {tree_document("", 3), "lacks '{' at the end of the data"},
       {tree_document(std::string(1000, '{'), 3), "deeper than 16 levels"},
       {tree_document("{1}", 3, "Own"), "AngleBasis 'Own'"},
-      {document("", "Spirals"), "IncidentDataStructure 'Spirals'"},
+      {document("", "Spirals"), "IncidentDataStructure is 'Spirals'"},
       {without("Reflection Front", "Transmission Front"), "no reflection"},
-      {without("<ColumnAngleBasis>Own", "<ColumnAngleBasis>Other"), "'Other' is not defined"},
-      {without("<ColumnAngleBasis>Own", "<ColumnAngleBasis>LBNL/Klems Half"), "its angle bases make 3577"},
-      {without("<nPhis>8", "<nPhis>4294967295"), "4096 patches at most"},
-      {without("<UpperTheta>20", "<UpperTheta>2"), "rings follow each other"},
+      {without("<ColumnAngleBasis>Own", "<ColumnAngleBasis>Other"), "'Other' is neither defined"},
+      {without("<ColumnAngleBasis>Own", "<ColumnAngleBasis>LBNL/Klems Half"), "its angle bases require 3577"},
+      {without("<nPhis>8", "<nPhis>4294967295"), "at most 4096 patches"},
+      {without("<UpperTheta>20", "<UpperTheta>2"), "rings must follow each other"},
       {without("<UpperTheta>90", "<UpperTheta>88"), "ends at 88"},
-      {without("</ScatteringData>", "x</ScatteringData>"), "has 'x' where a number is due"},
-      {without("</ScatteringData>", ""), "no whole XML"},
+      {without("</ScatteringData>", "x</ScatteringData>"), "has 'x' where a number is expected"},
+      {without("</ScatteringData>", ""), "not a valid XML"},
       {without("Optical>", "Optics>"), "no"}};
   for (const auto& [text, words] : files) {
     const std::string said = test::refusal([&, &file = text] { load_measurement(written(file)); });

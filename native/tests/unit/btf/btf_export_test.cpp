@@ -83,7 +83,7 @@ TEST(BtfExport, PicturesOutsideTheFolderOfTheirIndexAreToldOf) {
   moved.close();
   const auto read = load_btf(elsewhere);
   ASSERT_EQ(read->warnings().size(), 1u);
-  EXPECT_NE(read->warnings()[0].find("20 of 20 pictures lie outside"), std::string::npos) << read->warnings()[0];
+  EXPECT_NE(read->warnings()[0].find("20 of 20 images are outside"), std::string::npos) << read->warnings()[0];
   EXPECT_EQ(read->details().back().second, read->warnings()[0]);
   test::record_input("CSV index of a BTF", "pictures outside its folder", "read, with a warning");
 }

@@ -124,10 +124,11 @@ TEST(BtfFolder, AKilledCaptureGoesOnWithItsWholeViews) {
   {
     const BtfFolderWriter writer(path, btf.index, false);
     btf.write_view(writer, 1);
-    EXPECT_EQ(message_of([&] { writer.finish(); }), path + ": view 0 is missing or damaged; write it first.");
+    EXPECT_EQ(message_of([&] { writer.finish(); }),
+              path + ": view 0 is missing or damaged; write it before the index.");
   }
-  EXPECT_NE(message_of([&] { load_btf_folder(path); }).find("is not complete"), std::string::npos);
-  EXPECT_NE(message_of([&] { BtfFolderWriter(path, btf.index, false); }).find("resume it"), std::string::npos);
+  EXPECT_NE(message_of([&] { load_btf_folder(path); }).find("is incomplete"), std::string::npos);
+  EXPECT_NE(message_of([&] { BtfFolderWriter(path, btf.index, false); }).find("resume the capture"), std::string::npos);
   const BtfFolderWriter writer(path, btf.index, true);
   EXPECT_FALSE(writer.has(0));
   EXPECT_TRUE(writer.has(1));
@@ -151,22 +152,23 @@ TEST(BtfFolder, AnotherBtfIsNotResumed) {
   other.options = R"({"seed": 3, "samples": 16})";  // the same in another order
   EXPECT_EQ(refusal(other), "");
   other.options = R"({"samples": 16, "seed": 4})";
-  EXPECT_NE(refusal(other).find("'options' differs"), std::string::npos);
+  EXPECT_NE(refusal(other).find("different 'options'"), std::string::npos);
   other = index;
   other.grid.tile_metres = std::nullopt;
-  EXPECT_NE(refusal(other).find("'tile_metres' differs"), std::string::npos);
+  EXPECT_NE(refusal(other).find("different 'tile_metres'"), std::string::npos);
   other = index;
   other.layout = PairLayout(index.layout.views(), index.layout.lights());
-  EXPECT_NE(refusal(other).find("'pairs' differs"), std::string::npos);
+  EXPECT_NE(refusal(other).find("different 'pairs'"), std::string::npos);
   other = index;
   other.shell->thickness = std::nextafter(other.shell->thickness, 1.0);
-  EXPECT_NE(refusal(other).find("'shell' differs"), std::string::npos);
+  EXPECT_NE(refusal(other).find("different 'shell'"), std::string::npos);
 }
 
 TEST(BtfFolder, AFolderOfOtherFilesIsLeftAlone) {
   const auto folder = test::scratch_folder();
   std::ofstream(folder / "thesis.tex") << "text";
-  EXPECT_NE(message_of([&] { BtfFolderWriter(folder, test::small_index(), true); }).find("no BTF"), std::string::npos);
+  EXPECT_NE(message_of([&] { BtfFolderWriter(folder, test::small_index(), true); }).find("do not belong to a BTF"),
+            std::string::npos);
   EXPECT_FALSE(is_btf_folder(folder));
 }
 
@@ -193,7 +195,7 @@ TEST(BtfFolder, AMissingOrForeignViewIsNamed) {
   const std::string view = view_path(folder / "a", 1);
   std::filesystem::copy_file(view, folder / "kept.exr");
   std::filesystem::copy_file(view_path(folder / "a", 0), view, std::filesystem::copy_options::overwrite_existing);
-  EXPECT_NE(message_of([&] { load_btf_folder(folder / "a"); }).find("view_0001.exr: its parts are not"),
+  EXPECT_NE(message_of([&] { load_btf_folder(folder / "a"); }).find("view_0001.exr: its parts do not match"),
             std::string::npos);
   std::filesystem::remove(view);
   EXPECT_NE(message_of([&] { load_btf_folder(folder / "a"); }).find("view_0001.exr: cannot read"), std::string::npos);

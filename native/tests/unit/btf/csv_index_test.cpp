@@ -59,20 +59,20 @@ TEST_F(CsvIndexTest, RadiansAreAskedFor) {
 TEST_F(CsvIndexTest, WhatIsWrongIsOneSentenceWithItsLine) {
   const std::string head = "file,theta_l,phi_l,theta_v,phi_v\n";
   EXPECT_EQ(refusal("file;theta_l;phi_l;theta_v;phi_v\n"),
-            ": line 1: the first line has no column 'file'; it must name file, theta_l, phi_l, theta_v and phi_v, "
+            ": line 1: the first line has no column 'file'; it must contain file, theta_l, phi_l, theta_v and phi_v, "
             "separated by commas.");
   EXPECT_EQ(refusal("file,theta_l,phi_l,theta_v\n").substr(0, 47), ": line 1: the first line has no column 'phi_v';");
   EXPECT_NE(refusal("").find(": line 0: the first line has no column 'file'"), std::string::npos);
-  EXPECT_EQ(refusal(head), ": line 1: there are no pictures.");
-  EXPECT_EQ(refusal(head + "a.png,1,2,3\n"), ": line 2: there are 4 fields where the first line names 5.");
-  EXPECT_EQ(refusal(head + "a.png,1,2,3,4\n#\nb.png,1,two,3,4\n"), ": line 4: 'phi_l' is 'two', not a number.");
-  EXPECT_EQ(refusal(head + "a.png,1,2,3,nan\n"), ": line 2: 'phi_v' is 'nan', not a number.");
-  EXPECT_EQ(refusal(head + "a.png,1,2,3,4 5\n"), ": line 2: 'phi_v' is '4 5', not a number.");
-  EXPECT_EQ(refusal(head + "a.png,-1,2,3,4\n"), ": line 2: 'theta_l' is negative.");
+  EXPECT_EQ(refusal(head), ": line 1: the file lists no images.");
+  EXPECT_EQ(refusal(head + "a.png,1,2,3\n"), ": line 2: the line has 4 fields, but the first line names 5 columns.");
+  EXPECT_EQ(refusal(head + "a.png,1,2,3,4\n#\nb.png,1,two,3,4\n"), ": line 4: 'phi_l' is 'two'; it must be a number.");
+  EXPECT_EQ(refusal(head + "a.png,1,2,3,nan\n"), ": line 2: 'phi_v' is 'nan'; it must be a number.");
+  EXPECT_EQ(refusal(head + "a.png,1,2,3,4 5\n"), ": line 2: 'phi_v' is '4 5'; it must be a number.");
+  EXPECT_EQ(refusal(head + "a.png,-1,2,3,4\n"), ": line 2: 'theta_l' is negative; it must be at least 0.");
   EXPECT_EQ(refusal(head + ",1,2,3,4\n"), ": line 2: 'file' is empty.");
   EXPECT_EQ(refusal(head + "a.png,1,2,3,4\nb.png,1,2,3,4\n"),
-            ": line 3: these angles stand on an earlier line already; keep one of the two.");
-  EXPECT_EQ(refusal("view," + head), ": line 1: the columns 'view' and 'light' must be there together.");
+            ": line 3: an earlier line has the same angles; remove one of the two.");
+  EXPECT_EQ(refusal("view," + head), ": line 1: the columns 'view' and 'light' must be given together.");
 }
 
 }  // namespace

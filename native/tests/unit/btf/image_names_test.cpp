@@ -81,20 +81,21 @@ TEST(ImageNames, WhatIsWrongIsOneSentence) {
   const auto folder = test::scratch_folder();
   EXPECT_EQ(message_of([&] { find_named_pictures(folder); }),
             folder.string() +
-                ": holds no pictures that are named for their angles, as in '00081 tl015 pl000 tv000 "
-                "pv000.jpg', and no index of others, btf.csv.");
+                ": the folder contains neither images named by their angles, as in '00081 tl015 pl000 tv000 "
+                "pv000.jpg', nor an index of images, btf.csv.");
   touch(folder / "00000 tl000 pl000 tv000 pv000.jpg");
   touch(folder / "00001 tl000 pl000 tv015 pv000.jpg");
   touch(folder / "00002 tl015 pl060 tv000 pv000.jpg");
   EXPECT_EQ(message_of([&] { find_named_pictures(folder); }),
             folder.string() +
-                ": 1 of 4 pictures are missing, first 'tl015 pl060 tv015 pv000'; copy the set again, or "
-                "list what is there in a CSV index.");
+                ": 1 of 4 images are missing, the first is 'tl015 pl060 tv015 pv000'. Copy the set again, or "
+                "list the existing images in a CSV index, btf.csv.");
   touch(folder / "00004 tl015 pl060 tv000 pv000.jpg");
   EXPECT_NE(message_of([&] { find_named_pictures(folder); }).find("has the same angles as"), std::string::npos);
   touch(folder / "preview.jpg");
-  EXPECT_NE(message_of([&] { find_named_pictures(folder); }).find("preview.jpg: its name does not give the angles"),
-            std::string::npos);
+  EXPECT_NE(
+      message_of([&] { find_named_pictures(folder); }).find("preview.jpg: the file name does not contain the angles"),
+      std::string::npos);
 }
 
 }  // namespace

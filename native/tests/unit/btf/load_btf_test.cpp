@@ -173,11 +173,11 @@ TEST(LoadBtf, DamagedPicturesAreNamed) {
     const fs::path picture = folder / ("tl060 pl090 tv000 pv000" + std::string(extension));
     fs::resize_file(picture, fs::file_size(picture) - 40);
     const std::string message = message_of([&] { value(*load_btf(folder), 1, 0); });
-    EXPECT_NE(message.find(picture.string() + ": cannot be read as a picture"), std::string::npos) << message;
+    EXPECT_NE(message.find(picture.string() + ": cannot be read as an image"), std::string::npos) << message;
     std::ofstream(picture) << "no picture";
     EXPECT_NE(message_of([&] { load_btf(folder); }).find(picture.string()), std::string::npos);
     write_bytes(picture, 9, 5);
-    EXPECT_NE(message_of([&] { load_btf(folder); }).find("bring all pictures of the set to one size"),
+    EXPECT_NE(message_of([&] { load_btf(folder); }).find("All images of the set must have the same size"),
               std::string::npos);
   }
 }
@@ -192,14 +192,14 @@ TEST(LoadBtf, PicturesThatChangeAfterwardsAreNoticed) {
 TEST(LoadBtf, AnglesThatAreNoDirectionsAreRefused) {
   const auto folder = test::scratch_folder();
   write_bytes(folder / "tl090 pl000 tv000 pv000.png", 9);
-  EXPECT_NE(message_of([&] { load_btf(folder); }).find("at least 0.1 degrees away from 90"), std::string::npos);
+  EXPECT_NE(message_of([&] { load_btf(folder); }).find("differ from 90 by at least 0.1"), std::string::npos);
 }
 
 TEST(LoadBtf, OtherFilesAreRefused) {
   const auto folder = test::scratch_folder();
   std::ofstream(folder / "a.txt") << "hello";
   std::ofstream(folder / "a.zip") << "PK\x03\x04 and so on";
-  EXPECT_NE(message_of([&] { load_btf(folder / "a.txt"); }).find("is no BTF"), std::string::npos);
+  EXPECT_NE(message_of([&] { load_btf(folder / "a.txt"); }).find("is not a BTF"), std::string::npos);
   EXPECT_NE(message_of([&] { load_btf(folder / "a.zip"); }).find("unpack it"), std::string::npos);
   EXPECT_NE(message_of([&] { load_btf(folder / "none"); }).find("No such file"), std::string::npos);
   EXPECT_FALSE(is_btf(folder / "a.txt"));

@@ -72,8 +72,8 @@ TEST(PairLayout, TellsOfDirectionsThatAreThereTwice) {
   EXPECT_EQ(repeated_directions({{{30, 0}, {30, 0.01}}, below({{30, 0}, {30.01, 0}})}), "");
   const std::vector<PolarAngles> pole{{0, 0}, {0, 90}, {0, 180}, {30, 7}},
       seam{{40, 0}, {40, 360}, {50, -30}, {50, 330}};
-  EXPECT_NE(repeated_directions({pole, {{10, 0}}}).find("2 of its views, 0 of its lights"), std::string::npos);
-  EXPECT_NE(repeated_directions({{{10, 0}}, seam}).find("0 of its views, 2 of its lights"), std::string::npos);
+  EXPECT_NE(repeated_directions({pole, {{10, 0}}}).find("2 of its views and 0 of its lights"), std::string::npos);
+  EXPECT_NE(repeated_directions({{{10, 0}}, seam}).find("0 of its views and 2 of its lights"), std::string::npos);
 }
 
 TEST(PairLayout, RefusesWhatIsNoLayout) {

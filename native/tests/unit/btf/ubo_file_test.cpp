@@ -98,7 +98,7 @@ TEST_F(UboFileTest, KnowsItsColours) {
     expect_decoded(*load(e), e, {0, 1, 2, 3}, decode);
   }
   e.color_model = 3;
-  EXPECT_EQ(refusal(e.bytes()), ": its colour model is number 3; numbers 0, 1, 9, 11 and 12 are read.");
+  EXPECT_EQ(refusal(e.bytes()), ": has color model 3; only 0, 1, 9, 11 and 12 are supported.");
 }
 
 TEST_F(UboFileTest, EarlierVersionsLackFields) {
@@ -149,23 +149,25 @@ TEST_F(UboFileTest, WhatIsWrongIsOneSentence) {
   std::vector<uint8_t> good = example(12).bytes();
   std::vector<uint8_t> bytes = good;
   std::copy_n("!FMF12FCER", 10, bytes.begin());
-  EXPECT_EQ(refusal(bytes), ": is a BTF of Bonn in the form '!FMF12FCER'; only '!DFMF08FCR' of UBO2014 is read.");
+  EXPECT_EQ(refusal(bytes),
+            ": is a BTF file of the University of Bonn with signature '!FMF12FCER'; only '!DFMF08FCR' (UBO2014) is "
+            "supported.");
   bytes.assign(good.begin(), good.end() - 1);
   EXPECT_EQ(refusal(bytes), ": the right factor needs 24 bytes at byte " + std::to_string(good.size() - 24) +
                                 ", but the file holds " + std::to_string(good.size() - 1) +
-                                "; it is truncated or damaged.");
+                                "; it is truncated or damaged. Download it again.");
   bytes = good;
   bytes[10] ^= 1;
-  EXPECT_NE(refusal(bytes).find("the description is of"), std::string::npos);
+  EXPECT_NE(refusal(bytes).find("the description has"), std::string::npos);
   UboExample e = example(13);
   e.views[1].theta = 90;
-  EXPECT_NE(refusal(e.bytes()).find("at least 0.1 degrees away from 90"), std::string::npos);
+  EXPECT_NE(refusal(e.bytes()).find("differ from 90 by at least 0.1"), std::string::npos);
   e = example(13);
   e.lights[0][1] = e.lights[0][0];
-  EXPECT_EQ(refusal(e.bytes()), ": has a light twice for one view; the file is damaged.");
+  EXPECT_EQ(refusal(e.bytes()), ": a view has the same light more than once; the file is damaged.");
   e = example(13);
   e.height = 4;
-  EXPECT_EQ(refusal(e.bytes()), ": has factors of 4 and 12 rows where there are 4 pairs of directions and 16 texels.");
+  EXPECT_EQ(refusal(e.bytes()), ": has factors of 4 and 12 rows, but there are 4 view-light pairs and 16 texels.");
 }
 
 }  // namespace

@@ -158,7 +158,7 @@ TEST_F(DataOcclusion, OfPicturesWithAlphaIsTheirVisualHull) {
     FAIL();
   } catch (const Error& error) {
     EXPECT_EQ(error.status(), Status::unsupported);
-    EXPECT_NE(std::string(error.what()).find("pictures with alpha"), std::string::npos);
+    EXPECT_NE(std::string(error.what()).find("images with alpha"), std::string::npos);
   }
 }
 

@@ -59,7 +59,7 @@ TEST_F(Checkpoint, OfAnotherFitIsIgnoredWithASentence) {
   const FitCheckpoint other = made(true, "another key");
   EXPECT_FALSE(other.matrix("matrix", 5, 4));
   ASSERT_EQ(other.warnings().size(), 1u);
-  EXPECT_NE(other.warnings()[0].find("not of a fit of this BTF"), std::string::npos) << other.warnings()[0];
+  EXPECT_NE(other.warnings()[0].find("belongs to a fit of another BTF"), std::string::npos) << other.warnings()[0];
   EXPECT_FALSE(made(false).matrix("matrix", 5, 4));  // not asked for
 }
 

@@ -45,9 +45,9 @@ TEST(FitMemory, KnowsWhatAllPointsTake) {
 /// The least that a refusal names is enough.
 TEST(FitMemory, NamesTheLeastThatWouldDo) {
   const std::string sentence = refusal(50'000'000, usual_extent());
-  const size_t at = sentence.find("holds ");
+  const size_t at = sentence.find("at least ");
   ASSERT_NE(at, std::string::npos) << sentence;
-  const auto least = std::stoull(sentence.substr(at + 6)) * 1'000'000;
+  const auto least = std::stoull(sentence.substr(at + 9)) * 1'000'000;
   EXPECT_GE(search_points_within(least, usual_extent()), 8u);
   EXPECT_NE(refusal(least - 2'000'000, usual_extent()), "");
 }
@@ -89,9 +89,9 @@ TEST(FitMemory, OfTensorsTakesFewerFunctionsThenFewerTexels) {
 
 TEST(FitMemory, OfTensorsNamesTheLeastThatWouldDo) {
   const std::string sentence = tensor_refusal(50'000'000);
-  const size_t at = sentence.find("holds ");
+  const size_t at = sentence.find("at least ");
   ASSERT_NE(at, std::string::npos) << sentence;
-  const auto least = std::stoull(sentence.substr(at + 6)) * 1'000'000;
+  const auto least = std::stoull(sentence.substr(at + 9)) * 1'000'000;
   EXPECT_EQ(tensor_refusal(least), "");
   EXPECT_NE(tensor_refusal(least - 2'000'000), "");
 }

@@ -188,7 +188,7 @@ TEST_F(SceneReduction, ASceneThatResolvesAllTexelsGetsTheFullModel) {
   const Model model = reduced();
   EXPECT_FALSE(is_reduced(model));
   ASSERT_FALSE(model.btf->warnings.empty());
-  EXPECT_NE(model.btf->warnings.back().find("needs all"), std::string::npos);
+  EXPECT_NE(model.btf->warnings.back().find("needs the full model"), std::string::npos);
 }
 
 TEST_F(SceneReduction, WhatMakesNoSenseIsRefused) {
@@ -197,16 +197,16 @@ TEST_F(SceneReduction, WhatMakesNoSenseIsRefused) {
   scene_.domain.surface = {};
   EXPECT_PRED2(has, refusal(), "does not vary");
   scene_.hits.clear();
-  EXPECT_PRED2(has, refusal(), "shows nothing");
+  EXPECT_PRED2(has, refusal(), "does not show the material");
   scene_ = good;
   options_.full_model = std::make_shared<const Model>(reduced());
-  EXPECT_PRED2(has, refusal(), "itself reduced");
+  EXPECT_PRED2(has, refusal(), "itself a scene model");
   Model other = compress_btf(btf_, options_, progress_);
   other.source.sha256 = "another";
   options_.full_model = std::make_shared<const Model>(other);
   EXPECT_PRED2(has, refusal(), "content differs");
   options_.full_model = std::make_shared<const Model>();
-  EXPECT_PRED2(has, refusal(), "of a BRDF");
+  EXPECT_PRED2(has, refusal(), "a BRDF model");
 }
 
 }  // namespace

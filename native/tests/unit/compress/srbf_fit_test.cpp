@@ -159,13 +159,13 @@ TEST(SrbfFit, IsAsBrightAsWhatItLeavesOut) {
 }
 
 TEST(SrbfFit, RefusesTooFewBytesWithASentence) {
-  test::expect_refused(Status::invalid_argument, "100 were asked for",
+  test::expect_refused(Status::invalid_argument, "the maximum size is 100 bytes",
                        [] { fit_srbf(test::striped_btf(small_grid()), {.bytes = 100}); });
 }
 
 TEST(SrbfFit, NeedsEveryPair) {
   const PairLayout holes(ring_directions(30, 2), ring_directions(50, 2), {{0, 1}, {0}});
-  test::expect_refused(Status::unsupported, "3 pairs",
+  test::expect_refused(Status::unsupported, "3 view-light pairs",
                        [&] { fit_srbf(test::MemoryBtf(holes, small_grid(), test::striped), {}); });
 }
 

@@ -82,7 +82,7 @@ TEST(SvdFit, DirectionsThatAreThereTwiceAreTold) {
   EXPECT_TRUE(warnings({{0, 0}, {30, 0}, {30, 120}, {30, 240}}).empty());
   const auto told = warnings({{0, 0}, {0, 90}, {30, 0}, {30, 120}, {30, 240}});
   ASSERT_EQ(told.size(), 1u);
-  EXPECT_NE(told[0].find("1 of its views, 0 of its lights"), std::string::npos) << told[0];
+  EXPECT_NE(told[0].find("1 of its views and 0 of its lights"), std::string::npos) << told[0];
 }
 
 }  // namespace

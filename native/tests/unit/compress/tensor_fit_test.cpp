@@ -183,7 +183,7 @@ TEST(TensorFit, IsTheSameForAnyNumberOfThreads) {
 }
 
 TEST(TensorFit, RefusesTooFewBytesWithASentence) {
-  test::expect_refused(Status::invalid_argument, "100 were asked for",
+  test::expect_refused(Status::invalid_argument, "the maximum size is 100 bytes",
                        [] { fit_tensor(test::striped_btf(tensor_grid()), {.bytes = 100}); });
 }
 
@@ -255,7 +255,7 @@ TEST(TensorFit, OfTwoSidesFitsBothAndThoseThatLightGoesThroughTo) {
 
 TEST(TensorFit, NeedsEveryPair) {
   const PairLayout holes(ring_directions(30, 2), ring_directions(50, 2), {{0, 1}, {0}});
-  test::expect_refused(Status::unsupported, "3 pairs",
+  test::expect_refused(Status::unsupported, "3 view-light pairs",
                        [&] { fit_tensor(test::MemoryBtf(holes, tensor_grid(), test::striped), {}); });
 }
 

@@ -80,7 +80,7 @@ TEST(ScatteredFitRules, HeldOutViewsAreNotRead) {
   AnalyticMeasurement watched(test::lambert);
   Progress progress;
   watched.set_coverage([&](const DirectionPair& p) {
-    if (std::string(progress.stage_name()) == "checking") checking = true;
+    if (std::string(progress.stage_name()) == "checking the model") checking = true;
     const double theta = std::acos(std::min(1.0f, p.wv.z)) * 180 / kPiD;
     for (const int degrees : kHeldOutViews) {
       if (!checking && std::abs(theta - degrees) < kHeldOutMargin) read = true;
@@ -182,7 +182,7 @@ TEST(ScatteredFitRules, ViewsThatMissTheToleranceAreNamed) {
   const Model model = fit_scattered(AnalyticMeasurement(test::ggx(0.3f, 0.3f)), options, progress);
   ASSERT_FALSE(model.fit.warnings.empty());
   EXPECT_EQ(model.fit.warnings[0].find("view 5 degrees: relative L2 "), 0u);
-  EXPECT_NE(model.fit.warnings[4].find("exceeds 0.002"), std::string::npos);
+  EXPECT_NE(model.fit.warnings[4].find("exceeds the tolerance 0.002"), std::string::npos);
 }
 
 TEST(ScatteredFitRules, OfManyViewsThatMissTheToleranceTwelveAreNamed) {

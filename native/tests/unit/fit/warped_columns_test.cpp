@@ -49,7 +49,10 @@ TEST_P(WarpedColumns, SlopesFollowCentralDifferences) {
   std::vector<AlignedFloats> columns(kWarpedSlopes, AlignedFloats(samples_.padded()));
   float* out[kWarpedSlopes];
   for (size_t a = 0; a < kWarpedSlopes; ++a) out[a] = columns[a].data();
-  fill_warped_slopes(shape(), kView, samples_, kWarpedSlopes, out);
+  AlignedFloats value(samples_.padded()), alone(samples_.padded());
+  fill_warped_slopes(shape(), kView, samples_, kWarpedSlopes, value.data(), out);
+  fill_warped(shape(), kView, samples_, alone.data());
+  EXPECT_EQ(value, alone);
   double WarpedShape::*const moved[kWarpedSlopes] = {&WarpedShape::log_bandwidth, &WarpedShape::tilt_x,
                                                      &WarpedShape::stretch_a, &WarpedShape::tilt_y,
                                                      &WarpedShape::stretch_b};

@@ -8,6 +8,7 @@
 #include <filesystem>
 
 #include "file/file.h"
+#include "image/exr_header_check.h"
 #include "job/error.h"
 #include "support/test_data.h"
 
@@ -53,6 +54,32 @@ TEST(ExrPart, WindowsAreOpenExrs) {
   write_exr_part(path, numbered(3, 2, 1), {10, 8, 4, 1}, {});
   EXPECT_EQ(window_in(path, "displayWindow"), (std::array<int32_t, 4>{0, 0, 9, 7}));
   EXPECT_EQ(window_in(path, "dataWindow"), (std::array<int32_t, 4>{4, 5, 6, 6}));  // rows 1 and 2 of 8 from below
+}
+
+std::string exr_attribute(const std::string& name, const std::string& type, const std::string& value) {
+  const auto size = static_cast<uint32_t>(value.size());
+  return name + '\0' + type + '\0' + std::string(reinterpret_cast<const char*>(&size), sizeof size) + value;
+}
+
+/// An attribute may begin within the megabyte that is checked and end beyond it: then none after it is checked.
+TEST(ExrPart, HeadersThatGoOnBeyondTheCheckAreRefused) {
+  const std::string path = test::scratch_folder() / "long.exr";
+  constexpr size_t kRead = size_t{1} << 20;
+  const std::string magic("v/1\x01\x02\0\0\0", 8),
+      huge = std::string("\0\0\0\0\0\0\0\0\xff\xff\xff\x7f\xff\xff\xff\x7f", 16);
+  const std::string window = exr_attribute("dataWindow", "box2i", huge) + std::string(1, '\0');
+  // Bytes of the attribute before the limit: none, then within its name, type and size.
+  for (const size_t before : {0u, 5u, 14u, 19u}) {
+    const size_t filler = kRead - before - magic.size() - exr_attribute("filler", "string", "").size();
+    const std::string bytes = magic + exr_attribute("filler", "string", std::string(filler, ' ')) + window;
+    write_file(path, std::vector<uint8_t>(bytes.begin(), bytes.end()));
+    try {
+      check_exr_header(path);
+      ADD_FAILURE() << before << " bytes of an attribute before the limit";
+    } catch (const Error& error) {
+      EXPECT_NE(std::string(error.what()).find("larger than 1 MB"), std::string::npos) << error.what();
+    }
+  }
 }
 
 TEST(ExrPart, AWholePictureIsItsOwnFrame) {

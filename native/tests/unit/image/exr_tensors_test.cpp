@@ -192,7 +192,7 @@ TEST(ExrTensors, DamagedPacksAreRefused) {
   for (size_t at = end - 1000; at < end; at += 7) {
     auto damaged = bytes;
     damaged[at] ^= 0x10;
-    EXPECT_NE(refusal(damaged).find("hostile.velour: part 'pack': its pack"), std::string::npos) << at;
+    EXPECT_NE(refusal(damaged).find("hostile.velour: part 'pack': packed data"), std::string::npos) << at;
   }
 }
 
@@ -324,7 +324,7 @@ TEST(ExrTensors, LyingDataWindow) {
 TEST(ExrTensors, AListOfChannelsFillsItsAttribute) {
   auto bytes = encode_tensors(sample_file());
   bytes[value_of(bytes, "channels", "chlist")] = 0;  // an empty name ends the list
-  EXPECT_NE(refusal(bytes).find("channels is longer than its list"), std::string::npos) << refusal(bytes);
+  EXPECT_NE(refusal(bytes).find("channels is longer than its channel list"), std::string::npos) << refusal(bytes);
 }
 
 TEST(ExrTensors, LyingShapeNamesTheField) {
@@ -386,7 +386,7 @@ TEST(ExrTensors, ChunksCannotBeSharedByRows) {
   std::memcpy(&stored, &bytes.at(chunk + 4), 4);
   for (size_t i = 1; i < 10; ++i) std::memcpy(&bytes.at(table + 8 * i), &first, 8);
   bytes.resize(chunk + 8 + stored);
-  EXPECT_NE(refusal(bytes).find("more bytes than the file"), std::string::npos) << refusal(bytes);
+  EXPECT_NE(refusal(bytes).find("are larger than the file"), std::string::npos) << refusal(bytes);
 }
 
 TEST(ExrTensors, DamagedPixelsAreRefusedOrRead) {

@@ -119,8 +119,10 @@ TEST(PictureFormats, OthersAreRefusedByName) {
   test::record_input("DPX, Cineon, IFF, Photoshop, GIF, WebP, PPM and others", "any", "refused by name");
   const std::string path = test::scratch_folder() / "a.png";
   const std::pair<std::string, std::string> others[] = {
-      {"FOR4", "IFF"},   {"SDPX", "DPX"},          {"XPDS", "DPX"}, {"8BPS", "Photoshop"},
-      {"GIF89a", "GIF"}, {"RIFF1234WEBP", "WebP"}, {"P6\n", "PPM"}, {"nothing at all", "none of the formats"},
+      {"FOR4", "IFF"},   {"SDPX", "DPX"},
+      {"XPDS", "DPX"},   {"8BPS", "Photoshop"},
+      {"GIF89a", "GIF"}, {"RIFF1234WEBP", "WebP"},
+      {"P6\n", "PPM"},   {"nothing at all", "not in a supported image format"},
       {"", "empty file"}};
   for (const auto& [head, name] : others) {
     const std::string text = head.empty() ? head : head + std::string(600, '\0');
@@ -130,7 +132,7 @@ TEST(PictureFormats, OthersAreRefusedByName) {
       ADD_FAILURE() << head;
     } catch (const Error& error) {
       EXPECT_NE(std::string(error.what()).find(name), std::string::npos) << error.what();
-      EXPECT_NE(std::string(error.what()).find("OpenEXR, Radiance HDR, PNG, JPEG, TIFF and BMP"), std::string::npos);
+      EXPECT_NE(std::string(error.what()).find("OpenEXR, Radiance HDR, PNG, JPEG, TIFF or BMP"), std::string::npos);
     }
   }
 }

@@ -51,9 +51,9 @@ Plot polar_plot(double least, double largest) {
   set_logarithmic_range(plot.y, least, largest);
   plot.series.push_back({"model", PlotRole::model, PlotMark::line, {{-60, least}, {45, largest}}});
   plot.legend = {{"model", PlotRole::model, PlotMark::line},
-                 {"its lobes", PlotRole::lobe, PlotMark::line},
+                 {"lobes", PlotRole::lobe, PlotMark::line},
                  {"measured", PlotRole::measured, PlotMark::dots},
-                 {"view, 30\u00b0", PlotRole::text, PlotMark::dashes}};
+                 {"view at 30\u00b0", PlotRole::text, PlotMark::dashes}};
   return plot;
 }
 

@@ -379,7 +379,7 @@ TEST(ShellRender, WithoutTextureCoordinatesTheSurfaceStaysAndSaysSo) {
   Shot bare(test::square(1), shelled(field_of(test::wires(16, kRadius))));
   EXPECT_EQ(bare.alpha(0.5f), 1.0);
   ASSERT_EQ(bare.scene.info().warnings.size(), 1u);
-  EXPECT_NE(bare.scene.info().warnings[0].find("shell (VOTF)"), std::string::npos);
+  EXPECT_NE(bare.scene.info().warnings[0].find("silhouette (VOTF)"), std::string::npos);
 }
 
 TEST(ShellRender, AShellHigherThanTheSurfaceBendsSaysSo) {
@@ -408,7 +408,7 @@ TEST(ShellRender, AShellHigherThanTheSurfaceBendsSaysSo) {
   EXPECT_TRUE(warnings(1.8f, true).empty());
   const auto folded = warnings(2.2f, true);
   ASSERT_EQ(folded.size(), 1u);
-  EXPECT_NE(folded[0].find("radii down to 1 m"), std::string::npos) << folded[0];
+  EXPECT_NE(folded[0].find("radii of curvature down to 1 m"), std::string::npos) << folded[0];
   EXPECT_NE(folded[0].find("they are 2.2 m wide"), std::string::npos) << folded[0];
 }
 

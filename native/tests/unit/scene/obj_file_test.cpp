@@ -203,11 +203,11 @@ TEST(ObjFile, NamesTheLineOfAFault) {
   const std::pair<const char*, const char*> faults[] = {
       {"v 0 0 0\nv 1,5 0 0\n", "line 2: '1,5' is not a number"},
       {"v 0 0\n", "line 1: 'v' has too few"},
-      {"v 0 0 0\n\nf 1 0 1\n", "line 3: '0' is no index"},
-      {"v 0 0 0\nf 1 1.5 1\n", "line 2: '1.5' is no index"},
-      {"v 0 0 0\r\nf 1 2 1\r\n", "line 2: a face names vertex 2 of 1"},
-      {"v 0 0 0\nf 1 -2 1\n", "line 2: a face names vertex -2"},
-      {"v 0 0 0\nf 1/1 1/1 1/1\n", "line 2: a face names texture"}};
+      {"v 0 0 0\n\nf 1 0 1\n", "line 3: '0' is not a valid vertex index"},
+      {"v 0 0 0\nf 1 1.5 1\n", "line 2: '1.5' is not a valid vertex index"},
+      {"v 0 0 0\r\nf 1 2 1\r\n", "line 2: a face has vertex index 2, but the file has only 1"},
+      {"v 0 0 0\nf 1 -2 1\n", "line 2: a face has vertex index -2"},
+      {"v 0 0 0\nf 1/1 1/1 1/1\n", "line 2: a face has texture"}};
   for (const auto& [text, sentence] : faults) {
     try {
       read_obj(write_text(text));

@@ -59,6 +59,23 @@ TEST(MatrixProduct, IsItsDefinitionInAnyLayout) {
   }
 }
 
+TEST(MatrixProduct, WithAVectorIsThatWithAMatrixOfOneColumn) {
+  for (const auto& [rows, depth, unused] : kSides) {
+    const RowMatrix a = test::random_matrix(rows, depth, 4), x = test::random_matrix(depth, 1, 5);
+    Placed left(rows, depth, 1), product(rows, 1, 1);
+    left.set(a);
+    const std::vector<float> before = product.room;
+    multiply(left.read(rows, depth), x.data(), product.room.data());
+    const Eigen::VectorXd expected = a.cast<double>() * x.cast<double>();
+    for (Index i = 0; i < rows; ++i) {
+      ASSERT_NEAR(product.at(i, 0), expected[i], 1e-5 * std::sqrt(static_cast<double>(depth)))
+          << rows << " x " << depth;
+      product.at(i, 0) = 7.0f;
+    }
+    EXPECT_EQ(product.room, before) << "beside the product";
+  }
+}
+
 TEST(MatrixProduct, OfNothingIsZero) {
   std::vector<float> product(6, 3.0f);
   multiply({nullptr, 2, 0, 0, 1}, {nullptr, 0, 3, 3, 1}, {product.data(), 2, 3, 3, 1});
