@@ -83,7 +83,9 @@ class CaptureBtf(BlenderTest):
         said = io.StringIO()
         with contextlib.redirect_stdout(said):
             self.assertEqual(bpy.ops.velour.estimate_capture(), {"FINISHED"})
-        self.assertRegex(said.getvalue(), r"'Plane': About \d+ seconds, \d+ kB on disk, [\d.]+ kB of additional memory")
+        self.assertRegex(
+            said.getvalue(), r"'Plane': About \d+ seconds, \d+ kB on disk, [\d.]+ kB of additional memory"
+        )
         self.assertIn(state.estimate, said.getvalue())
         tiles = importlib.import_module(f"{inputs.ADDON}.operators.tiles")
         self.assertEqual(state.estimated, tiles.captured_as(obj))

@@ -1,5 +1,6 @@
-// Prints what docs/engine/capture.md#micro-surface-goniometer states: albedo of a lossless surface by order of reflection, and single reflection
-// against Beckmann's closed form, one JSON object a line. Arguments: samples (24000000).
+// Prints what docs/engine/capture.md#micro-surface-goniometer states: albedo of a lossless surface by order of
+// reflection, and single reflection against Beckmann's closed form, one JSON object a line. Arguments: samples
+// (24000000).
 #include <chrono>
 #include <cmath>
 #include <cstdio>
