@@ -101,7 +101,7 @@ class Uniform(WithoutVelour):
         self._import(inputs.plastic_measurement(), fit=False)
         model = inputs.model_bytes(inputs.plastic_measurement())
         self._give_model(model)
-        self.assertGreater(self._error("grey"), 0.3, "grey is no approximation")
+        self.assertGreater(self._error("gray"), 0.3, "gray is no approximation")
 
     def _give_model(self, data):
         measured = importlib.import_module(f"{inputs.ADDON}.operators.measured")
@@ -132,7 +132,7 @@ class Uniform(WithoutVelour):
 
 
 class Tiles(WithoutVelour):
-    """Of BTFs, on a plane that is seen from above."""
+    """Approximations of BTFs, on a plane seen from above."""
 
     def setUp(self):
         super().setUp()
@@ -172,7 +172,7 @@ class Tiles(WithoutVelour):
 
 
 class Relief(WithoutVelour):
-    """Of BTFs: their normals, under a sun from the side."""
+    """Normal maps in approximations of BTFs, under a sun from the side."""
 
     def setUp(self):
         super().setUp()
@@ -450,7 +450,7 @@ def _node(group, idname):
 
 
 def _images(group):
-    """Colours and normals."""
+    """Colors and normals."""
     return [node.image for node in group.nodes if node.bl_idname == "ShaderNodeTexImage"]
 
 

@@ -37,7 +37,7 @@ class CheckScene(BlenderTest):
         self.assertEqual(self._drawn(), "None in frame 1")
 
     def test_owners_are_named(self):
-        """Of a lamp, an object, a material and the scene: as the render itself says."""
+        """Messages name the lamp, object, material or scene, in the words of the render itself."""
         self.lamp.data.specular_factor = 0.5
         self.ball.visible_glossy = False
         tree = self.ball.active_material.node_tree

@@ -19,7 +19,7 @@ _SIDE = 64
 
 class BallTest(BlenderTest):
     def _material(self, measurement, model=None, name="Paint"):
-        """Of that measurement, with a quick fit to it or to another one."""
+        """A material of that measurement, with a quick fit to it or to another measurement, `model`."""
         bpy.ops.velour.load_material(filepath=str(measurement), assign=False)
         (material,) = (m for m in bpy.data.materials if scenes.velour_node(m).velour.measurement)
         material.name = name
@@ -120,7 +120,7 @@ class Compare(BallTest):
         self.assertGreater(self._off(measured, model), 0.5)
 
     def test_a_btf(self):
-        """Of four quarters, whose model is exact but for its rounding."""
+        """A BTF of four quarters, whose model is exact except for rounding."""
         bpy.ops.velour.load_material(filepath=str(inputs.quarters_btf()), assign=False)
         (material,) = bpy.data.materials
         model = scenes.measured_material(inputs.quarters_model(), name="Model")
@@ -162,7 +162,7 @@ class Asset(BallTest):
         self.assertTrue((pixels[..., 3] == 1).all())
         middle, corner = pixels[96:160, 96:160, :3].mean((0, 1)), pixels[250:, 250:, :3].mean((0, 1))
         self.assertGreater(middle[2], middle[0] + 0.05)
-        self.assertLess(np.ptp(corner), 0.01)  # the backdrop is grey
+        self.assertLess(np.ptp(corner), 0.01)  # the backdrop is gray
 
     def test_what_is_given_once_stays(self):
         material = self._material(inputs.glossy_measurement())

@@ -1,4 +1,4 @@
-"""Attributes of meshes as colours, against what Cycles gives of them."""
+"""Attributes of meshes as colors, against what Cycles gives of them."""
 
 import bpy
 import numpy as np

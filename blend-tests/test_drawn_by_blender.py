@@ -22,9 +22,9 @@ class DrawnByBlender(BlenderTest):
         self.plain = scenes.render(self.folder, "plain")
 
     def _share(self, *words):
-        """Of pixels that are other ones now, of the picture and its middle; the console says `words`.
+        """Shares of changed pixels, in the picture and in its middle. The console must print `words`.
 
-        Rendered by a Blender of its own, which ends where there is no OpenGL.
+        A separate Blender renders the picture, because Blender ends where there is no OpenGL.
         """
         blend = self.folder / "scene.blend"
         bpy.ops.wm.save_as_mainfile(filepath=str(blend))

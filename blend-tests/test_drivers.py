@@ -62,7 +62,7 @@ class Drivers(BlenderTest):
         self.ball.location.x = 0.8
         self._assert_as_set(driven, undriven)
 
-    def test_colour_of_a_material(self):
+    def test_color_of_a_material(self):
         self.lamp.data.energy = 100
         self._drive(self.color, "default_value", "red", "value", 0)
         undriven = self._picture(red=0.2)

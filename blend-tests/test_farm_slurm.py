@@ -130,7 +130,7 @@ class StillOnSlurm(SlurmTest):
         (self.folder / "paint.velour").write_bytes(inputs.model_bytes(inputs.glossy_measurement()))
         sky = self.folder / "sky.exr"
         inputs.native().images.write(sky, np.ones((4, 8, 3), np.float32))
-        sky.rename(self.folder / "sky.hdr")  # formats are recognised by content
+        sky.rename(self.folder / "sky.hdr")  # formats are recognized by content
 
     def _submit(self, elements):
         options = ("--parsable", f"--array={elements}", "--cpus-per-task=1", f"--chdir={self.folder}")

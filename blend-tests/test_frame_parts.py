@@ -163,7 +163,7 @@ class FrameParts(BlenderTest):
         self._render(blend, "late", *command, before=("--python-expr", _END_WRITING), status=-signal.SIGTERM)
         self._render(blend, "whole")
         self._assert_same("late", "whole", 0)
-        # Of two frames the second does not begin.
+        # In an animation of two frames, the second does not begin.
         script = (*("--python-expr", _END_WRITING), "-E", "VELOUR", "-o", self.folder / "anim_####")
         done = run_blender(blend, *script, "-s", 1, "-e", 2, "-a", "--", *command)
         self.assertEqual(done.returncode, -signal.SIGTERM, done.stdout)

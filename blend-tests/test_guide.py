@@ -13,7 +13,7 @@ from support import guide, inputs, labels, level
 from support.blender import BlenderTest
 from support.snippets import ROOT, SnippetTest
 
-MEASUREMENT = "cc_iris_purple_gem_rgb.bsdf"  # the guide's; any will do, formats are recognised by content
+MEASUREMENT = "cc_iris_purple_gem_rgb.bsdf"  # the guide's; any will do, formats are recognized by content
 NEWER = {"Get Extensions", "Install from Disk..."}  # of 4.2 and newer; all others are 3.4's
 
 
@@ -50,7 +50,7 @@ class Snippets(SnippetTest):
         self.assertEqual(len(pictures), 1)
 
     def test_tolerance(self):
-        # Of the default measurement a few lobes meet any tolerance.
+        # Not the default measurement, which a few lobes fit within any tolerance.
         self._run_page("tolerance.md", inputs.plastic_measurement)
         sizes = [(self.folder / f"iris_{tolerance}.velour").stat().st_size for tolerance in (0.1, 0.02)]
         self.assertLess(*sizes)

@@ -34,7 +34,7 @@ class NewerLights(BlenderTest):
         lamp = _lamp(use_temperature=True, temperature_color=(2.0, 1.0, 0.4))
         self.assertEqual(_lights().tinted(lamp), (2.0, 0.5, 0.1))
 
-    def test_power_that_is_not_normalised_grows_with_the_area(self):
+    def test_power_that_is_not_normalized_grows_with_the_area(self):
         place = Matrix.Scale(3.0, 4)
         lamp = _lamp(normalize=False, area=lambda matrix_world: 2.0 * matrix_world.to_scale().x ** 2)
         self.assertAlmostEqual(_lights().power(lamp, place), 3.0 * 18.0, places=4)

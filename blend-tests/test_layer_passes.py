@@ -13,7 +13,7 @@ from support.blender import BlenderTest
 _SWITCHES = ("z", "mist", "position", "normal", "vector", "uv", "object_index", "material_index")
 _SWITCHES += ("cryptomatte_object", "cryptomatte_material", "cryptomatte_asset")
 _OWN_SWITCHES = ("denoising", "albedo", "error", "sample_count")
-# Of each switch that is on, what a file has.
+# Channels that the file has when the switches are on.
 _CHANNELS = ("Depth.Z", "Mist.Z", "Position.X", "Normal.Z", "Vector.W", "UV.A", "IndexOB.X", "IndexMA.X")
 _CHANNELS += ("Denoising Normal.X", "Denoising Albedo.R", "Albedo.B", "Error.G", "Sample Count.X")
 _SINCE_5 = {"IndexOB.X": "Object Index.X", "IndexMA.X": "Material Index.X"}
@@ -78,7 +78,7 @@ class Files(PassesTest):
         self.assertNotIn(b"CryptoObject02", header)
 
     def test_only_colors_are_halved(self):
-        """Of half floats, whose ids are other ids, whose indices end at 2048 and whose places jump."""
+        """Half floats would change ids, round indices above 2048 and make positions jump."""
         scenes.add_sphere(scenes.diffuse_material())
         self.switch_on(*_SWITCHES, *_OWN_SWITCHES)
         kinds = _kinds(self.layers_file(bits="16"))
@@ -115,7 +115,7 @@ class Files(PassesTest):
 
 
 def _kinds(path):
-    """Of each channel of an OpenEXR file, whether of one part or of many."""
+    """Kinds of the channels of an OpenEXR file of one part or several, by name."""
     found = {}
     for channels in path.read_bytes()[:20000].split(b"channels\0chlist\0")[1:]:
         rest = channels[4:]
@@ -297,7 +297,7 @@ class Cryptomatte(PassesTest):
         self.assertEqual(net.name, "Net")
 
     def test_ids_come_through_small_files(self):
-        """Of half floats, and of a codec that rounds colours: the node picks from them as from the render."""
+        """From files of half floats, even if a codec rounds colors, the node picks as from the render."""
         self._net()
         scenes.add_plane(scenes.diffuse_material(), size=8).name = "Behind"
         self.switch_on("cryptomatte_object")

@@ -85,7 +85,7 @@ class Notes(NotesTest):
         self.assert_said("Material 'Glass'", node.name, "'Beckmann' is not supported; rendered as GGX")
 
     def _shows_attribute(self, name, idname="ShaderNodeAttribute"):
-        """A sphere of colours by an attribute; the object and the node."""
+        """A sphere of colors by an attribute; the object and the node."""
         _, node = self._linked(idname, socket="Color")
         setattr(node, "attribute_name" if idname == "ShaderNodeAttribute" else "layer_name", name)
         return bpy.context.object, node
@@ -98,7 +98,7 @@ class Notes(NotesTest):
         obj.data.attributes.new("paint", "FLOAT_COLOR", "POINT")
         self.assertEqual(self.notes(), [])
 
-    def test_missing_colour_attribute(self):
+    def test_missing_color_attribute(self):
         obj, _ = self._shows_attribute("", "ShaderNodeVertexColor")
         self.assert_said(f"Object '{obj.name}'", "no color attribute", "material 'Glass'")
         obj.data.color_attributes.new("paint", "BYTE_COLOR", "CORNER")

@@ -97,8 +97,8 @@ def _plain(name):
     material = bpy.data.materials[name]
     for user in bpy.data.meshes:
         if material.name in user.materials:
-            user.materials[0] = _grey()
+            user.materials[0] = _gray()
 
 
-def _grey():
-    return bpy.data.materials.get("Grey") or scenes.diffuse_material((0.5,) * 3, "Grey")
+def _gray():
+    return bpy.data.materials.get("Gray") or scenes.diffuse_material((0.5,) * 3, "Gray")

@@ -14,11 +14,11 @@ from support import guide, inputs, level, scenes
 from support.snippets import ROOT, SnippetTest
 
 PAGES = [ROOT / "README.md", *sorted((ROOT / "docs").rglob("*.md"))]
-# Of a page the first words of a block, and why no test here runs it.
+# Blocks that no test here runs, by page and first words, and why.
 NOT_RUN = {
     ("README.md", "scripts/demo"): "installs and builds for minutes; the second is what runs this test",
     ("README.md", "BLENDER_USER_SCRIPTS="): "opens a window that waits for a user",
-    ("chart.md", "scripts/figures"): "takes hours, and Mitsuba",
+    ("results/chart.md", "scripts/figures"): "takes hours, and Mitsuba",
     ("reference/farm.md", "scripts/farm shot.blend"): "needs Slurm; test_farm_slurm has one of its own",
     (
         "reference/farm.md",
@@ -73,7 +73,7 @@ class PageSnippets(SnippetTest):
         shutil.copy(inputs.glossy_measurement(), self.folder / "paint.binary")
         sky = self.folder / "sky.exr"
         inputs.native().images.write(sky, np.ones((4, 8, 3), np.float32))
-        for name in ("sky.hdr", "hall.hdr"):  # formats are recognised by content
+        for name in ("sky.hdr", "hall.hdr"):  # formats are recognized by content
             shutil.copy(sky, self.folder / name)
         for name in meshes:
             (self.folder / name).write_text(inputs.SQUARE)

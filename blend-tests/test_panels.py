@@ -93,7 +93,7 @@ class Panels(BlenderTest):
         self.assertEqual(self._drawn(panel, context), [])
 
     def test_no_panel_of_blender_stands_above_sampling(self):
-        """Of those without an order Blender's own come first, for they were registered before."""
+        """Among panels without an order, Blender's own come first, because they were registered earlier."""
         for panel in self._panels_of("render"):
             is_below = getattr(panel, "bl_order", 0) > 0 or getattr(panel, "bl_parent_id", "")
             is_title = "HIDE_HEADER" in getattr(panel, "bl_options", ())  # the choice of the engine

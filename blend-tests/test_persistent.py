@@ -75,7 +75,7 @@ class PersistentData(BlenderTest):
         return next(node for node in nodes if node.type == "BSDF_DIFFUSE").inputs["Color"]
 
     def _pictures(self, is_persistent):
-        """Of all frames, and which objects' meshes each has added."""
+        """Pictures of all frames, and the objects whose meshes were added in each."""
         self.scene.render.use_persistent_data = is_persistent
         self.scene.render.image_settings.file_format = "OPEN_EXR"
         self.scene.render.image_settings.color_depth = "32"

@@ -1,4 +1,4 @@
-"""Where tiles of BTFs lie on objects: pictures of a tile of four greys."""
+"""Where tiles of BTFs lie on objects: pictures of a tile of four grays."""
 
 import unittest.mock
 
@@ -73,7 +73,7 @@ class Pictures(Placed):
         self._check_picture(((4, 0, 0), (0, 4, 0)))
 
     def _maps(self):
-        """Of all instances that are exported, as the library gets them."""
+        """Placements of all exported instances, as the library receives them."""
         native = inputs.native()
         given, add = [], native.Scene.add_instance
 

@@ -165,7 +165,7 @@ class Camera(BlenderTest):
         obj.location = location
 
     @staticmethod
-    def _centre(pixels):
+    def _center(pixels):
         """In fractions of the picture, from the left and from the bottom."""
         weight = pixels[..., 1]
         height, width = weight.shape
@@ -176,7 +176,7 @@ class Camera(BlenderTest):
     def test_orthographic(self):
         scenes.add_camera(ortho_scale=4)
         self._blob((1, 0.5, 0))
-        np.testing.assert_allclose(self._centre(scenes.render(self.folder)), (0.75, 0.625), atol=0.01)
+        np.testing.assert_allclose(self._center(scenes.render(self.folder)), (0.75, 0.625), atol=0.01)
 
     def test_perspective(self):
         """Against Blender's own projection."""
@@ -195,7 +195,7 @@ class Camera(BlenderTest):
             with self.subTest(fit=fit):
                 camera.data.sensor_fit = fit
                 expected = world_to_camera_view(scene, camera, bpy.context.object.location)
-                np.testing.assert_allclose(self._centre(scenes.render(self.folder)), expected[:2], atol=0.01)
+                np.testing.assert_allclose(self._center(scenes.render(self.folder)), expected[:2], atol=0.01)
 
     def test_resolution_percentage(self):
         scenes.add_camera(ortho_scale=4)
@@ -203,18 +203,18 @@ class Camera(BlenderTest):
         self._blob((1, 0.5, 0))
         pixels = scenes.render(self.folder)
         self.assertEqual(pixels.shape, (32, 32, 4))
-        np.testing.assert_allclose(self._centre(pixels), (0.75, 0.625), atol=0.02)
+        np.testing.assert_allclose(self._center(pixels), (0.75, 0.625), atol=0.02)
 
     def test_border(self):
         render = bpy.context.scene.render
         scenes.add_camera(ortho_scale=4)
         self._blob((1, 0.5, 0))
         render.use_border, render.border_min_x, render.border_min_y = True, 0.5, 0.25
-        np.testing.assert_allclose(self._centre(scenes.render(self.folder)), (0.75, 0.625), atol=0.01)
+        np.testing.assert_allclose(self._center(scenes.render(self.folder)), (0.75, 0.625), atol=0.01)
         render.use_crop_to_border = True
         pixels = scenes.render(self.folder, "cropped")
         self.assertEqual(pixels.shape[:2], (48, 32))
-        np.testing.assert_allclose(self._centre(pixels), (0.5, 0.5), atol=0.02)
+        np.testing.assert_allclose(self._center(pixels), (0.5, 0.5), atol=0.02)
 
     def test_panorama_is_refused(self):
         camera = scenes.add_camera()

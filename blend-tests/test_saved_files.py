@@ -140,7 +140,7 @@ class Stamps(SavedFilesTest):
 
 
 class Migrations(SavedFilesTest):
-    """Of a release that has never been, 0.0.9, in whose files a seed was counted from one."""
+    """Migration from 0.0.9, a release that never existed, whose files counted seeds from one."""
 
     def setUp(self):
         super().setUp()

@@ -40,7 +40,7 @@ class PaintedPlane(SceneModelTest):
         self.node.image = self._full_model()
 
     def _full_model(self):
-        """Of the default tolerance, fitted once and kept."""
+        """A model of the default tolerance, fitted once and kept."""
         measured = __import__(f"{inputs.ADDON}.operators.measured", fromlist=["measured"])
         data = inputs.full_model_bytes(inputs.glossy_measurement())
         return measured.packed_model(data, "Paint")

@@ -61,7 +61,7 @@ class Runner(BlenderTest):
         for words in (
             "FAILED: a_crash: it cannot be built: Blender crashed (SIGKILL)",
             "FAILED: b_mistake: it cannot be built: Blender ended with status 7",
-            "FAILED: c_brighter, frame 1: differs in colour",
+            "FAILED: c_brighter, frame 1: differs in color",
             "FAILED: d_refused: Blender ended with status 0, wrote ['picture_0001.exr']",
             "ok: e_same, frame 1:",
             "1 passed, 4 failed",

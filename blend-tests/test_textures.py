@@ -22,7 +22,7 @@ def _image(name, values, is_float=True, space=None):
     return image
 
 
-def _colours():
+def _colors():
     rows, columns = np.mgrid[0:SIDE, 0:SIDE]
     values = np.ones((SIDE, SIDE, 4), np.float32)
     values[..., 0], values[..., 1], values[..., 2] = columns / SIDE, rows / SIDE, 0.25
@@ -75,9 +75,9 @@ class Textures(BlenderTest):
         return list(notes)
 
     def test_a_plane_shows_its_picture(self):
-        self._plane(_image("float", _colours()))
+        self._plane(_image("float", _colors()))
         self.assertEqual(self._notes(), [])
-        np.testing.assert_allclose(self._rendered(), _colours()[..., :3], atol=2e-3)
+        np.testing.assert_allclose(self._rendered(), _colors()[..., :3], atol=2e-3)
 
     def test_byte_images_are_decoded(self):
         values = np.full((SIDE, SIDE, 4), 1.0, np.float32)
@@ -94,18 +94,18 @@ class Textures(BlenderTest):
     def test_packed_and_file_images(self):
         native = __import__(f"{inputs.ADDON}.native", fromlist=["native"])
         path = self.folder / "stored.exr"
-        native.images.write(path, _colours())
+        native.images.write(path, _colors())
         for packed in (False, True):
             with self.subTest(packed=packed):
                 loaded = bpy.data.images.load(str(path), check_existing=False)
                 if packed:
                     loaded.pack()
                 self._plane(loaded)
-                np.testing.assert_allclose(self._rendered(), _colours()[..., :3], atol=3e-3)
+                np.testing.assert_allclose(self._rendered(), _colors()[..., :3], atol=3e-3)
 
     def test_channels_in_small_letters_and_further_ones(self):
         """Blender itself shows the first file black and the second not at all; Cycles shows both."""
-        native, colors = inputs.native(), _colours()
+        native, colors = inputs.native(), _colors()
         small = self.folder / "small.exr"
         native.images.write(small, colors[..., :3].copy())
         data = small.read_bytes()
@@ -143,18 +143,18 @@ class Textures(BlenderTest):
         np.testing.assert_allclose(self._rendered()[0, 0], (0.125, 0.25, 0.5), atol=3e-3)
 
     def test_mapping(self):
-        self._plane(_image("mapped", _colours()))
+        self._plane(_image("mapped", _colors()))
         mapping = self._mapping(
             Location=(0.25, 0.0, 0.0), Rotation=(0.0, 0.0, math.pi / 2), Scale=(1.0, -1.0, 1.0)
         )
         # (u, v) to (u, -v), turned to (v, u), moved to (v + 1/4, u).
-        expected = np.roll(_colours()[..., :3].transpose(1, 0, 2), -SIDE // 4, axis=0)
+        expected = np.roll(_colors()[..., :3].transpose(1, 0, 2), -SIDE // 4, axis=0)
         np.testing.assert_allclose(self._rendered(), expected, atol=2e-3)
         mapping.vector_type = "TEXTURE"  # the inverse: (u', v') = (v, u - 1/4)
-        expected = np.roll(_colours()[..., :3].transpose(1, 0, 2), SIDE // 4, axis=1)
+        expected = np.roll(_colors()[..., :3].transpose(1, 0, 2), SIDE // 4, axis=1)
         np.testing.assert_allclose(self._rendered(), expected, atol=2e-3)
 
-    def test_far_checkers_are_grey(self):
+    def test_far_checkers_are_gray(self):
         rows, columns = np.mgrid[0:64, 0:64]
         values = np.ones((64, 64, 4), np.float32)
         values[..., :3] = ((rows + columns) % 2)[..., None]
@@ -188,7 +188,7 @@ class Textures(BlenderTest):
         np.testing.assert_array_equal(alpha, values[..., 3])
 
     def test_other_nodes_are_named(self):
-        self._plane(_image("named", _colours()))
+        self._plane(_image("named", _colors()))
         self.texture.projection = "BOX"
         self.assertIn("is not projected with Flat", "".join(self._notes()))
         self.texture.projection = "FLAT"
@@ -203,7 +203,7 @@ class Textures(BlenderTest):
         self.assertIn("has no image", "".join(self._notes()))
 
     def test_another_uv_map_is_named(self):
-        self._plane(_image("mapped", _colours()))
+        self._plane(_image("mapped", _colors()))
         node = self.tree.nodes.new("ShaderNodeUVMap")
         self.tree.links.new(node.outputs[0], self.texture.inputs["Vector"])
         node.uv_map = "UVMap"

@@ -118,9 +118,9 @@ class AddMesostructure(BlenderTest):
         scenes.add_camera(ortho_scale=0.9)
         pixels = scenes.render(self.folder)
         self.assertTrue((pixels[..., 3] == 1).all(), "the floor has no hole")
-        greys = [m.node_tree.nodes["Principled BSDF"].inputs[0].default_value[1] for m in obj.data.materials]
-        self.assertLess(scenes.middle(pixels).max(), max(greys) + 0.05)
-        self.assertGreater(scenes.middle(pixels).min(), 0.3 * min(greys))
+        grays = [m.node_tree.nodes["Principled BSDF"].inputs[0].default_value[1] for m in obj.data.materials]
+        self.assertLess(scenes.middle(pixels).max(), max(grays) + 0.05)
+        self.assertGreater(scenes.middle(pixels).min(), 0.3 * min(grays))
 
 
 class ShowRepeated(BlenderTest):

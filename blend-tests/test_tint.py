@@ -1,4 +1,4 @@
-"""An artist's tint and exposure of measured materials: the picture, times a colour, sample for sample."""
+"""An artist's tint and exposure of measured materials: the picture, times a color, sample for sample."""
 
 import bpy
 import numpy as np

@@ -132,7 +132,7 @@ class Values(Usd):
 
 
 class Images(Usd):
-    """Of BTFs, on a plane that is seen from above. USD judges the file, Blender's importer shows it."""
+    """Images of BTFs, on a plane seen from above. USD checks the file, and Blender's importer shows it."""
 
     def setUp(self):
         super().setUp()

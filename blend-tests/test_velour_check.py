@@ -38,7 +38,7 @@ class VelourCheck(CheckFolderTest):
         self._assert_page(said)
 
     def _render(self, path):
-        """Of "shot", as a user would."""
+        """Renders "shot" as a user would."""
         bpy.ops.wm.open_mainfile(filepath=str(self.shots / "shot.blend"))
         settings = bpy.context.scene.render.image_settings
         settings.file_format, settings.color_mode, settings.color_depth = "OPEN_EXR", "RGBA", "16"

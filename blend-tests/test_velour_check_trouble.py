@@ -64,7 +64,7 @@ class Trouble(CheckFolderTest):
             command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, preexec_fn=_hear_ctrl_c
         )
         self.addCleanup(child.kill)
-        # Of the rendering itself Blender 5 says nothing where a script asks for it.
+        # Blender 5 prints nothing about the rendering itself when a script starts it.
         self._wait_for(self.shots / "velour-check/work/001/inside_render.log", "Read blend")
         time.sleep(2.0)
         start = time.monotonic()

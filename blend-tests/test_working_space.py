@@ -1,4 +1,4 @@
-"""Colours between linear Rec. 709 and a working space that is another one."""
+"""Colors between linear Rec. 709 and a working space that is another one."""
 
 from unittest import mock
 

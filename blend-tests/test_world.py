@@ -16,7 +16,7 @@ class World(BlenderTest):
         """Dark but for one bright spot, seen by the camera looking along +y."""
         image = bpy.data.images.new("sky", 64, 32, float_buffer=True)
         pixels = np.zeros((32, 64, 4), np.float32)
-        pixels[20:22, 40:42] = 10.0  # right of the centre, above the horizon
+        pixels[20:22, 40:42] = 10.0  # right of the center, above the horizon
         image.pixels.foreach_set(pixels.ravel())
         image.pack()
         tree = scenes.set_world().node_tree
@@ -46,7 +46,7 @@ class World(BlenderTest):
         self.assertEqual(shown, [0.1, 0.6, 1.0, 0.3])
 
     def _sequence(self, levels):
-        """The node of a world whose files are of one grey each."""
+        """The node of a world whose files are of one gray each."""
         for number, level in enumerate(levels, 1):
             path = self.folder / f"sky_{number:03}.exr"
             inputs.native().images.write(path, np.full((4, 8, 3), level, np.float32))
@@ -66,7 +66,7 @@ class World(BlenderTest):
         return float(scenes.render(self.folder, engine)[..., 1].mean())
 
     def _bright_direction(self, engine):
-        """Where the spot is seen: the brightest of six looks, and its centre there."""
+        """Where the spot is seen: the brightest of six looks, and its center there."""
         scene = scenes.use_engine(samples=16, size=48)
         scene.render.engine = engine
         if engine == "CYCLES":

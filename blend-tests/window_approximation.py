@@ -61,8 +61,8 @@ def measured(folder):
     velour = scenes.middle(scenes.render(folder))
     np.testing.assert_allclose(scenes.middle(_eevee(folder, "measured")), velour, rtol=0.06)
     _principled(material).inputs["Base Color"].default_value = (0.5, 0.5, 0.5, 1)
-    grey = scenes.middle(_eevee(folder, "grey"))
-    assert np.abs(grey / velour - 1).max() > 0.3, "grey is no approximation"
+    gray = scenes.middle(_eevee(folder, "gray"))
+    assert np.abs(gray / velour - 1).max() > 0.3, "gray is no approximation"
 
 
 def outlined(folder):

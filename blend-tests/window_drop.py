@@ -45,7 +45,7 @@ def _in(area, region):
 
 
 def _place(region, at):
-    """Of a point of the scene, in the window's pixels."""
+    """Position of a point of the scene, in the window's pixels."""
     x, y = view3d_utils.location_3d_to_region_2d(region, bpy.context.region_data, at)
     return int(region.x + x), int(region.y + y)
 

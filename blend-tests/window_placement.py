@@ -23,7 +23,7 @@ def _ui(name):
 
 
 def _plane(metres=0.5):
-    """A plane of 2 m with the tile of four greys, seen from above, and its material's tab."""
+    """A plane of 2 m with the tile of four grays, seen from above, and its material's tab."""
     for obj in list(bpy.data.objects):
         bpy.data.objects.remove(obj)
     with window.override():
@@ -51,7 +51,7 @@ def _report():
 
 
 def _model_info(material):
-    """Of its model, once it is read."""
+    """Summary of the material's model, once it is read."""
     for _ in range(_TURNS):
         info = _ui("summaries").model_summary(scenes.velour_node(material).image)
         if info is not None:
@@ -67,7 +67,7 @@ def model_rows(folder):
     info = yield from _model_info(material)
     size = scenes.velour_node(material).image.packed_file.size
     rows = dict(_ui("model_panel")._btf_rows(info))
-    raw = 6 * (inputs.QUARTER_TEXELS * 16) ** 2  # texels and pairs of half-float colours
+    raw = 6 * (inputs.QUARTER_TEXELS * 16) ** 2  # texels and pairs of half-float colors
     assert rows["Model"] == "BTF, srbf", rows
     assert rows["Texels"] == "16 x 16", rows
     assert rows["Tile"] == "500 x 500 mm", rows
@@ -76,7 +76,7 @@ def model_rows(folder):
     assert rows["Side"] == f"front: {data_size(info['parameter_bytes'])} in memory", rows
     assert rows["Speed"].endswith("million/s on one core"), rows
     assert rows["Size"] == f"{data_size(size)}, 1:{raw / size:.0f}", rows
-    assert float(rows["PSNR"].removesuffix(" dB")) > 40, rows  # four greys: a constant holds them
+    assert float(rows["PSNR"].removesuffix(" dB")) > 40, rows  # four grays: a constant holds them
     assert rows["Held-out pairs"] == "not measured", rows
     yield from _report()
     window.scroll_down(600)

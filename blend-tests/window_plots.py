@@ -1,4 +1,4 @@
-"""The plots of the material panel: drawn to the pixel, once, in the theme's colours."""
+"""The plots of the material panel: drawn to the pixel, once, in the theme's colors."""
 
 import os
 import time

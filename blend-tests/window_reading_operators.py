@@ -220,7 +220,7 @@ def density_of_what_is_gone(folder):
 
 
 def _begin_outline(folder, name, size):
-    """Of a pane, which lets by what passes beside it."""
+    """Starts the VOTF of a pane with gaps beside it. Returns the model's image and what delays reading it."""
     image = shown(large_file(folder, name, size))
     with window.override():
         bpy.ops.mesh.primitive_plane_add(size=0.5)
@@ -270,7 +270,10 @@ def _full_model():
 
 
 def _begin_scene_fit(folder, name, size):
-    """Of the cube, whose full model is a file of that many bytes; what reading is held by."""
+    """Starts the scene fit of the cube, whose full model is a file of that many bytes.
+
+    Returns the model's image and what delays reading it.
+    """
     measurement = inputs.glossy_measurement()
     image = shown(large_file(folder, name, size, _full_model()))
     files, measured = module("export.files"), module("operators.measured")

@@ -13,7 +13,7 @@ SCREEN = "1400x720"
 
 def start(folder):
     """Called by the harness once the window is there."""
-    window.run(folder, (ball_in_a_sky, btf, holdouts_and_backs, grey, edits), viewport=True)
+    window.run(folder, (ball_in_a_sky, btf, holdouts_and_backs, gray, edits), viewport=True)
 
 
 def ball_in_a_sky(folder):
@@ -51,7 +51,7 @@ def btf(folder):
 
 
 def holdouts_and_backs(folder):
-    """Of a holdout and what is behind it nothing is seen; of a back that is culled what is behind it."""
+    """A holdout hides itself and what is behind it; through a culled back one sees what is behind it."""
     scenes.set_world((0.5, 0.7, 1.0), 0.5)
     bpy.context.scene.render.film_transparent = True
     cube = bpy.data.objects["Cube"]
@@ -78,19 +78,19 @@ def holdouts_and_backs(folder):
     assert blue.mean() < 0.005, blue.mean()
 
 
-def grey(folder):
+def gray(folder):
     """Scene-linear 0.18 is 118 of 255 under Standard."""
     for name in ("Cube", "Light"):
         bpy.data.objects.remove(bpy.data.objects[name])
     scenes.set_world((0.18, 0.18, 0.18))
     viewport.show_real_time()
     yield from viewport.real_time_finished()
-    values = 255 * viewport.middle(window.screenshot(folder, "grey"))
+    values = 255 * viewport.middle(window.screenshot(folder, "gray"))
     assert np.abs(values - 118).max() <= 1, (values.min(), values.max())
 
 
 def edits(folder):
-    """What is moved, coloured or lit anew is drawn anew."""
+    """What is moved, colored or lit anew is drawn anew."""
     scenes.set_world((0.5, 0.7, 1.0), 0.5)
     cube = bpy.data.objects["Cube"]
     cube.active_material = bpy.data.materials["Material"]

@@ -78,8 +78,8 @@ def _refused(folder, name, *words):
         assert each in sentence, sentence
     assert "unexpectedly" not in sentence, sentence
     seen = window.screenshot(folder, name)
-    grey = 255 * viewport.middle(seen)
-    assert np.abs(grey - 118).max() <= 1, (grey.min(), grey.max())
+    gray = 255 * viewport.middle(seen)
+    assert np.abs(gray - 118).max() <= 1, (gray.min(), gray.max())
     assert len(bpy.context.window_manager.windows) == 1
     width = viewport.text_width(folder, f"{name}-text")
     assert width > 4 * len(sentence), (width, sentence)

@@ -72,7 +72,7 @@ def net_of_its_btf(folder):
 
 
 def _share(drawn, traced):
-    """Of the ray tracer's light, where both show structure alone."""
+    """Drawn light as a share of the ray tracer's, where both show structure alone."""
     inside = (drawn[..., 3] > 0.999) & (traced[..., 3] > 0.999)
     return drawn[inside][:, :3].sum() / traced[inside][:, :3].sum()
 

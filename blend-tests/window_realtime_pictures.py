@@ -1,4 +1,4 @@
-"""The viewport in real time: pictures of base colours, and what is put in the place of what is shown."""
+"""The viewport in real time: pictures of base colors, and what is put in the place of what is shown."""
 
 from pathlib import Path
 
@@ -19,7 +19,7 @@ def start(folder):
 
 
 def _checks(name, *colors):
-    """An image of 4 x 4 squares of these two colours, and a ramp over them."""
+    """An image of 4 x 4 squares of these two colors, and a ramp over them."""
     image = bpy.data.images.new(name, 16, 16, float_buffer=True)
     image.colorspace_settings.is_data = True
     y, x = np.mgrid[:16, :16]

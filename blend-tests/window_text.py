@@ -111,14 +111,14 @@ def _drawn(folder, name, area, icon):
             _shown.update(text=_TEXT, icon=icon, active=active)
             area.tag_redraw()
             yield 0.6
-            pictures.append(window.screenshot(folder, f"{name}-{'bright' if active else 'grey'}"))
+            pictures.append(window.screenshot(folder, f"{name}-{'bright' if active else 'gray'}"))
     return lines[region.width], _extent(*pictures, region), region
 
 
-def _extent(bright, grey, region):
+def _extent(bright, gray, region):
     """Pixels from the first column that differs to the last: what was drawn of the text, an icon left out."""
     rows, columns = slice(region.y, region.y + region.height), slice(region.x, region.x + region.width)
-    differs = np.abs(bright - grey).max(axis=2)[rows, columns] > 0.05
+    differs = np.abs(bright - gray).max(axis=2)[rows, columns] > 0.05
     found = np.flatnonzero(differs.any(axis=0))
     if _shown["icon"] != "NONE":
         found = found[found > found[0] + _unit()]  # an icon is narrower, the text begins behind it

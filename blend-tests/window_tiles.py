@@ -182,7 +182,7 @@ def estimate(folder):
 
 
 def _orange(picture):
-    """How many pixels have the colour of a curve's chosen point."""
+    """How many pixels have the color of a curve's chosen point."""
     return int((np.abs(picture - (1.0, 0.6, 0.2)).max(axis=2) < 0.1).sum())
 
 

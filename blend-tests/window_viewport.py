@@ -1,4 +1,4 @@
-"""The rendered viewport: its colours, its views and regions; that it stops, rests and says errors."""
+"""The rendered viewport: its colors, its views and regions; that it stops, rests and says errors."""
 
 import time
 
@@ -11,7 +11,7 @@ from support import scenes, viewport, window
 def start(folder):
     """Called by the harness once the window is there."""
     tests = (
-        grey,
+        gray,
         as_the_final_render,
         first_picture,
         one_redraw,
@@ -26,19 +26,19 @@ def start(folder):
     window.run(folder, tests, viewport=True)
 
 
-def grey(folder):
+def gray(folder):
     """Scene-linear 0.18 is 118 of 255 under Standard."""
     bpy.data.objects.remove(bpy.data.objects["Cube"])
     bpy.data.objects.remove(bpy.data.objects["Light"])
     scenes.set_world((0.18, 0.18, 0.18))
     viewport.show()
     yield from viewport.finished()
-    values = 255 * viewport.middle(window.screenshot(folder, "grey"))
+    values = 255 * viewport.middle(window.screenshot(folder, "gray"))
     assert np.abs(values - 118).max() <= 1, (values.min(), values.max())
 
 
 def as_the_final_render(folder):
-    """The same colours on the screen as in a saved picture, under Blender's default view transform."""
+    """The same colors on the screen as in a saved picture, under Blender's default view transform."""
     viewport.colored_scene().scale = (4, 4, 4)  # the camera sees nothing else in the middle
     bpy.data.objects["Cube"].location = (0, 0, -3.5)
     default = bpy.context.scene.view_settings.view_transform
@@ -56,7 +56,7 @@ def as_the_final_render(folder):
     final = scenes.read(folder / "final.png")[30:34, 30:34, :3]
     difference = 255 * np.abs(screen.mean((0, 1)) - final.mean((0, 1)))
     assert difference.max() < 3, difference
-    assert np.ptp(final.mean((0, 1))) > 0.1, "it has no colour"
+    assert np.ptp(final.mean((0, 1))) > 0.1, "it has no color"
 
 
 def first_picture(folder):

@@ -159,7 +159,7 @@ def _painted():
 
 
 def _attribute():
-    """Of the cube's mesh, which its twin shows as well."""
+    """Adds a color attribute to the cube's mesh, which its twin shows as well."""
     paint = bpy.data.meshes["Cube"].attributes.new("paint", "FLOAT_COLOR", "POINT")
     for i, element in enumerate(paint.data):
         element.color = (i % 2, i // 2 % 2, i // 4, 1)

@@ -106,13 +106,13 @@ def object_types(folder):
 
 
 def _counts():
-    """Of meshes and lamps that are there."""
+    """Numbers of instances and lights in the scene."""
     info = viewport.the_one()._live.scene.info()
     return info["instances"], info["lights"]
 
 
 def exposure(folder):
-    """Of a picture that is finished, which is not rendered anew."""
+    """A new exposure applies to a finished picture without rendering it again."""
     bpy.data.objects.remove(bpy.data.objects["Cube"])
     scenes.set_world((0.18, 0.18, 0.18))
     viewport.show()

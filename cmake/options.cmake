@@ -51,18 +51,34 @@ function(join_sources target batch)
   set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE ${batch})
 endfunction()
 
-# velour_library(NAME FILES... LINK ... [BATCH n]): builds a folder of native/src as a static library. A folder may use
-# only what it links; scripts/check_layers enforces the same order for includes. BATCH, for join_sources(): fewer than 8
-# where sources take long to compile, so that a changed source is compiled within 10 seconds.
-function(velour_library name)
-  cmake_parse_arguments(ARG "" "BATCH" "FILES;LINK" ${ARGN})
+# velour_layer(FOLDER LAYERS ...): builds a folder of native/src as a static library, velour_FOLDER with _ for /; the other
+# arguments are described in native/src/layers.cmake. Folders with a CMakeLists.txt inside it build themselves. The C
+# interface is built from objects.
+function(velour_layer folder layers)
+  cmake_parse_arguments(ARG "" "BATCH" "BELOW;LIBRARIES" ${ARGN})
   if(NOT ARG_BATCH)
     set(ARG_BATCH 8)
   endif()
-  add_library(velour_${name} STATIC ${ARG_FILES})
-  join_sources(velour_${name} ${ARG_BATCH} ${ARG_FILES})
-  target_link_libraries(velour_${name} PUBLIC ${ARG_LINK} PRIVATE velour_options)
-  target_include_directories(velour_${name} PUBLIC ${PROJECT_SOURCE_DIR}/native/src)
+  set(source ${PROJECT_SOURCE_DIR}/native/src)
+  file(GLOB_RECURSE files CONFIGURE_DEPENDS ${source}/${folder}/*.cpp)
+  file(GLOB_RECURSE lists RELATIVE ${source} ${source}/${folder}/*/CMakeLists.txt)
+  list(TRANSFORM lists REPLACE "/CMakeLists.txt$" "")
+  foreach(other ${layers} ${lists})
+    if(other MATCHES "^${folder}/")
+      list(FILTER files EXCLUDE REGEX "/native/src/${other}/")
+    endif()
+  endforeach()
+  string(REPLACE "/" "_" name ${folder})
+  if(folder STREQUAL capi)
+    add_library(velour_${name} OBJECT ${files})
+  else()
+    add_library(velour_${name} STATIC ${files})
+  endif()
+  join_sources(velour_${name} ${ARG_BATCH} ${files})
+  list(TRANSFORM ARG_BELOW REPLACE "/" "_")
+  list(TRANSFORM ARG_BELOW PREPEND velour_)
+  target_link_libraries(velour_${name} PUBLIC ${ARG_BELOW} ${ARG_LIBRARIES} PRIVATE velour_options)
+  target_include_directories(velour_${name} PUBLIC ${source})
   share_precompiled(velour_${name} velour_precompiled)
 endfunction()
 

@@ -49,7 +49,7 @@ def test_black_stays_without_a_division_by_nothing():
 
 
 def test_squares_of_alphas_add():
-    """Of a mirror the offset itself; of stretched highlights along both axes."""
+    """A mirror takes on the offset itself; stretched highlights are widened along both axes."""
     assert with_look(values(roughness=0.0), Look(roughness=0.4))["principled"]["roughness"] == pytest.approx(
         0.4
     )

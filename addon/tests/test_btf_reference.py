@@ -40,7 +40,7 @@ def mean_pixel(picture) -> np.ndarray:
 
 
 def steepest_albedo(path) -> np.ndarray:
-    """Of the view nearest to the normal: lights of equal solid angle."""
+    """Albedo seen from the view nearest to the normal, as a sum over lights of equal solid angle."""
     with Btf.load(path) as btf:
         angles = btf.angles()
         view = int(angles[:, 2].argmin() // LIGHTS)

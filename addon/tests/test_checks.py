@@ -142,13 +142,13 @@ def _commit(root, name, text):
 def test_pages_are_old_when_what_they_measure_has_changed(tmp_path):
     assert "no git history" in measured_pages.told(tmp_path)[0]
     subprocess.run(["git", "init", "-q", tmp_path], check=True)
-    measured = _commit(tmp_path, "native/src/brdf/load.cpp", "1")
-    page = "docs/measurements.md"
+    measured = _commit(tmp_path, "native/src/brdf/formats/load.cpp", "1")
+    page = "docs/results/measurements.md"
     _commit(tmp_path, page, f"All numbers come from one run: 2026-11-20, commit {measured},\n")
     assert measured_pages.told(tmp_path) == []
     _commit(tmp_path, "native/src/render/render.cpp", "2")
     assert measured_pages.told(tmp_path) == []
-    _commit(tmp_path, "native/src/brdf/load.cpp", "3")
+    _commit(tmp_path, "native/src/brdf/formats/load.cpp", "3")
     (sentence,) = measured_pages.told(tmp_path)
     assert page in sentence
     assert "1 commits" in sentence

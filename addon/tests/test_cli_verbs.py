@@ -354,7 +354,7 @@ def test_capture_of_a_tile(tmp_path):
 
 @pytest.mark.parametrize("name", ["mesh.obj", "mesh.ply"])
 def test_capture_of_a_mesh(name, tmp_path):
-    """A white square of 2 x 2: its f is the base colour over pi from everywhere."""
+    """A white square of 2 x 2: its f is the base color over pi from everywhere."""
     path = tmp_path / name
     obj = "v -1 -1 0\nv 1 -1 0\nv 1 1 0\nv -1 1 0\nf 1 2 3 4\n"
     ply = (

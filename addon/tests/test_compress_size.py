@@ -116,8 +116,8 @@ def path_of(folder):
 
 
 def peak_megabytes(*arguments):
-    """Of a run of its own, in millions of bytes: its high-water mark. What the system tells at the end counts
-    this process as well, from which it was forked."""
+    """Peak memory of a separate process in millions of bytes, from its high-water mark. The peak that the
+    system reports at its end would count this process as well, from which it was forked."""
     process = subprocess.Popen(command(*arguments), stdout=subprocess.DEVNULL, env=environment())
     peak = 0
     while process.poll() is None:

@@ -13,6 +13,8 @@ from PIL import Image, PngImagePlugin
 from velour.native.table import STRATEGIES
 
 PAGES = [ROOT / "README.md", ROOT / "CHANGELOG.md", *sorted((ROOT / "docs").rglob("*.md"))]
+_REFERENCE = ROOT / "docs/reference"
+COMMAND_LINE_PAGES = [_REFERENCE / "command_line.md", *sorted(_REFERENCE.glob("cli_*.md"))]
 SOURCES = [
     path
     for folder in ("native/src", "native/include", "addon/velour")
@@ -66,13 +68,23 @@ def test_a_link_to_nowhere_is_seen(tmp_path):
 
 def test_every_page_is_in_the_index():
     index = (ROOT / "docs/README.md").read_text(encoding="utf-8")
-    pages = [path.name for path in (ROOT / "docs").glob("*.md") if path.name != "README.md"]
+    docs = ROOT / "docs"
+    pages = [str(path.relative_to(docs)) for path in docs.rglob("*.md") if path != docs / "README.md"]
+    assert len(pages) > 60
     assert [name for name in pages if f"({name})" not in index] == []
 
 
+def test_pages_are_in_one_of_four_folders():
+    names = {path.name for path in (ROOT / "docs").iterdir()}
+    assert names == {"README.md", "references.bib", "guide", "reference", "engine", "results"}
+
+
 def test_every_folder_of_code_says_what_it_is_for():
+    """Folders inside the layers of native/src are described by the README of the folder at the top."""
     folders = {path.parent for path in SOURCES} - {ROOT / "native/include/velour", ROOT / "addon/velour"}
     assert len(folders) > 20
+    native = ROOT / "native/src"
+    folders = {native / f.relative_to(native).parts[0] if native in f.parents else f for f in folders}
     assert [str(folder) for folder in folders if not (folder / "README.md").is_file()] == []
 
 
@@ -101,9 +113,10 @@ def test_every_strategy_is_in_the_glossary():
 
 
 def test_places_that_the_next_engineer_is_sent_to_exist():
-    text = (ROOT / "docs/engine/adding.md").read_text(encoding="utf-8")
+    pages = [ROOT / "docs/engine" / name for name in ("adding.md", "architecture.md")]
+    text = "".join(page.read_text(encoding="utf-8") for page in pages)
     places = re.findall(r"`((?:native|addon|scripts|blend-tests)/[\w./-]+)`", text)
-    assert len(places) > 40
+    assert len(places) > 60
     assert [place for place in places if not (ROOT / place).exists()] == []
 
 
@@ -121,8 +134,17 @@ def test_what_the_code_cites_is_in_the_bibliography(code):
     assert cited - known == set()
 
 
+def test_every_verb_is_linked_to_its_page():
+    source = (ROOT / "addon/velour/core/cli/main.py").read_text(encoding="utf-8")
+    verbs = set(re.findall(r'^    "(\w+)": ', source, flags=re.M))
+    page = COMMAND_LINE_PAGES[0].read_text(encoding="utf-8")
+    linked = set(re.findall(r"^\| `(\w+) .*\]\(cli_", page, flags=re.M))
+    assert len(verbs) > 10
+    assert verbs ^ linked == set()
+
+
 def test_every_option_of_the_command_line_is_documented():
-    text = (ROOT / "docs/command_line.md").read_text(encoding="utf-8")
+    text = "".join(page.read_text(encoding="utf-8") for page in COMMAND_LINE_PAGES)
     verbs = (ROOT / "addon/velour/core/cli").glob("*.py")
     source = "\n".join(path.read_text() for path in verbs)
     options = set(re.findall(r'add_argument\(\s*(?:"-o", )?"(--[a-z-]+)"', source)) - {

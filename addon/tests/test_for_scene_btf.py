@@ -23,7 +23,7 @@ def folder(tmp_path_factory):
     """A BTF, its full models, a plane, a sky and an observation."""
     folder = tmp_path_factory.mktemp("for_scene_btf")
     (folder / "btf").symlink_to(captured("corduroy", 32, 12, 12, 4))
-    # Of few lobes an eighth of the bytes is better than the coarse levels.
+    # With few lobes, a refit to an eighth of the bytes is better than the coarse levels.
     for name, method, size in (("srbf", "srbf", 60000), ("few", "srbf", 20000), ("svd", "svd", 60000)):
         full = folder / f"{name}.velour"
         done = velour("compress", folder / "btf", "--method", method, "--bytes", size, "-o", full, "--quiet")

@@ -13,7 +13,7 @@ IMAGES = ROOT / "docs/guide/images"
 
 
 def _is_blank(pixels: np.ndarray) -> bool:
-    """Few colours, or one that all but a hundredth of the pixels have."""
+    """Few colors, or one that all but a hundredth of the pixels have."""
     flat = np.round(pixels.reshape(-1, pixels.shape[-1]) * 255).astype(np.int64)
     colors, counts = np.unique(flat, axis=0, return_counts=True)
     return len(colors) < 8 or counts.max() > 0.99 * counts.sum()
@@ -43,7 +43,7 @@ def test_a_blank_picture_is_seen(tmp_path):
 
     almost = np.zeros((100, 100, 3), np.float32)
     almost[0, :50] = np.linspace(0, 1, 50)[:, None]  # a mouse pointer, say
-    for name, pixels in (("grey.exr", np.full((100, 100, 3), 0.2, np.float32)), ("almost.exr", almost)):
+    for name, pixels in (("gray.exr", np.full((100, 100, 3), 0.2, np.float32)), ("almost.exr", almost)):
         images.write(tmp_path / name, pixels)
         assert _is_blank(images.read(tmp_path / name))
 

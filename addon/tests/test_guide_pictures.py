@@ -1,4 +1,4 @@
-"""Pictures of the guide: panels keep their colours, renders have no palette, and both are small."""
+"""Pictures of the guide: panels keep their colors, renders have no palette, and both are small."""
 
 from __future__ import annotations
 

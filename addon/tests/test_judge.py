@@ -14,13 +14,13 @@ _SPREAD = _TRUTH * np.random.default_rng(2).uniform(0.0, 0.1, SIZE)
 
 
 def renders(count, seed, noise=1.0, gain=1.0):
-    """Of a picture whose pixels are noisy by up to a tenth, some hardly."""
+    """Renders of a picture. The noise of a pixel is up to a tenth of its value, and almost none in some."""
     random = np.random.default_rng(seed)
     return gain * (_TRUTH + noise * _SPREAD * random.standard_normal((count, *SIZE)))
 
 
 def verdicts(reference, **settings):
-    """Of RUNS times four renders; `reference(seed, estimate)` is what each is held against."""
+    """Verdicts on RUNS sets of four renders, each with its estimate, against `reference(seed, estimate)`."""
     for seed in range(RUNS):
         ours = judge.estimate(renders(4, seed, **settings))
         yield judge.judge(ours, reference(seed, ours), LIMIT), ours

@@ -118,7 +118,7 @@ def _picture_of_meshes(add):
 
 
 def test_many_meshes_are_those_that_are_added_one_by_one():
-    """Of several sets of arrays, and with triangles that are left out: the same picture, bit by bit."""
+    """Meshes with different sets of arrays and with dropped triangles give the same picture, bit by bit."""
     cube = _cube_faces()
     flat = _bare(*cube)
     soft = {name: _bare(*cube, mirror=-1)[name] for name in ("positions", "triangles", "corner_vertices")}

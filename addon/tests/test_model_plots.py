@@ -196,8 +196,8 @@ def test_wrong_styles_are_refused(model, tmp_path):
             plot.draw(side=20)
         with pytest.raises(VelourError, match=r"background.*2\.0"):
             plot.draw(background=(0, 2, 0))
-        with pytest.raises(TypeError, match="no style 'colour'"):
-            plot.draw(colour=(0, 0, 0))
+        with pytest.raises(TypeError, match="no style 'color'"):
+            plot.draw(color=(0, 0, 0))
         with pytest.raises(VelourError, match=r"\.png, \.svg or \.csv"):
             plot.save(tmp_path / "plot.pdf")
 

@@ -32,7 +32,7 @@ def test_a_page_without_its_two_markers_is_refused(page):
 
 def test_every_generated_page_has_its_part():
     for name in ("models", "fit", "ggx", "principled"):
-        replaced((ROOT / f"docs/{name}.md").read_text(encoding="utf-8"), name, "")
+        replaced((ROOT / f"docs/results/{name}.md").read_text(encoding="utf-8"), name, "")
 
 
 def test_targets():
@@ -83,7 +83,7 @@ def test_tables_name_every_material_and_model(results):
 def test_pages_and_rows_are_written(results, tmp_path):
     (tmp_path / "models").mkdir()
     conditions = {"machine": "m", "date": "d", "commit": "c", "seed": 1, "threads": 2, "load": 1.25}
-    models_text.write(ROOT / "docs", tmp_path, results, {}, conditions)
+    models_text.write(ROOT / "docs/results", tmp_path, results, {}, conditions)
     page = (tmp_path / "models.md").read_text(encoding="utf-8")
     assert "| scattered | 0.0200 | 6 of 8 | 4 | 44 | 2.00 | 50 | 100 | 10 | 20 |" in page
     assert "commit c" in page

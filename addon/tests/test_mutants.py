@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import re
 import subprocess
 from pathlib import Path
 
@@ -31,6 +32,16 @@ def test_all_faults_can_be_planted_in_this_tree(capsys):
     assert mutants.main(["--check"]) == mutants.DONE, capsys.readouterr().err
 
 
+def test_pages_agree_with_the_faults():
+    names = {fault.name for fault in mutant_faults.read_all(mutants.FAULTS)}
+    page = (ROOT / "docs/engine/testing.md").read_text(encoding="utf-8")
+    assert f"`scripts/lib/mutants` holds {len(names)} faults" in page
+    table = (ROOT / "docs/results/planted_faults.md").read_text(encoding="utf-8")
+    rows = set(re.findall(r"^\| ([\w-]+) \| [\w/]*/", table, flags=re.M))
+    assert len(rows) > 80
+    assert rows - names == set()
+
+
 def test_a_tree_with_a_fault_is_not_checked(monkeypatch, tmp_path, capsys):
     monkeypatch.setattr(mutants, "FAULTS", tmp_path)  # has none
     monkeypatch.delenv(mutant_tree.PLANTED, raising=False)  # this may be such a tree
@@ -41,14 +52,14 @@ def test_a_tree_with_a_fault_is_not_checked(monkeypatch, tmp_path, capsys):
 
 
 def test_a_header_is_read(tmp_path):
-    header = _HEADER + "Nearest: native:capi/job_test.cpp,unit/job/job_test.cpp=Job.*\n"
+    header = _HEADER + "Nearest: native:capi/job_test.cpp,unit/base/job_test.cpp=Job.*\n"
     fault = mutant_faults.read(_patch(tmp_path, text=header + _DIFF))
     assert (fault.name, fault.planted, fault.reason) == (
         "wrong-number",
         "the number is wrong.",
         "everybody suffers.",
     )
-    names = ["python:test_mutants.py", "native:capi/job_test.cpp", "native:unit/job/job_test.cpp=Job.*"]
+    names = ["python:test_mutants.py", "native:capi/job_test.cpp", "native:unit/base/job_test.cpp=Job.*"]
     assert list(map(str, fault.nearest)) == names
     assert fault.files == ("value.txt",)
 
@@ -73,7 +84,7 @@ def test_wrong_headers_are_named(tmp_path, wrong, word):
 def _tree(folder: Path) -> Path:
     """A root with one folder of code, one test and a file to plant a fault in."""
     for name, text in {
-        "native/src/job/job.h": "",
+        "native/src/base/job.h": "",
         "addon/velour/a.py": "",
         "addon/tests/test_mutants.py": "",
         "value.txt": "one\n",
@@ -87,7 +98,7 @@ def test_the_check_names_what_is_wrong(tmp_path, monkeypatch):
     root, folder = _tree(tmp_path), tmp_path / "faults"
     monkeypatch.setattr(mutant_faults, "LEAST_FAULTS", 1)
     _patch(folder, "good")
-    uncovered = [f"no fault is planted in {name}" for name in ("addon/velour", "native/src/job")]
+    uncovered = [f"no fault is planted in {name}" for name in ("addon/velour", "native/src/base")]
     assert list(mutant_faults.problems(root, folder)) == uncovered
     _patch(folder, "old", _HEADER + _DIFF.replace("-one", "-three"))
     _patch(folder, "lost", _HEADER.replace("test_mutants", "test_nothing") + _DIFF)

@@ -69,7 +69,7 @@ def test_what_is_flat_gets_none(paint, steps):
 
 
 def test_none_where_it_would_make_pictures_worse(wires, steps, monkeypatch):
-    """Of a net shown as a mirror of a metal, whose highlights a normal map puts where the model has none."""
+    """On a net shown as a metal mirror, a normal map puts highlights where the model has none."""
     mirror = {"metallic": 1.0, "roughness": 0.1}
     found = _made(wires, steps[0], **mirror)
     assert found.error_with > 0.9 * found.error_without

@@ -30,7 +30,7 @@ def test_equal_pictures_do_not_differ(flip):
 
 
 def test_black_against_white_is_nearly_all(flip):
-    """[ANA20] 4.1.3: the largest difference of colours is that of green and blue."""
+    """[ANA20] 4.1.3: the largest difference of colors is that of green and blue."""
     black, white = np.zeros((SIDE, SIDE, 3)), np.ones((SIDE, SIDE, 3))
     assert 0.9 < flip_metric.flip_map(black, white).mean() <= 1
     green, blue = (np.broadcast_to(np.eye(3)[k], (SIDE, SIDE, 3)) for k in (1, 2))
@@ -38,14 +38,14 @@ def test_black_against_white_is_nearly_all(flip):
 
 
 @pytest.mark.parametrize("difference", [0.5, 1.0, 2.3])
-def test_even_greys_differ_as_the_paper_says(flip, difference):
+def test_even_grays_differ_as_the_paper_says(flip, difference):
     """[ANA20] 4.1.3: p_t d^q / (p_c c_max), q = 0.7, p_c = 0.4, p_t = 0.95, c_max = HyAB(green, blue)^q."""
     expected = 0.95 / (0.4 * 41.28) * difference**0.7
     assert flip_metric.of_lightness(difference) == pytest.approx(expected, rel=2e-3)
 
 
 def test_noise_is_larger_close_up(flip):
-    """The eye's filter takes fine noise for less than a patch as far off; a fine checkerboard is grey."""
+    """The eye's filter takes fine noise for less than a patch as far off; a fine checkerboard is gray."""
     x, y = np.mgrid[:SIDE, :SIDE]
     board = np.repeat(((x + y) % 2)[..., None].astype(float), 3, axis=2)
     coarse = np.repeat(((x // 32 + y // 32) % 2)[..., None].astype(float), 3, axis=2)
@@ -61,12 +61,12 @@ def test_display_is_the_srgb_curve_upside_down():
     np.testing.assert_allclose(found[1], [[0, 0.04045, 0.46136]], atol=1e-5)
 
 
-def test_exposure_makes_the_object_grey():
+def test_exposure_makes_the_object_gray():
     picture = 3.0 * _noise(2)
     where = EVERYWHERE.copy()
     where[:10] = False
     scaled = flip_metric.exposure(picture, where) * picture
-    assert (scaled[where] @ flip_metric.LUMINANCE).mean() == pytest.approx(flip_metric.GREY)
+    assert (scaled[where] @ flip_metric.LUMINANCE).mean() == pytest.approx(flip_metric.GRAY)
 
 
 def test_the_percentile_and_the_mean_are_the_objects(flip):

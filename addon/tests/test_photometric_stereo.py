@@ -37,7 +37,7 @@ def solved(radiance, coverage=None):
 
 
 def least_squares(radiance):
-    """Of all pictures, as they are."""
+    """Normals fitted to all pictures by plain least squares, with no pixel left out."""
     scaled = np.linalg.lstsq(LIGHTS, radiance.reshape(len(LIGHTS), -1), rcond=None)[0]
     return unit(scaled.T.reshape(*radiance.shape[1:], 3))
 

@@ -9,7 +9,7 @@ from conftest import ROOT
 from velour.core import plain_words
 from velour.core.model_warnings import panel_warnings
 
-FOLDERS = ("fit", "compress", "capture")
+FOLDERS = ("brdf/fit", "btf/fit", "usage", "capture", "votf/capture")
 _WARNS = re.compile(r"warnings_?\.(?:push|emplace)_back\((.*?)\);$", re.DOTALL | re.MULTILINE)
 JARGON = re.compile(
     r"relmse|relative L2|\bL2\b|reciprocal:|albedo\b|\bRMS\b|coefficient|kcta|clustered|Rec\. 709|\bentries\b"
@@ -148,7 +148,7 @@ def _example(statement: str) -> str:
 
 def _warnings_of_the_library() -> list[str]:
     sources = [
-        path.read_text(encoding="utf-8") for f in FOLDERS for path in (ROOT / "native/src" / f).glob("*.cpp")
+        path.read_text(encoding="utf-8") for f in FOLDERS for path in (ROOT / "native/src" / f).rglob("*.cpp")
     ]
     statements = [statement for source in sources for statement in _WARNS.findall(source)]
     return [_example(statement) for statement in statements if '"' in statement]

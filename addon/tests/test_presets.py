@@ -87,7 +87,7 @@ def test_a_picture_shows_the_material_on_a_backdrop(workshop):
     assert 0 <= pixels.min() < pixels.max() <= 1
     assert (pixels[..., 3] == 1).all()
     corner, ball = pixels[:20, :20, :3].mean(axis=(0, 1)), pixels[80:176, 80:176, :3].mean(axis=(0, 1))
-    assert np.ptp(corner) < 0.01  # grey
+    assert np.ptp(corner) < 0.01  # gray
     assert ball[0] > ball[1] > ball[2] + 0.1  # gold
 
 

@@ -12,9 +12,9 @@ _OPTIONS = {"width": 160, "height": 120, "spp": 8, "split": 4, "bounces": 1, "th
 @pytest.fixture
 def scene():
     with Scene() as made:
-        grey = made.add_principled_material(base_color=(0.5, 0.5, 0.5), roughness=1.0)
+        gray = made.add_principled_material(base_color=(0.5, 0.5, 0.5), roughness=1.0)
         corners = np.array([(-1, -1, 0), (1, -1, 0), (0, 1, 0)], np.float32)
-        made.add_instance(made.add_mesh(corners, np.array([(0, 1, 2)], np.uint32))[0], np.eye(3, 4), [grey])
+        made.add_instance(made.add_mesh(corners, np.array([(0, 1, 2)], np.uint32))[0], np.eye(3, 4), [gray])
         made.set_world_color((1, 1, 1))
         made.look_at((0, 0.1, 4), (0, 0, 0), 0.8, 4 / 3)
         made.commit()

@@ -30,7 +30,7 @@ def test_the_axis_that_a_face_faces_most():
 
 
 def test_rounding_chooses_no_axis():
-    """Of a slope of 45 degrees, whichever way its normal is rounded."""
+    """A slope of 45 degrees has the same projection whichever way its normal is rounded."""
     noise = np.random.default_rng(1).normal(scale=1e-6, size=(100, 3))
     points = np.tile((1.0, 2.0, 3.0), (100, 1))
     for normal in ((1, 1, 0), (0, 1, 1), (1, 0, -1), (1, 1, 1)):

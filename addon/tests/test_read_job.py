@@ -70,7 +70,7 @@ def _ended(job, seconds=60.0):
 
 
 def test_closing_cancels():
-    """Of the thread as well, at the next piece of what it reads."""
+    """Closing ends the thread as well, at the next piece that it reads."""
     pieces, first = [], threading.Event()
 
     def read():

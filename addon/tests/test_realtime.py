@@ -80,7 +80,7 @@ def test_rows_of_a_white_diffuse_material_reflect_nearly_all_light():
     np.testing.assert_allclose(albedo, 1, atol=0.03)
 
 
-# Light between facets makes rough coloured metals a little darker than their colour.
+# Light between facets makes rough colored metals a little darker than their color.
 @pytest.mark.parametrize(("lobe", "off"), [("single", 2e-5), ("separable", 2e-5), ("whole", 0.008)])
 @pytest.mark.parametrize("metallic", [0.0, 0.4, 1.0])
 def test_rows_go_in_step_with_the_base_color(metallic, lobe, off):
@@ -126,7 +126,7 @@ def test_a_picture_of_a_base_color_is_drawn_and_others_are_counted_as_simpler():
 
 
 class _Job:
-    """Of a table; done once it may be."""
+    """A job that makes a table. It is done once `is_done` is set."""
 
     def __init__(self, is_done=True):
         self.is_done, self.closed = is_done, False
@@ -241,7 +241,7 @@ with Scene() as scene, Model.load(sys.argv[1]) as model:
 @pytest.mark.skipif(len(os.sched_getaffinity(0)) < 2, reason="one processor makes no other threads")
 @pytest.mark.parametrize(("threads", "low", "high"), [(1, 0.0, 0.05), (0, 0.1, 1.0)])
 def test_jobs_of_tables_take_no_more_threads_than_they_may(threads, low, high, model_file):
-    """Of the time that they take of processors, the share of others than their own thread, which is gone."""
+    """Checks the share of CPU time that the jobs use in threads other than their own, which have ended."""
     command = [sys.executable, "-c", _WORKERS_SHARE, str(model_file), str(threads)]
     path = os.pathsep.join(sys.path)
     done = subprocess.run(

@@ -56,7 +56,7 @@ def test_images_cut_out():
     np.testing.assert_allclose(pixels[..., :2], mask * (1, 0.5), atol=1e-3)
 
 
-def test_panes_have_colours_by_images():
+def test_panes_have_colors_by_images():
     colors = np.random.default_rng(1).uniform(0.1, 0.9, (SIDE, SIDE, 3)).astype(np.float32)
     with Shader.new() as shader, Texture.from_pixels(colors, filter="closest") as texture:
         shader.add_layer("transparent", {"base_color": TextureSlot(texture)})
@@ -73,10 +73,10 @@ def test_wrong_calls_are_refused_with_a_sentence():
         shader.add_layer("glossy", roughness=0.2)
         with pytest.raises(VelourError, match="not finite"):
             shader.weigh_layer("gain", float("nan"))
-        colour = Texture.from_pixels(np.ones((2, 2, 3), np.float32))
+        color = Texture.from_pixels(np.ones((2, 2, 3), np.float32))
         with pytest.raises(VelourError, match=r"vlr_factor_desc\.texture requires a texture of numbers"):
-            shader.weigh_layer("share", texture=colour)
-        colour.close()
+            shader.weigh_layer("share", texture=color)
+        color.close()
 
 
 def _floor_under_glow(strategy, drawn):

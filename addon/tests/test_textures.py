@@ -50,10 +50,10 @@ def test_maps_turn_pictures():
 
 
 def test_files_are_decoded_unless_they_hold_data(tmp_path):
-    path = tmp_path / "grey.png"
+    path = tmp_path / "gray.png"
     images.write(path, np.full((2, 2, 3), 0.5, np.float32))
-    with Texture.load(path) as colour, Texture.load(path, raw=1) as data:
-        assert _rendered({"base_color": TextureSlot(colour)})[3, 3, 0] == pytest.approx(0.5, abs=0.01)
+    with Texture.load(path) as color, Texture.load(path, raw=1) as data:
+        assert _rendered({"base_color": TextureSlot(color)})[3, 3, 0] == pytest.approx(0.5, abs=0.01)
         assert _rendered({"base_color": TextureSlot(data)})[3, 3, 0] == pytest.approx(0.735, abs=0.01)
 
 
@@ -62,10 +62,10 @@ def test_values_hold_where_no_texture_is():
     np.testing.assert_allclose(pixels.mean(axis=(0, 1)), (0.1, 0.2, 0.3), atol=1e-4)
 
 
-def test_colours_and_numbers_are_not_mixed_up():
-    with Texture.from_pixels(_picture()) as colour, Texture.from_pixels(_picture(), channel=2) as number:
+def test_colors_and_numbers_are_not_mixed_up():
+    with Texture.from_pixels(_picture()) as color, Texture.from_pixels(_picture(), channel=2) as number:
         with pytest.raises(VelourError, match="roughness requires a texture of numbers"):
-            _rendered({"roughness": TextureSlot(colour)})
+            _rendered({"roughness": TextureSlot(color)})
         with pytest.raises(VelourError, match="base_color requires a texture of colors"):
             _rendered({"base_color": TextureSlot(number)})
 
@@ -81,7 +81,7 @@ def test_wrong_textures_are_refused_with_a_sentence(tmp_path):
 
 
 def _painted_plane(scene, *colors):
-    """[4 x 3] colours of the corners of a square each: one set a colour array."""
+    """[4 x 3] colors of the corners of a square each: one set a color array."""
     positions = np.array([[-1, -1, 0], [1, -1, 0], [1, 1, 0], [-1, 1, 0]], np.float32)
     triangles = np.array([[0, 1, 2], [0, 2, 3]], np.uint32)
     return scene.add_mesh(
@@ -107,7 +107,7 @@ def _painted(textures, *colors):
             return job.read_pass("Combined")[..., :3]
 
 
-def test_a_mesh_shows_the_colours_of_its_corners():
+def test_a_mesh_shows_the_colors_of_its_corners():
     ramp = np.array([[0.1, 0, 0.5], [0.9, 0, 0.5], [0.9, 0.8, 0.5], [0.1, 0.8, 0.5]])
     places = (np.arange(SIDE) + 0.5) / SIDE
     expected = np.empty((SIDE, SIDE, 3))
@@ -122,14 +122,14 @@ def test_a_mesh_shows_the_colours_of_its_corners():
 def test_numbers_are_the_first_channel_of_corners():
     open_or_not = np.array([[1, 0, 0], [0, 1, 1], [0, 1, 1], [1, 0, 0]])
     white = np.ones((4, 3))
-    with Texture.of_corners(0) as alpha, Texture.of_corners(1) as colour:
-        slots = {"alpha": TextureSlot(alpha), "base_color": TextureSlot(colour)}
+    with Texture.of_corners(0) as alpha, Texture.of_corners(1) as color:
+        slots = {"alpha": TextureSlot(alpha), "base_color": TextureSlot(color)}
         pixels = _painted(slots, open_or_not, 0 * white)
     expected = (np.arange(SIDE) + 0.5) / SIDE  # of the white sky behind
     np.testing.assert_allclose(pixels.mean(axis=(0, 2)), expected, atol=0.1)
 
 
-def test_sets_of_corner_colours_are_few_and_whole():
+def test_sets_of_corner_colors_are_few_and_whole():
     with pytest.raises(VelourError, match="no corner color set 4"):
         Texture.of_corners(4)
     with Scene() as scene:

@@ -53,7 +53,7 @@ def test_a_ball_of_the_measurement(folder, measurement_file):
     red, _green, blue, alpha = made.pixels.transpose(2, 0, 1).astype(float)
     assert alpha.min() == 255
     assert np.median(red[DISC]) > 1.5 * np.median(blue[DISC])  # (0.5, 0.2, 0.1)
-    assert np.array_equal(red[:8, :8], blue[:8, :8])  # the backdrop is grey
+    assert np.array_equal(red[:8, :8], blue[:8, :8])  # the backdrop is gray
 
 
 def test_a_model_looks_like_its_measurement(folder, tmp_path, measurement_file, model_file):
@@ -82,7 +82,7 @@ def test_made_once_whatever_the_name_and_anew_for_another_content(folder, model_
 
 
 def _write_set(folder, color):
-    """A BTF of one colour: but for the pictures, all are the same to the last byte."""
+    """A BTF of one color: but for the pictures, all are the same to the last byte."""
     folder.mkdir(exist_ok=True)
     lines = ["file,theta_l,phi_l,theta_v,phi_v"]
     for pair in range(4):

@@ -87,17 +87,17 @@ def test_a_sum_of_one_pixel_is_that_pixel():
 
 
 def _pictures(expected: float, seed: int, height: float = 30_000.0):
-    """Of uniform samples, in batches, and of another estimate that errs by a thousandth; grey."""
+    """Batches of uniform samples, another estimate that errs by a thousandth, both gray, and the moments."""
     rng = np.random.default_rng(seed)
     moments, chance, _ = _rare(expected, height)
     batches = _means(chance, height, rng, 16)
     batches += rng.normal(0, 1e-5, batches.shape)  # or Welch warns where no batch was hit
     others = moments.mean * rng.normal(1, 1e-3, (16, len(chance)))
-    grey = [np.repeat(stack.reshape(16, *PIXELS, 1), 3, axis=3) for stack in (batches, others)]
+    gray = [np.repeat(stack.reshape(16, *PIXELS, 1), 3, axis=3) for stack in (batches, others)]
     shaped = Moments(
         *(getattr(moments, name).reshape(PIXELS) for name in ("mean", "second", "third", "largest"))
     )
-    return *grey, shaped
+    return *gray, shaped
 
 
 @pytest.mark.parametrize("seeds", [4, pytest.param(10, marks=pytest.mark.long)])

@@ -48,7 +48,7 @@ def test_the_model_itself_stays(net, model_file):
 
 
 def _coverage(material: Model) -> float:
-    """Of a large square that is seen from far above."""
+    """Mean alpha of a large square seen from far above."""
     with Scene() as scene:
         mesh, _ = scene.add_mesh(
             np.array([[-1, -1, 0], [1, -1, 0], [1, 1, 0], [-1, 1, 0]], np.float32),

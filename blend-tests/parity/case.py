@@ -49,7 +49,7 @@ class ParityTest(blender.BlenderTest):
         that half of the blocks may be off by at most without being seen. `up_to`: per cent of the mean of a
         known difference, which the samples of scripts/test --all alone can tell."""
         verdict = self.verdict(samples)
-        record(feature, verdict, "approximated" if up_to else "honoured")
+        record(feature, verdict, "approximated" if up_to else "honored")
         known = level.LONG and verdict.percent <= up_to
         self.assertTrue(verdict.agrees or known, f"{feature}: {verdict}")
         self.assertLess(verdict.sees, seen, f"{feature}: it needs more samples. {verdict}")
@@ -105,7 +105,7 @@ def record(feature, verdict, word):
 
 
 def record_row(feature, word, **numbers):
-    """A line for the table of docs/blender_support.md."""
+    """A line for the table of docs/results/blender_parity.md."""
     row = {"feature": feature, "verdict": word, **numbers, "blender": bpy.app.version_string}
     with (blender.folder() / "rows.jsonl").open("a") as file:
         file.write(json.dumps(row) + "\n")

@@ -49,7 +49,7 @@ def set_up_cycles(cycles, bounces):
 
 
 def _keep_pixels_independent(cycles):
-    """Newer Blenders' blue noise makes neighbours differ, which the judge must not take for even pictures.
+    """Newer Blenders' blue noise makes neighbors differ, which the judge must not take for even pictures.
 
     They offer the other patterns to developers alone.
     """

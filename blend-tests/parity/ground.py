@@ -1,4 +1,4 @@
-"""A grey ground and what stands on it, for tests of how things come into a scene."""
+"""A gray ground and what stands on it, for tests of how things come into a scene."""
 
 import math
 
@@ -9,7 +9,7 @@ from .case import ParityTest
 
 
 class KindTest(ParityTest):
-    """A grey ground under a sun and a dim sky."""
+    """A gray ground under a sun and a dim sky."""
 
     def setUp(self):
         super().setUp()
@@ -21,7 +21,7 @@ class KindTest(ParityTest):
     def made(self, albedo=0.7, **settings):
         """What an operator has made, with a material."""
         obj = stage.without_terminator(bpy.context.object)
-        obj.data.materials.append(stage.grey(albedo))
+        obj.data.materials.append(stage.gray(albedo))
         for name, value in settings.items():
             setattr(obj.data, name, value)
         return obj
@@ -29,7 +29,7 @@ class KindTest(ParityTest):
     def small(self):
         """A flat pyramid that is not the same from any two sides."""
         points = [(-0.2, -0.1, 0), (0.2, -0.1, 0), (0, 0.2, 0), (0.05, 0, 0.35)]
-        return stage.mesh(points, [(0, 1, 3), (1, 2, 3), (2, 0, 3), (0, 2, 1)], stage.grey(0.8), "Small")
+        return stage.mesh(points, [(0, 1, 3), (1, 2, 3), (2, 0, 3), (0, 2, 1)], stage.gray(0.8), "Small")
 
     def carrier(self):
         """A sheet of few vertices and faces that point everywhere, to instance on."""

@@ -20,7 +20,7 @@ class Tree:
         self.nodes.clear()
 
     def node(self, idname, output=0, settings=None, **inputs):
-        """`inputs`: numbers, colours or outputs of other nodes; underscores stand for blanks."""
+        """`inputs`: numbers, colors or outputs of other nodes; underscores stand for blanks."""
         node = self.nodes.new(idname)
         for name, value in (settings or {}).items():
             setattr(node, name, value)
@@ -89,7 +89,7 @@ def image(seed=2, size=8, low=0.1, high=0.9, alpha=False):
 
 
 class ShaderTest(ParityTest):
-    """A roof over a coloured ground, seen from above at an angle: camera and shadow rays meet it."""
+    """A roof over a colored ground, seen from above at an angle: camera and shadow rays meet it."""
 
     def setUp(self):
         super().setUp()

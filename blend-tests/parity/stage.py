@@ -1,4 +1,4 @@
-"""Grey diffuse things to look at."""
+"""Gray diffuse things to look at."""
 
 import bpy
 import numpy as np
@@ -13,15 +13,15 @@ def link(obj):
 
 def without_terminator(obj):
     """Keeps Cycles from moving shadow rays off smooth surfaces, which lets light through their rim."""
-    # Of the object itself since Blender 5.0, where the older one lives on without effect.
+    # A property of the object itself since Blender 5.0, where the older one still exists but has no effect.
     (
         obj if hasattr(obj, "shadow_terminator_geometry_offset") else obj.cycles
     ).shadow_terminator_geometry_offset = 0.0
     return obj
 
 
-def grey(albedo):
-    return scenes.diffuse_material((albedo,) * 3, f"Grey {albedo:g}")
+def gray(albedo):
+    return scenes.diffuse_material((albedo,) * 3, f"Gray {albedo:g}")
 
 
 def mesh(points, faces, material, name="Mesh", smooth=False):
@@ -35,17 +35,17 @@ def mesh(points, faces, material, name="Mesh", smooth=False):
 def ground(size=20.0, albedo=0.5):
     half = size / 2
     corners = [(-half, -half, 0), (half, -half, 0), (half, half, 0), (-half, half, 0)]
-    return mesh(corners, [(0, 1, 2, 3)], grey(albedo), "Ground")
+    return mesh(corners, [(0, 1, 2, 3)], gray(albedo), "Ground")
 
 
 def box(low, high, albedo):
     corners = [(x, y, z) for z in (low[2], high[2]) for y in (low[1], high[1]) for x in (low[0], high[0])]
     faces = [(0, 2, 3, 1), (4, 5, 7, 6), (0, 1, 5, 4), (2, 6, 7, 3), (0, 4, 6, 2), (1, 3, 7, 5)]
-    return mesh(corners, faces, grey(albedo), "Box")
+    return mesh(corners, faces, gray(albedo), "Box")
 
 
 def town(count=6, spacing=1.0):
-    """Boxes of many heights and greys on a ground: edges in every block of a picture."""
+    """Boxes of many heights and grays on a ground: edges in every block of a picture."""
     random = np.random.default_rng(1)
     ground()
     half = (count - 1) / 2
@@ -60,7 +60,7 @@ def sphere(radius=1.0, albedo=0.7, segments=16, rings=8, smooth=True):
     bpy.ops.mesh.primitive_uv_sphere_add(segments=segments, ring_count=rings, radius=radius)
     obj = bpy.context.object
     obj.data.polygons.foreach_set("use_smooth", [smooth] * len(obj.data.polygons))
-    obj.data.materials.append(grey(albedo))
+    obj.data.materials.append(gray(albedo))
     return without_terminator(obj)
 
 

@@ -1,4 +1,4 @@
-"""Attributes of meshes in the place of colours and numbers of materials."""
+"""Attributes of meshes in the place of colors and numbers of materials."""
 
 import math
 
@@ -64,22 +64,22 @@ class Attributes(ParityTest):
     def test_attribute_node(self):
         self._paint("FLOAT_COLOR", "FACE")
         self.tree.end(self.tree.diffuse(self._attribute()))
-        self.assert_parity("Attribute: colours of faces")
+        self.assert_parity("Attribute: colors of faces")
 
     def test_numbers(self):
-        """A number as a colour, an alpha as the factor of a mix, colours in a Transparent BSDF."""
-        self._paint("FLOAT", "POINT", "grey", "value")
+        """A number as a color, an alpha as the factor of a mix, colors in a Transparent BSDF."""
+        self._paint("FLOAT", "POINT", "gray", "value")
         self._paint("BYTE_COLOR", "CORNER")
         mixed = self.tree.mix(
             self._color_attribute(output="Alpha"),
-            self.tree.diffuse(self._attribute("grey", "Fac")),
+            self.tree.diffuse(self._attribute("gray", "Fac")),
             self.tree.transparent(self._color_attribute()),
         )
         self.tree.end(mixed)
         self.assert_parity("Attribute: numbers, factors, transparency")
 
     def test_beside_pictures(self):
-        """Emission whose colour is an attribute and whose strength is an image."""
+        """Emission whose color is an attribute and whose strength is an image."""
         layer = self.wall.data.uv_layers.new(name="UVMap")
         corners = [self.wall.data.vertices[loop.vertex_index].co for loop in self.wall.data.loops]
         layer.data.foreach_set("uv", np.array([(c.x / 3, c.z / 2) for c in corners], np.float32).ravel())
@@ -88,7 +88,7 @@ class Attributes(ParityTest):
         self.assert_parity("Color Attribute: emission, beside an image")
 
     def test_uv_map(self):
-        """As a colour, and as the number that an output gives of two."""
+        """As a color, and as the number that an output gives of two."""
         layer = self.wall.data.uv_layers.new(name="dense")
         layer.data.foreach_set("uv", np.random.default_rng(5).uniform(0, 1, 2 * len(layer.data)))
         glow = self.tree.emission(self._attribute("dense", "Vector"), self._attribute("dense", "Alpha"))
@@ -96,7 +96,7 @@ class Attributes(ParityTest):
         self.assert_parity("Attribute: a UV map")
 
     def test_missing(self):
-        """Black as a colour; the alpha of an Attribute node is 1."""
+        """Black as a color; the alpha of an Attribute node is 1."""
         self._paint("FLOAT_COLOR", "POINT")
         self.tree.end(
             self.tree.mix(
@@ -110,7 +110,7 @@ class Attributes(ParityTest):
 
 
 class GlowingAttributes(ParityTest):
-    """A ground under squares that glow in colours of their faces."""
+    """A ground under squares that glow in colors of their faces."""
 
     def test_light(self):
         stage.ground(12, 0.6)

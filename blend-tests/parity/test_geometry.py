@@ -40,7 +40,7 @@ class Geometry(ParityTest):
 
     def test_facing_away(self):
         """Velour bends them towards the viewer, Cycles 3 further, newer ones none of a Diffuse BSDF."""
-        sheet = stage.mesh(_SQUARE, [(0, 1, 2, 3)], stage.grey(0.7), "Sheet", smooth=True)
+        sheet = stage.mesh(_SQUARE, [(0, 1, 2, 3)], stage.gray(0.7), "Sheet", smooth=True)
         sheet.rotation_euler.z = 1.2
         auto_smooth(sheet.data, math.pi)
         sheet.data.normals_split_custom_set([(math.sin(0.5), -math.cos(0.5), 0)] * 4)
@@ -129,7 +129,7 @@ class Sheet(ParityTest):
         heights = np.random.default_rng(3).uniform(0, 0.6, (7, 7))
         points = [(x - 3, y - 3, heights[x, y]) for x in range(7) for y in range(7)]
         faces = [(7 * x + y, 7 * x + 7 + y, 7 * x + 8 + y, 7 * x + y + 1) for x in range(6) for y in range(6)]
-        self.sheet = stage.mesh(points, faces, stage.grey(0.7), "Sheet").data
+        self.sheet = stage.mesh(points, faces, stage.gray(0.7), "Sheet").data
         stage.camera((0, -6, 6), (0.78, 0, 0), 45)
         stage.sharp_sun()
 

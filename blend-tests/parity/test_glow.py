@@ -66,7 +66,7 @@ class Glow(ParityTest):
         ours = self.pictures("VELOUR", 2)
         self._leave_to_bounces()
         verdict = judge_renders(ours, self.pictures("CYCLES", 8))
-        record("Glowing surface: image, Cycles' by bounces", verdict, "honoured")
+        record("Glowing surface: image, Cycles' by bounces", verdict, "honored")
         self.assertTrue(verdict.agrees, str(verdict))
 
     def _leave_to_bounces(self):

@@ -51,12 +51,12 @@ class Shown(KindTest):
         for obj, x in ((first, -1), (second, 1)):
             obj.location, obj.scale = (x, 0, 0), (4, 4, 4)
         second.material_slots[0].link = "OBJECT"
-        second.material_slots[0].material = stage.grey(0.1)
+        second.material_slots[0].material = stage.gray(0.1)
         self.assert_parity("Material slots of objects")
 
     def test_override(self):
         self.carrier()
-        self.scene.view_layers[0].material_override = stage.grey(0.25)
+        self.scene.view_layers[0].material_override = stage.gray(0.25)
         self.assert_parity("View layer: material override")
 
     def test_excluded(self):
@@ -106,5 +106,5 @@ class Shown(KindTest):
         self.assertFalse(judge_renders(self.pictures("VELOUR"), ours).agrees)
         sheet.visible_camera = sheet.visible_diffuse = sheet.visible_glossy = False
         verdict = judge_renders(ours, self.pictures("CYCLES"))
-        record("Material: Backface Culling, beside an object hidden from those rays", verdict, "honoured")
+        record("Material: Backface Culling, beside an object hidden from those rays", verdict, "honored")
         self.assertTrue(verdict.agrees, verdict)

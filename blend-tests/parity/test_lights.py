@@ -22,7 +22,7 @@ class Lights(BoxTest):
 
     def test_color(self):
         stage.lamp("SUN", 3.0, rotation=(0.6, 0.3, 0), angle=0.0, color=(1.0, 0.5, 0.2))
-        self.assert_parity("Light: colour")
+        self.assert_parity("Light: color")
 
     def test_emission_node(self):
         """Multiplies what the lamp is; without one it is dark."""

@@ -9,7 +9,7 @@ from parity.shaders import Tree
 from support import scenes
 
 _SINCE_5 = {"IndexOB": "Object Index", "IndexMA": "Material Index"}
-_MOST_OFF = 0.005  # of the pixels: where edges meet, one picture shows what no neighbour of the other does
+_MOST_OFF = 0.005  # of the pixels: where edges meet, one picture shows what no neighbor of the other does
 
 
 class Passes(ParityTest):
@@ -32,7 +32,7 @@ class Passes(ParityTest):
         self.show = scenes.composite(self.scene)
 
     def _pictures(self, switch, name, samples=1, channels=3):
-        """Of Cycles and Velour."""
+        """Renders by Cycles and Velour, with the pass switched on."""
         setattr(self.layer, f"use_pass_{switch}", True)
         return self._rendered(name, samples, channels)
 
@@ -52,7 +52,7 @@ class Passes(ParityTest):
         return next(node for node in nodes if node.bl_idname == "CompositorNodeRLayers").outputs
 
     def _assert_near(self, theirs, ours, slack):
-        """Each pixel lies between what Cycles has of its neighbours: a first sample may show one of them."""
+        """Each pixel lies between what Cycles has of its neighbors: a first sample may show one of them."""
         off = _outside(theirs, ours, slack)
         self.assertLess(off, _MOST_OFF)
         self.assertGreater(_outside(theirs, np.roll(ours, 3, axis=1), slack), 2 * _MOST_OFF)  # the control
@@ -167,7 +167,7 @@ def _outside(theirs, ours, slack):
 
 
 def _bits(pixels):
-    """Of the ids, which are told apart by them."""
+    """Bit patterns of the ids, by which ids are compared."""
     return np.ascontiguousarray(pixels[..., ::2]).view(np.uint32)
 
 

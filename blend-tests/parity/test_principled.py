@@ -20,7 +20,7 @@ _GOLD = (0.9, 0.6, 0.3, 1)
 class Plates(ParityTest):
     """Plates that fill the squares of a picture, each at an angle of its own to the camera and to the sun."""
 
-    effort = engines.Effort(1, 1, 96, 72)  # a plate has one colour, without noise
+    effort = engines.Effort(1, 1, 96, 72)  # a plate has one color, without noise
 
     def setUp(self):
         super().setUp()
@@ -41,7 +41,7 @@ class Plates(ParityTest):
         theirs, ours = self._colors("CYCLES"), self._colors("VELOUR")
         error = (ours - theirs) / np.maximum(theirs, 0.01 * theirs.mean())
         worst = 100 * float(np.abs(error).max())
-        record_row(f"{feature}, at all angles", "honoured", percent=worst, z=None)
+        record_row(f"{feature}, at all angles", "honored", percent=worst, z=None)
         lit = (theirs > 0.01 * theirs.mean()).mean()
         self.assertGreater(lit, 0.15, f"{feature}: few plates show anything.")
         self.assertLess(worst, _MOST, f"{feature}: per cent off by sun, row and column:\n{_rounded(error)}")

@@ -38,7 +38,7 @@ class NormalMaps(ShaderTest):
         inputs = {"Base_Color": tree.picture(leaf), "Roughness": 0.6, "Normal": relief}
         principled = tree.node("ShaderNodeBsdfPrincipled", **inputs)
         tree.end(tree.mix(tree.picture(leaf, "Alpha"), tree.transparent(), principled))
-        self.assert_parity("Principled BSDF: cut-out, base colour and normal map by images")
+        self.assert_parity("Principled BSDF: cut-out, base color and normal map by images")
 
     def test_principled(self):
         """How much of the light the base keeps is a matter of the lobe's normal."""
@@ -89,7 +89,7 @@ class NormalMaps(ShaderTest):
         layer.data.foreach_set("uv", [1, 0, 1, 1.5, 0, 1.5, 0, 0])
 
     def test_other_uv_map(self):
-        """Of the tangents alone: the picture stays on the one that renders."""
+        """Another UV map for the tangents alone: the image stays on the one that renders."""
         self._other_uv_map()
         self.tree.end(self.tree.diffuse(Normal=self._map(uv_map="turned")))
         self.assert_parity("Normal Map: tangents of another UV map")

@@ -10,9 +10,9 @@ class Mixed(ShaderTest):
         self.tree.end(self.tree.transparent())
         self.assert_parity("Transparent BSDF: white")
 
-    def test_coloured_transparent(self):
+    def test_colored_transparent(self):
         self.tree.end(self.tree.transparent((0.9, 0.5, 0.2)))
-        self.assert_parity("Transparent BSDF: colour")
+        self.assert_parity("Transparent BSDF: color")
 
     def test_textured_transparent(self):
         self.tree.end(self.tree.transparent(self.tree.picture(image())))
@@ -22,10 +22,10 @@ class Mixed(ShaderTest):
         self.tree.end(self.tree.mix(0.7, self.tree.transparent(), self.tree.diffuse((0.8, 0.3, 0.1))))
         self.assert_parity("Mix Shader: Transparent and Diffuse")
 
-    def test_coloured_mix(self):
+    def test_colored_mix(self):
         tree = self.tree
         tree.end(tree.mix(0.4, tree.transparent((0.9, 0.3, 0.6)), tree.diffuse((0.8, 0.3, 0.1))))
-        self.assert_parity("Mix Shader: coloured Transparent and Diffuse")
+        self.assert_parity("Mix Shader: colored Transparent and Diffuse")
 
     def test_cut_out(self):
         tree = self.tree
@@ -44,7 +44,7 @@ class Mixed(ShaderTest):
         tree = self.tree
         factor = tree.picture(image(3))
         tree.end(tree.mix(factor, tree.diffuse((0.9, 0.2, 0.2)), tree.diffuse((0.1, 0.3, 0.9))))
-        self.assert_parity("Mix Shader: factor of an image's colour")
+        self.assert_parity("Mix Shader: factor of an image's color")
 
     def test_emission(self):
         tree = self.tree
@@ -55,7 +55,7 @@ class Mixed(ShaderTest):
         tree = self.tree
         glow = tree.emission(tree.picture(image(6)), tree.picture(image(8, low=0.5, high=2)))
         tree.end(tree.add(glow, tree.diffuse((0.4, 0.4, 0.4))))
-        self.assert_parity("Emission: colour and strength by images")
+        self.assert_parity("Emission: color and strength by images")
 
     def test_principled_emission(self):
         tree = self.tree

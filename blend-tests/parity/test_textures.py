@@ -16,7 +16,7 @@ class WallTest(ParityTest):
         super().setUp()
         stage.camera((0, -6, 0), (math.pi / 2, 0, 0))
         stage.world()
-        self.material = stage.grey(0.5)
+        self.material = stage.gray(0.5)
         self.wall = stage.mesh(
             [(-1.5, 0, -1), (1.5, 0, -1), (1.5, 0, 1), (-1.5, 0, 1)], [(0, 1, 2, 3)], self.material
         )
@@ -26,7 +26,7 @@ class WallTest(ParityTest):
             layer.data.foreach_set("uv", values.ravel())
 
     def _node(self, image, interpolation="Closest"):
-        """Shows the colours of `image` on the wall."""
+        """Shows the colors of `image` on the wall."""
         tree = self.material.node_tree
         node = tree.nodes.new("ShaderNodeTexImage")
         node.image, node.interpolation = image, interpolation
@@ -79,12 +79,12 @@ class UvMaps(WallTest):
                 self.assert_parity(f"Image Texture: {kind.lower()} mapping")
 
     def test_two_at_once(self):
-        """Colours on one UV map, the factor of a mix on the other; both are magnified pictures."""
+        """Colors on one UV map, the factor of a mix on the other; both are magnified pictures."""
         tree = self.material.node_tree
-        colour, factor = self._picture("Closest"), self._picture("Closest")
+        color, factor = self._picture("Closest"), self._picture("Closest")
         self._uv_map(factor, "second")
         shader = next(n for n in tree.nodes if n.bl_idname == "ShaderNodeBsdfDiffuse")
-        tree.links.new(colour.outputs[0], shader.inputs["Color"])
+        tree.links.new(color.outputs[0], shader.inputs["Color"])
         other, mix = tree.nodes.new("ShaderNodeBsdfDiffuse"), tree.nodes.new("ShaderNodeMixShader")
         other.inputs["Color"].default_value = (0.1, 0.2, 0.6, 1)
         tree.links.new(factor.outputs[0], mix.inputs[0])
@@ -126,7 +126,7 @@ class Alpha(WallTest):
         if is_float:
             pixels[..., :3] *= pixels[..., 3:]
         else:
-            # Cycles cuts off what colour times alpha is beyond whole bytes; of these nothing is.
+            # Cycles cuts off what color times alpha is beyond whole bytes; of these nothing is.
             pixels = np.round(pixels * 51) * 5 / 255
             pixels[..., 3] = np.round(pixels[..., 3] * 5) / 5
         image.pixels.foreach_set(pixels.ravel())

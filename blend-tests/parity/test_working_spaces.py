@@ -1,4 +1,4 @@
-"""Colours in the working spaces that Blender 5 offers."""
+"""Colors in the working spaces that Blender 5 offers."""
 
 import bpy
 import numpy as np
@@ -13,7 +13,7 @@ _SPACES = ("Linear Rec.709", "Linear Rec.2020", "ACEScg")
 
 
 class WorkingSpaces(ShaderTest):
-    """A picture of bytes on the roof, a warm lamp, colours by numbers: each comes there its own way."""
+    """A picture of bytes on the roof, a warm lamp, colors by numbers: each comes there its own way."""
 
     def setUp(self):
         super().setUp()
@@ -43,13 +43,13 @@ class WorkingSpaces(ShaderTest):
                 self._work_in(space)
                 shown[space] = self.pictures("VELOUR")
                 verdict = judge_renders(shown[space], self.pictures("CYCLES"))
-                record(f"Working space: {space}", verdict, "honoured")
+                record(f"Working space: {space}", verdict, "honored")
                 self.assertTrue(verdict.agrees, verdict)
         for space in _SPACES[1:]:  # the control
             self.assertFalse(judge_renders(shown[space], shown[_SPACES[0]]).agrees)
 
     def test_measured_material(self):
-        """Its colours are Rec. 709's: in each space the picture under white light is that, converted."""
+        """Its colors are Rec. 709's: in each space the picture under white light is that, converted."""
         roof = bpy.data.objects["Roof"]
         for obj in [obj for obj in self.scene.objects if obj != roof and obj.type != "CAMERA"]:
             bpy.data.objects.remove(obj)
@@ -67,7 +67,7 @@ class WorkingSpaces(ShaderTest):
 
 
 def _from_rec709():
-    """Of linear colours, into the working space."""
+    """Matrix from linear Rec. 709 colors to the working space."""
     from mathutils import Color
 
     columns = [Color(primary).from_rec709_linear_to_scene_linear() for primary in np.eye(3).tolist()]

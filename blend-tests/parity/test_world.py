@@ -1,4 +1,4 @@
-"""Worlds: colour, strength, environment pictures and how they are turned."""
+"""Worlds: color, strength, environment pictures and how they are turned."""
 
 import math
 
@@ -20,7 +20,7 @@ class World(ParityTest):
         self.background = self.tree.nodes["Background"]
 
     def _environment(self, **settings):
-        """A smooth sky, another colour on every side."""
+        """A smooth sky, another color on every side."""
         image = bpy.data.images.new("sky", 64, 32, float_buffer=True)
         u, v = np.meshgrid((np.arange(64) + 0.5) / 64, (np.arange(32) + 0.5) / 32)
         pixels = np.ones((32, 64, 4), np.float32)
@@ -47,7 +47,7 @@ class World(ParityTest):
     def test_color(self):
         self.background.inputs["Color"].default_value = (0.9, 0.5, 0.2, 1)
         self.background.inputs["Strength"].default_value = 0.7
-        self.assert_parity("World: colour and strength")
+        self.assert_parity("World: color and strength")
 
     def test_environment(self):
         self._environment()

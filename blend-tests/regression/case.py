@@ -15,7 +15,7 @@ FIRST_REFERENCE_SEED = 1_000_000  # added to the file's: no check shares a seed 
 
 @dataclass(frozen=True)
 class Settings:
-    """Of all renders of a run."""
+    """Settings of all renders of a run."""
 
     seeds: int | None = None  # None: CHECK_SEEDS, or REFERENCE_SEEDS of a reference
     samples: int | None = None  # None: as the file says
@@ -39,7 +39,7 @@ class Case:
 
 @dataclass
 class Outcome:
-    """Of one picture, or of a file that made none."""
+    """Result of one picture, or of a file that made none."""
 
     name: str
     passed: bool

@@ -1,4 +1,4 @@
-"""One picture beside its reference: colour and alpha, by blocks and as a whole."""
+"""One picture beside its reference: color and alpha, by blocks and as a whole."""
 
 from __future__ import annotations
 
@@ -8,14 +8,14 @@ import numpy as np
 
 from support.judge import BLOCK, POWER, WHOLE, Estimate, Verdict, judge, z_limit
 
-_CHANNELS = {"colour": slice(0, 3), "alpha": slice(3, 4)}
+_CHANNELS = {"color": slice(0, 3), "alpha": slice(3, 4)}
 
 
 class Comparison(NamedTuple):
     z: float  # largest of all comparisons, in standard errors
     limit: float  # that it may not exceed
-    percent: float  # largest difference of two blocks, of the reference's mean colour
-    what: str  # "colour" or "alpha": where z is largest
+    percent: float  # largest difference of two blocks, of the reference's mean color
+    what: str  # "color" or "alpha": where z is largest
     block: tuple[int, int]  # column and row of the worst block, from the bottom left
     sees: float  # factor of exposure, in per cent, that is refused in 99 of 100 cases
 
@@ -38,7 +38,7 @@ def compare(ours: Estimate, reference: Estimate, pictures: int) -> Comparison:
     return Comparison(
         _largest(found[what]),
         limit,
-        found["colour"][0].percent,
+        found["color"][0].percent,
         what,
         blocks.block[:2],
         smallest_factor(ours, reference, limit),
@@ -46,8 +46,8 @@ def compare(ours: Estimate, reference: Estimate, pictures: int) -> Comparison:
 
 
 def smallest_factor(ours: Estimate, reference: Estimate, limit: float) -> float:
-    """In per cent: what all colours must be off by to be refused, by the picture as a whole."""
-    sides = [side.channels(_CHANNELS["colour"]) for side in (ours, reference)]
+    """In per cent: what all colors must be off by to be refused, by the picture as a whole."""
+    sides = [side.channels(_CHANNELS["color"]) for side in (ours, reference)]
     count = sides[0].mean[..., 0].size
     variance = sum(side.variance.sum(axis=(0, 1)) for side in sides) / count**2
     mean = np.abs(sides[1].mean).mean(axis=(0, 1))

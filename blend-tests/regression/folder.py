@@ -23,7 +23,7 @@ def cases(paths: Iterable[Path], work: Path, frames: list[int] | None = None) ->
 
 
 def own_reference(blend: Path) -> Path:
-    """Of the frame that the file was saved at."""
+    """Path of the reference of the frame that the file was saved at."""
     return blend.with_suffix(".exr")
 
 

@@ -21,15 +21,15 @@ def views(outcome: Outcome) -> tuple[dict[str, np.ndarray], str]:
     white = float(np.percentile(outcome.reference[..., :3].max(axis=2), _WHITE))
     scale = 1 / white if white > 1 or 0 < white < _DARK else 1.0
     difference = np.abs(outcome.ours[..., : outcome.reference.shape[2]] - outcome.reference)
-    colours = difference[..., :3] * scale + difference[..., 3:].sum(axis=2, keepdims=True)
+    colors = difference[..., :3] * scale + difference[..., 3:].sum(axis=2, keepdims=True)
     made = {
         "reference": _over_checkers(outcome.reference, scale),
         "new": _over_checkers(outcome.ours, scale),
-        "difference": np.minimum(GAIN * colours, 1),
+        "difference": np.minimum(GAIN * colors, 1),
     }
     return (
         made,
-        f"Linear values times {scale:.3g} with the sRGB curve; a difference of alpha is added as grey.",
+        f"Linear values times {scale:.3g} with the sRGB curve; a difference of alpha is added as gray.",
     )
 
 
@@ -42,9 +42,9 @@ def crop(view: np.ndarray, block: tuple[int, int]) -> np.ndarray:
 
 
 def _over_checkers(pixels: np.ndarray, scale: float) -> np.ndarray:
-    colours = pixels[..., :3] * scale
+    colors = pixels[..., :3] * scale
     if pixels.shape[2] < 4:
-        return colours
+        return colors
     rows, columns = (indices // 8 for indices in np.indices(pixels.shape[:2]))
     behind = np.array(_CHECKERS)[(rows + columns) % 2]
-    return colours + ((1 - pixels[..., 3]) * behind)[..., None]
+    return colors + ((1 - pixels[..., 3]) * behind)[..., None]

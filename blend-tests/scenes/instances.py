@@ -41,7 +41,7 @@ def _collection(stage):
 def _on_vertices(stage):
     """A ball on each of nine vertices."""
     points = [(0.9 * x, 0.9 * y, 0) for x in (-1, 0, 1) for y in (-1, 0, 1)]
-    parent = stage.mesh(points, [(0, 3, 4, 1), (1, 4, 5, 2), (3, 6, 7, 4), (4, 7, 8, 5)], stage.grey(0.2))
+    parent = stage.mesh(points, [(0, 3, 4, 1), (1, 4, 5, 2), (3, 6, 7, 4), (4, 7, 8, 5)], stage.gray(0.2))
     parent.location, parent.instance_type = (-2.5, 1.5, 0.35), "VERTS"
     child = stage.sphere(0.35, 0.8)
     child.parent = parent
@@ -50,7 +50,7 @@ def _on_vertices(stage):
 def _modifiers(stage):
     """A plate that is mirrored, thickened, rounded and repeated, and a box that is smoothed."""
     plate = stage.mesh(
-        [(0.05, -0.6, 0), (0.5, -0.6, 0), (0.5, 0.6, 0.4), (0.05, 0.6, 0.4)], [(0, 1, 2, 3)], stage.grey(0.6)
+        [(0.05, -0.6, 0), (0.5, -0.6, 0), (0.5, 0.6, 0.4), (0.05, 0.6, 0.4)], [(0, 1, 2, 3)], stage.gray(0.6)
     )
     plate.location = (0.6, 1.5, 0.3)
     plate.modifiers.new("Mirror", "MIRROR")

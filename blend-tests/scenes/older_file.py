@@ -3,7 +3,7 @@
 QUANTITY = (
     "a file of Blender 3.4: paint, metal, coat, sheen, glow, texture, auto smooth, area and point lamps"
 )
-# Of the Principled BSDF, where Velour follows Blender: coats keep their energy since 4.5.
+# Versions of the Principled BSDF, in which Velour follows Blender: coats keep their energy since 4.5.
 MEANINGS = ("", "layered", "coats")
 
 

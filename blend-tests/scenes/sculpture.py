@@ -2,7 +2,7 @@
 
 QUANTITY = "a fitted model (SRBF lobes) on a sculpture under sky and sun, with two bounces between its parts"
 
-_BODY = [  # centre and radii; the eye is to the right
+_BODY = [  # center and radii; the eye is to the right
     ((0.0, 0.0, 0.75), (1.05, 0.7, 0.75)),
     ((0.75, 0.0, 1.5), (0.5, 0.42, 0.45)),
     ((0.6, 0.16, 2.1), (0.16, 0.1, 0.5)),
@@ -22,19 +22,19 @@ def build(folder):
     scene = scenes.use_picture(samples=256)
     scene.velour.bounces = 2
     paint = scenes.measured_material((Path(__file__).parent / "data/paint.velour").read_bytes())
-    for centre, radii in _BODY:
-        _part(centre, radii, paint)
+    for center, radii in _BODY:
+        _part(center, radii, paint)
     stage.ground(20, 0.5)
     stage.camera((3.2, -5.8, 2.4), (1.37, 0, 0.5), 50)
     stage.lamp("SUN", 2, rotation=(0.7, 0.3, 0), angle=0.1)
     scenes.set_world((0.4, 0.6, 1.0), 0.6)
 
 
-def _part(centre, radii, material):
+def _part(center, radii, material):
     import bpy
     import numpy as np
 
-    bpy.ops.mesh.primitive_ico_sphere_add(subdivisions=5, radius=1, location=centre)
+    bpy.ops.mesh.primitive_ico_sphere_add(subdivisions=5, radius=1, location=center)
     obj = bpy.context.object
     points = np.empty(3 * len(obj.data.vertices), np.float32)
     obj.data.vertices.foreach_get("co", points)

@@ -28,9 +28,9 @@ def build(folder):
     ground = stage.ground(8)
     ground.data.uv_layers.new()
     checkers = (rows // 4 + columns // 4) % 2
-    colours = np.where(checkers[..., None], (0.8, 0.7, 0.5), (0.1, 0.2, 0.3))
+    colors = np.where(checkers[..., None], (0.8, 0.7, 0.5), (0.1, 0.2, 0.3))
     waves = np.stack([0.5 + 0.2 * np.sin(columns), 0.5 + 0.2 * np.cos(rows), 0.9 + 0 * rows], axis=-1)
-    ground.data.materials[0] = _material(_image("Checkers", colours), _image("Waves", waves, "Non-Color"))
+    ground.data.materials[0] = _material(_image("Checkers", colors), _image("Waves", waves, "Non-Color"))
     stage.sphere(0.8, 0.8, 32, 16).location.z = 0.8
     stage.camera((0, -6, 1.6), (1.42, 0, 0), 32)
 

@@ -34,7 +34,7 @@ class CheckFolderTest(BlenderTest):
         bpy.ops.wm.save_as_mainfile(filepath=str(self.shots / f"{name}.blend"), copy=True)
 
     def references(self, *names):
-        """That of "shot" for other names."""
+        """Copies the reference of "shot" to other names."""
         for ending in (".exr", ".error.exr"):
             for name in names:
                 shutil.copy(self.shots / f"shot{ending}", self.shots / f"{name}{ending}")

@@ -59,7 +59,7 @@ class FarmTest(BlenderTest):
         return done.returncode, done.stdout
 
     def job_of(self, name, samples, *options, time_limit=0):
-        """Of the same frames with as many samples; its pictures go to a folder of that name. What is said."""
+        """Makes a job with so many samples, whose pictures go to the folder `name`. Returns what is said."""
         bpy.ops.wm.open_mainfile(filepath=str(self.blend))
         settings = bpy.context.scene.velour
         settings.samples, settings.time_limit = samples, time_limit

@@ -15,10 +15,10 @@ def read(path):
     """[height x width x 3] bytes, the lowest row first as Blender's images have it."""
     content = path.read_bytes()
     header = _HEADER.unpack_from(content)
-    header_size, (width, height), (bits, stride), colours = header[0], header[4:6], header[11:13], header[19]
+    header_size, (width, height), (bits, stride), colors = header[0], header[4:6], header[11:13], header[19]
     if bits != 32 or header[7] != 0:
         raise ValueError(f"{path}: {bits} bits a pixel, byte order {header[7]}; 32 and 0 are read.")
-    rows = np.frombuffer(content, np.uint8, height * stride, header_size + 12 * colours)
+    rows = np.frombuffer(content, np.uint8, height * stride, header_size + 12 * colors)
     return rows.reshape(height, stride)[::-1, : 4 * width].reshape(height, width, 4)[..., 2::-1].copy()
 
 

@@ -68,12 +68,12 @@ def anisotropic_measurement():
 
 
 def brushed_model():
-    """Of a metal with a roughness of 0.25 and an anisotropy of 4, from the virtual goniometer; four lobes."""
+    """A four-lobe model of a metal of roughness 0.25 and anisotropy 4, from the virtual goniometer."""
     return (Path(__file__).parent.parent / "scenes/data/brushed.velour").read_bytes()
 
 
 def weave_model():
-    """Of the BTF of a weave of two colours, 16 x 16 texels."""
+    """A model of the BTF of a weave of two colors, 16 x 16 texels."""
     return (Path(__file__).parent.parent / "scenes/data/weave.velour").read_bytes()
 
 
@@ -122,14 +122,14 @@ def _made(name, make):
     return path
 
 
-# Of an OBJ file: with texture coordinates, y up, rising away from the camera that frames it.
+# OBJ file with texture coordinates, y up: a rectangle that rises away from the camera that frames it.
 SQUARE = "v -1 0 1\nv 1 0 1\nv 1 1 -1\nv -1 1 -1\nvt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\nf 1/1 2/2 3/3 4/4\n"
 QUARTERS = ((0.8, 0.4), (0.2, 0.1))  # rows from below: albedos of a tile's quarters
 QUARTER_TEXELS = 16  # along the tile's side
 
 
 def quarters_model(metres=0.5, **options):
-    """A model of the BTF of a flat, matt tile of four greys, `metres` wide; 0: its size is not known.
+    """A model of the BTF of a flat, matt tile of four grays, `metres` wide; 0: its size is not known.
 
     Options are those of compress_job.
     """
@@ -158,12 +158,12 @@ def _capture_quarters(folder_of_btf, metres):
     triangles = np.array([t for a, b, c, d in corners for t in ((a, b, c), (a, c, d))], np.uint32)
     with velour.Scene() as scene:
         mesh, _ = scene.add_mesh(positions, triangles, material_slots=np.arange(4, dtype=np.uint32).repeat(2))
-        greys = [
+        grays = [
             scene.add_principled_material(base_color=(a, a, a), roughness=1.0, specular=0.0)
             for row in QUARTERS
             for a in row
         ]
-        scene.add_instance(mesh, np.eye(4), greys)
+        scene.add_instance(mesh, np.eye(4), grays)
         scene.commit()
         angles = velour.directions("16")
         options = {"texels": QUARTER_TEXELS, "views": angles, "lights": angles, "samples": 4, "bounces": 0}

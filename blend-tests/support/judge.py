@@ -15,7 +15,7 @@ HALF_ROUNDING = 2**-11 / np.sqrt(3)  # relative standard error of a half float
 
 
 def z_limit(comparisons):
-    """Of which one in so many is exceeded by chance with FAMILY_ERROR."""
+    """Limit of z: any of so many comparisons exceeds it by chance with probability FAMILY_ERROR."""
     return NormalDist().inv_cdf(1 - FAMILY_ERROR / comparisons / 2)
 
 
@@ -49,7 +49,7 @@ class Verdict(NamedTuple):
 
 
 def estimate(pictures):
-    """Of [seeds x height x width x channels], each seed an independent render; read one by one."""
+    """Estimate from [seeds x height x width x channels]. Seeds are independent renders, read one by one."""
     mean = squares = np.float64(0)
     for count, picture in enumerate(pictures, 1):
         step = picture - mean
@@ -59,12 +59,12 @@ def estimate(pictures):
 
 
 def estimate_single(picture, renders):
-    """Of one picture without known errors, beside the Estimate of renders of the same scene.
+    """Estimate from one picture whose errors are unknown, given the Estimate of renders of the same scene.
 
-    It is taken to be noisy where the renders are, at least as much as one of them, and in each block as
-    much as the median of (picture - renders)^2 / variance says. Of independent normal noise that is the
-    median of Student's t, squared; a difference that is more than noise widens the error bars of its own
-    block: one that a whole block of n pixels has in common still is sqrt(n) of them.
+    The picture is assumed to be noisy where the renders are. The noise of each block is found from the
+    median of (picture - renders)^2 / variance, and is at least that of one render. For independent normal
+    noise, this ratio is distributed as a multiple of the square of Student's t. A difference beyond noise
+    widens the error bars of its own block, but one that all n pixels share is still sqrt(n) error bars.
     """
     picture = np.asarray(picture, np.float64)
     varies = renders.variance > 0
@@ -117,7 +117,7 @@ def judge_renders(first, second):
 
 
 def _variance(side, count, block):
-    """Of the means of blocks of `count` pixels, and the square that its degrees of freedom go by."""
+    """Variance of the means of blocks of `count` pixels, and the denominator of its degrees of freedom."""
     squares = side.variance**2 / (side.seeds - 1)
     return _blocks(side.variance, block) / count**2, _blocks(squares, block) / count**4
 

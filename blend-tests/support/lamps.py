@@ -16,7 +16,7 @@ def area_watts(watts):
 
 
 def sun_strength(strength, angle):
-    """Of a sun whose irradiance is that of a disk of `angle` on a plane at distance 1, even there."""
+    """Strength of a sun whose irradiance, in all versions, is that of a disk of `angle` at distance 1."""
     if not are_of_4_0():
         return strength
     tangent_sq = math.tan(angle / 2) ** 2

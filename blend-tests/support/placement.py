@@ -1,4 +1,4 @@
-"""Tests place a tile of four greys: its picture, what is measured of it and what is said."""
+"""Tests place a tile of four grays: its picture, what is measured of it and what is said."""
 
 import importlib
 

@@ -9,7 +9,7 @@ from . import inputs, scenes, window
 
 _SECONDS = 20
 _TURNS = 20  # of a wheel
-_CLOSE = 8  # of 255: rounding of the theme's colours, which are mixed again on the way to the screen
+_CLOSE = 8  # of 255: rounding of the theme's colors, which are mixed again on the way to the screen
 
 
 def preview():
@@ -50,7 +50,7 @@ def drawn():
 
 
 def screenshot(folder, name, picture):
-    """Of the window, the large editor scrolled down until the whole picture is on it, or to its end."""
+    """Screenshot of the window, its large editor scrolled down to show the whole picture, or to the end."""
     for _ in range(_TURNS):
         screen = window.screenshot(folder, name)
         if is_on_screen(screen, picture):

@@ -17,7 +17,7 @@ _HELD_SHARE = 0.08  # that a turn may take from the main thread, of what reading
 
 
 def module(name):
-    """Of the add-on."""
+    """A module of the add-on."""
     return importlib.import_module(f"{inputs.ADDON}.{name}")
 
 

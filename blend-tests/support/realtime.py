@@ -46,7 +46,7 @@ def equirectangular(mixture, height=512):
 
 
 def mixture():
-    """[lobes x 7] Centre, bandwidth and colour of what the viewport is lit by."""
+    """[lobes x 7] Center, bandwidth and color of what the viewport is lit by."""
     return np.array(viewport.real_time()._drawing.light_report["mixture"]).reshape(-1, 7)
 
 
@@ -94,7 +94,7 @@ def _rendered(lib, scene, **options):
 
 
 def error(drawn, traced):
-    """Relative L2 of colours where both show objects alone, off outlines, without the ray tracer's noise.
+    """Relative L2 of colors where both show objects alone, off outlines, without the ray tracer's noise.
 
     That is of another sign in each of the two pictures as often as not, so it leaves nothing in the mean of
     products of both differences, nor in that of both pictures.

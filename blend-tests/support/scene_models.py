@@ -10,7 +10,7 @@ from .blender import BlenderTest
 
 
 class SceneModelTest(BlenderTest):
-    """Of the scene's only Velour material, called `material`."""
+    """Base of tests of scene models. The scene's only Velour material is called `material`."""
 
     material = "Paint"
 

@@ -69,7 +69,7 @@ def set_world(color=(1, 1, 1), strength=1.0):
 
 
 def diffuse_material(color=(1, 1, 1), name="Diffuse"):
-    """A Diffuse BSDF: its picture under a constant world is its colour."""
+    """A Diffuse BSDF: its picture under a constant world is its color."""
     material = bpy.data.materials.new(name)
     material.use_nodes = True
     tree = material.node_tree

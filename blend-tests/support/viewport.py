@@ -99,7 +99,7 @@ def shown_picture():
 
 
 def samples():
-    """Of the picture on the screen; 0: there is none."""
+    """Number of samples of the picture on the screen. 0: there is none."""
     found = _shown()
     return found[0]._job.picture.samples if found else 0
 

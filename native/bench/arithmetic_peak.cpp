@@ -8,8 +8,8 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
-#include "job/thread_seconds.h"
-#include "srbf/simd_dispatch.h"
+#include "base/process.h"
+#include "base/simd_dispatch.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace velour {

@@ -5,10 +5,10 @@
 #include <cstdio>
 #include <exception>
 
-#include "fit/ggx_fit.h"
+#include "brdf/fit/ggx_fit.h"
+#include "math/sphere/random.h"
 #include "model/model_file.h"
 #include "model/model_material.h"
-#include "sphere/random.h"
 
 namespace {
 

@@ -21,11 +21,11 @@
 #include <string>
 #include <vector>
 
-#include "fit/peer.h"
+#include "base/simd.h"
+#include "brdf/fit/peer.h"
+#include "math/sphere/random.h"
 #include "model/model_file.h"
 #include "model/model_material.h"
-#include "sphere/random.h"
-#include "srbf/simd_target.h"
 
 namespace {
 

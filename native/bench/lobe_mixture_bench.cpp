@@ -1,11 +1,11 @@
 // The inner loop of the product: value and density of a batch of directions under a mixture, and one sample of it.
 #include <benchmark/benchmark.h>
 
+#include "base/simd.h"
 #include "bench/arithmetic_peak.h"
-#include "sphere/directions.h"
-#include "sphere/random.h"
-#include "srbf/lobe_mixture.h"
-#include "srbf/simd_target.h"
+#include "math/sphere/directions.h"
+#include "math/sphere/random.h"
+#include "math/srbf/lobe_mixture.h"
 
 namespace velour {
 namespace {
@@ -30,7 +30,7 @@ DirectionBatch make_batch(int count) {
   return batch;
 }
 
-/// Of a loop over `pairs` lobes times directions.
+/// Reports the time per pair of a lobe and a direction, for a loop over `pairs` of them.
 void count_pairs(benchmark::State& state, double pairs) {
   state.counters["ns_per_lobe_direction"] =
       benchmark::Counter(pairs * 1e-9, benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
@@ -47,7 +47,7 @@ void time_eval(benchmark::State& state, const LobeMixture& mixture, int directio
   }
 }
 
-// The lobes of four neighbouring views. Arguments: lobes a view, directions.
+// The lobes of four neighboring views. Arguments: lobes a view, directions.
 void eval_neighbors(benchmark::State& state) {
   constexpr int kViews = 4;
   const int lobes = kViews * static_cast<int>(state.range(0)), directions = static_cast<int>(state.range(1));

@@ -1,11 +1,11 @@
 // What a camera ray and a light direction cost in each material and in the tabulated sampler.
 #include <benchmark/benchmark.h>
 
-#include "material/principled_material.h"
-#include "material/scattered_material.h"
-#include "material/table_sampler.h"
-#include "sphere/directions.h"
-#include "sphere/random.h"
+#include "brdf/eval/per_view_material.h"
+#include "brdf/eval/table_sampler.h"
+#include "material/principled/principled_material.h"
+#include "math/sphere/directions.h"
+#include "math/sphere/random.h"
 
 namespace velour {
 namespace {
@@ -74,7 +74,7 @@ void prepare_material(benchmark::State& state) {
   }
   label(state);
 }
-// Four neighbouring views found, turned and put together. Argument: lobes a view.
+// Four neighboring views found, turned and put together. Argument: lobes a view.
 void prepare_neighbors(benchmark::State& state) {
   const int lobes = static_cast<int>(state.range(0));
   const auto material = make_scattered_material(std::make_shared<ScatteredBrdf>(make_brdf(false, lobes)), 4);

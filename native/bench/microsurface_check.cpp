@@ -6,7 +6,7 @@
 #include <cstdio>
 #include <cstdlib>
 
-#include "capture/microsurface_brdf.h"
+#include "capture/goniometer/microsurface_brdf.h"
 #include "support/beckmann.h"
 
 namespace {

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "tensor/cluster_fit.h"
-#include "votf/shell_trace.h"
+#include "math/tensor/cluster_fit.h"
+#include "votf/eval/shell_trace.h"
 
 namespace velour {
 namespace {
@@ -105,10 +105,10 @@ class OfShell : public OcclusionCandidate {
       : field_(std::move(volume)), texels_(texels), views_(views) {}
 
   bool covered(size_t texel, uint32_t view) const override { return covered(texel, views_[view]); }
-  bool covered(size_t texel, const Vec3& wv) const override { return line_meets(field_, texels_.centre(texel), wv); }
+  bool covered(size_t texel, const Vec3& wv) const override { return line_meets(field_, texels_.center(texel), wv); }
   void covered(std::span<const OcclusionQuery> queries, uint8_t* found) const override {
     std::vector<ShellWay> ways;
-    for (const auto& q : queries) ways.push_back(line_through(field_.volume(), texels_.centre(q.texel), q.wv));
+    for (const auto& q : queries) ways.push_back(line_through(field_.volume(), texels_.center(q.texel), q.wv));
     std::vector<ShellHit> hits(ways.size());
     trace_shells(field_, ways, hits.data());
     for (size_t i = 0; i < hits.size(); ++i) found[i] = hits[i].met ? 1 : 0;
@@ -127,7 +127,7 @@ std::unique_ptr<OcclusionCandidate> whole_table(const LevelTable& table, bool bi
   WholeLevels levels{table.views.size(), {}};
   std::vector<uint8_t> packed(bits ? (table.level.size() + 7) / 8 : 0);
   for (const float level : table.level) levels.level.push_back(rounded(level / largest));
-  if (bits) {  // view after view: neighbours in a file are neighbours in space
+  if (bits) {  // view after view: neighbors in a file are neighbors in space
     size_t at = 0;
     for (size_t v = 0; v < levels.views; ++v) {
       for (size_t t = 0; t < table.texels(); ++t, ++at) {

@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "sphere/direction_mesh.h"
-#include "votf/visibility_mask.h"
+#include "math/sphere/direction_mesh.h"
+#include "votf/eval/visibility_mask.h"
 
 namespace velour {
 

@@ -2,7 +2,7 @@
 //
 //   occlusion_tables TILE IRREGULARITY TEXELS VIEWS UNSEEN SEED FOLDER
 //
-// V of texel centres by rays, under VIEWS directions up to 80 degrees, and under UNSEEN others up to 75. What each
+// V of texel centers by rays, under VIEWS directions up to 80 degrees, and under UNSEEN others up to 75. What each
 // candidate would keep in a file is written to FOLDER/N.bin, in the order of the rows.
 #include <tbb/parallel_for.h>
 
@@ -17,14 +17,13 @@
 #include <numeric>
 #include <span>
 
-#include "capture/occlusion_capture.h"
-#include "capture/surface_distance.h"
-#include "capture/traced_mask.h"
+#include "capture/tile/tile.h"
+#include "math/sphere/directions.h"
+#include "math/sphere/random.h"
 #include "occlusion_candidates.h"
-#include "sphere/directions.h"
-#include "sphere/random.h"
 #include "support/test_scene.h"
-#include "tile/tile.h"
+#include "votf/capture/surface_distance.h"
+#include "votf/capture/votf_capture.h"
 
 namespace {
 
@@ -78,7 +77,7 @@ struct Errors {
     add_borders(found, truth, texels);
     add_borders(truth, found, texels);
   }
-  /// Of places between two texels that differ, how far they are from the other mask's border.
+  /// Adds the distances from places where neighboring texels of `mask` differ to the border of `other`.
   void add_borders(const Mask& mask, const Mask& other, const TileTexels& texels) {
     const std::vector<float> distance = signed_distances(other, texels, kReach);
     for (uint32_t y = 0; y < texels.height; ++y) {

@@ -18,14 +18,13 @@
 #include <vector>
 
 #include "described_scene.h"
+#include "light/environment_mixture.h"
 #include "material/material.h"
-#include "render/combination.h"
-#include "render/lighting.h"
-#include "render/lights_part.h"
-#include "render/sky_proposals.h"
+#include "math/sphere/random.h"
+#include "render/direction_sampling.h"
+#include "render/lights/environment_proposals.h"
+#include "render/lights/lighting.h"
 #include "render/vertex.h"
-#include "scene/sky_misfit.h"
-#include "sphere/random.h"
 
 namespace {
 
@@ -41,7 +40,7 @@ struct Place {
   double weight = 0;  // solid angle
   Vec3d x{0};         // f L cos
   bool visible = false;
-  double pdf[kDensities] = {};  // kExact is not normalised
+  double pdf[kDensities] = {};  // kExact is not normalized
 };
 
 /// Texels above both horizons of a vertex, a batch at a time.

@@ -10,10 +10,10 @@
 #include <cstdio>
 #include <cstdlib>
 
-#include "btf/tensor_evaluator.h"
-#include "compress/evaluation_rate.h"
+#include "base/simd.h"
+#include "btf/fit/btf_fit.h"
+#include "btf/model/tensor_evaluator.h"
 #include "model/model_file.h"
-#include "srbf/simd_target.h"
 #include "support/example_tensor.h"
 
 namespace {

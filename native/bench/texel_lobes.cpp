@@ -6,15 +6,15 @@
 #include <Eigen/QR>
 #include <numbers>
 
-#include "fit/levenberg_marquardt.h"
+#include "math/optimize/levenberg_marquardt.h"
+#include "math/sphere/directions.h"
 #include "occlusion_candidates.h"
-#include "sphere/directions.h"
 
 namespace velour {
 namespace {
 
-constexpr int kMostLobes = 4, kMost = 1 + 4 * kMostLobes;
-constexpr double kLeastBandwidth = 0.5, kLargestBandwidth = 400, kMostAmplitude = 4;
+constexpr int kMaxLobes = 4, kMost = 1 + 4 * kMaxLobes;
+constexpr double kMinBandwidth = 0.5, kLargestBandwidth = 400, kMaxAmplitude = 4;
 constexpr int kAxes = 64;
 constexpr double kBandwidths[] = {2, 8, 32, 128};
 constexpr size_t kBlock = 512;  // texels
@@ -65,11 +65,11 @@ struct Problem {
   }
   static Parameters moved(const Parameters& p, const Parameters& step) {
     Parameters to = p + step;
-    to[0] = std::clamp(to[0], -kMostAmplitude, kMostAmplitude);
+    to[0] = std::clamp(to[0], -kMaxAmplitude, kMaxAmplitude);
     for (Eigen::Index l = 1; l < p.size(); l += 4) {
       const double length = to.segment<3>(l + 1).norm();
-      to[l] = std::clamp(to[l], -kMostAmplitude, kMostAmplitude);
-      to.segment<3>(l + 1) *= std::clamp(length, kLeastBandwidth, kLargestBandwidth) / std::max(length, 1e-9);
+      to[l] = std::clamp(to[l], -kMaxAmplitude, kMaxAmplitude);
+      to.segment<3>(l + 1) *= std::clamp(length, kMinBandwidth, kLargestBandwidth) / std::max(length, 1e-9);
     }
     return to;
   }
@@ -135,10 +135,10 @@ struct LobeBytes {
 
   static uint8_t byte(double share) { return static_cast<uint8_t>(std::lround(255 * std::clamp(share, 0.0, 1.0))); }
   void append(const Parameters& p, std::vector<uint8_t>& bytes) const {
-    bytes.push_back(byte(0.5 + 0.5 * p[0] / kMostAmplitude));
+    bytes.push_back(byte(0.5 + 0.5 * p[0] / kMaxAmplitude));
     for (Eigen::Index l = 1; l < p.size(); l += 4) {
       const double length = p.segment<3>(l + 1).norm();
-      bytes.push_back(byte(0.5 + 0.5 * p[l] / kMostAmplitude));
+      bytes.push_back(byte(0.5 + 0.5 * p[l] / kMaxAmplitude));
       bytes.push_back(byte(std::acos(std::clamp(p[l + 3] / length, -1.0, 1.0)) / std::numbers::pi));
       bytes.push_back(byte(0.5 + 0.5 * std::atan2(p[l + 2], p[l + 1]) / std::numbers::pi));
       bytes.push_back(byte((1 + std::log2(length)) / kOctaves));
@@ -147,11 +147,11 @@ struct LobeBytes {
   Parameters parameters(const uint8_t* bytes, int lobes) const {
     const auto share = [](uint8_t b) { return b / 255.0; };
     Parameters p(1 + 4 * lobes);
-    p[0] = kMostAmplitude * (2 * share(*bytes++) - 1);
+    p[0] = kMaxAmplitude * (2 * share(*bytes++) - 1);
     for (Eigen::Index l = 1; l < p.size(); l += 4, bytes += 4) {
       const double theta = std::numbers::pi * share(bytes[1]), phi = std::numbers::pi * (2 * share(bytes[2]) - 1);
       const double length = std::exp2(kOctaves * share(bytes[3]) - 1);
-      p[l] = kMostAmplitude * (2 * share(bytes[0]) - 1);
+      p[l] = kMaxAmplitude * (2 * share(bytes[0]) - 1);
       p[l + 1] = length * std::sin(theta) * std::cos(phi);
       p[l + 2] = length * std::sin(theta) * std::sin(phi);
       p[l + 3] = length * std::cos(theta);

@@ -23,9 +23,9 @@
 #include "described_scene.h"
 #include "image/picture.h"
 #include "material/material.h"
-#include "render/lighting.h"
+#include "math/sphere/random.h"
+#include "render/lights/lighting.h"
 #include "render/vertex.h"
-#include "sphere/random.h"
 
 namespace {
 

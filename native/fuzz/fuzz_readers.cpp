@@ -9,17 +9,17 @@
 #include <string>
 #include <vector>
 
-#include "brdf/measurement.h"
-#include "brdf/window_bsdf.h"
-#include "btf/csv_index.h"
-#include "btf/load_btf.h"
-#include "domain/observation_file.h"
-#include "file/file.h"
+#include "base/error.h"
+#include "base/file.h"
+#include "brdf/formats/window_bsdf.h"
+#include "brdf/measure/measurement.h"
+#include "btf/formats/csv_index.h"
+#include "btf/formats/load_btf.h"
 #include "image/picture.h"
-#include "job/error.h"
 #include "model/model_file.h"
 #include "scene/obj_file.h"
 #include "scene/ply_file.h"
+#include "usage/observation_file.h"
 
 namespace velour {
 namespace {

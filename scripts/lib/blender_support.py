@@ -1,4 +1,4 @@
-"""The measured tables of docs/blender_support.md: parity tests, and export times of large scenes."""
+"""The tables of docs/results/blender_parity.md (parity tests) and blender_export.md (export times)."""
 
 from __future__ import annotations
 
@@ -19,7 +19,8 @@ from velour.core import files
 from velour.core.machine import threads
 from velour_cli import ROOT
 
-PAGE = ROOT / "docs/blender_support.md"
+PARITY_PAGE = ROOT / "docs/results/blender_parity.md"
+EXPORT_PAGE = ROOT / "docs/results/blender_export.md"
 ROWS = ROOT / "build/blend-tests/parity"
 HEADER = ["feature", "verdict", "largest block difference, %", "in standard errors"]
 SEED = 0  # seed of the first of each engine's four pictures
@@ -38,11 +39,14 @@ def main() -> int:
     if not rows:
         print(f"blender_support: there is no row in {ROWS}; run without --last.", file=sys.stderr)
         return 1
-    page = PAGE.read_text(encoding="utf-8")
-    page = replaced(page, "parity", _text(rows), "blender_support")
+    _write(PARITY_PAGE, "parity", _text(rows))
     seconds = f"\n{_conditions(rows)}\n\n{export_seconds.measured(ROOT / 'build/export_seconds')}\n"
-    files.write_text(PAGE, replaced(page, "export", seconds, "blender_support"))
+    _write(EXPORT_PAGE, "export", seconds)
     return 0
+
+
+def _write(page: Path, part: str, text: str) -> None:
+    files.write_text(page, replaced(page.read_text(encoding="utf-8"), part, text, "blender_support"))
 
 
 def _rows() -> list[dict]:

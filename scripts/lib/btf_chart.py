@@ -43,7 +43,7 @@ def methods(known: tuple[str, ...], wanted: list[str] | None = None) -> list[Met
 
 
 def main() -> int:
-    args = script.arguments("chart", ROOT / "docs", _add_arguments, part="btf", **SWITCHES)
+    args = script.arguments("chart", ROOT / "docs/results", _add_arguments, part="btf", **SWITCHES)
     extent = _extent(args)
     run = script.start(args, Settings(args.work / "kept", extent.size, args.threads, args.seed))
     study = Study(run.renders, extent, run.data, args.kept)

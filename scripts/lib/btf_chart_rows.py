@@ -1,4 +1,4 @@
-"""Reads and writes docs/chart_btf.csv: the conditions of the measurement, then a row for each entry."""
+"""Reads and writes docs/results/chart_btf.csv: the conditions of the measurement, then a row per entry."""
 
 from __future__ import annotations
 

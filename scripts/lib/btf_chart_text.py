@@ -1,4 +1,4 @@
-"""Writes docs/chart_btf.md and its CSV from the numbers of scripts/chart --btf."""
+"""Writes docs/results/chart_btf.md and its CSV from the numbers of scripts/chart --btf."""
 
 from __future__ import annotations
 
@@ -45,7 +45,8 @@ def _head(conditions: dict, extent: Extent) -> str:
     tiles = f"{btf_chart_scene.TILES:g}"
     return f"""# Ways to compress a BTF, at equal bytes
 
-Written by `scripts/chart --btf`; what the methods are, and which to use where: [btf.md](btf.md).
+Written by `scripts/chart --btf`; what the methods are, and which to use where:
+[btf_models.md](../engine/btf_models.md).
 All numbers are also in [chart_btf.csv](chart_btf.csv).
 {_origin(conditions)}
 Other programs may have used the processors at the same time: processor seconds feel that little,
@@ -55,7 +56,8 @@ Captures of {side} x {side} texels under {extent.directions} x {extent.direction
 unseen pairs: `--held-out {extent.held_out}`. A ratio of 1:R allows the model's file, headers and all, an
 R-th of the BTF's half floats. A method gets the most bytes with which its file is within that and a
 hundredth, of a few tries that stop where it fills 92 %; "-" stands where no model was fitted, or none is
-so small. PSNR in dB and squared error ratio as [conventions.md](conventions.md) has them. Picture error:
+so small. PSNR in dB and squared error ratio as
+[conventions.md](../engine/conventions.md) has them. Picture error:
 root mean square of the difference over that of the reference, of a bent sheet of {tiles} x {tiles} tiles
 under `{WORLD}`, {width}x{height} pixels, {extent.spp} directions of the light each, the same for both.
 """

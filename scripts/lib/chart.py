@@ -69,7 +69,7 @@ QUICK = Extent(
 
 
 def main() -> int:
-    args = script.arguments("chart", ROOT / "docs/chart")
+    args = script.arguments("chart", ROOT / "docs/results/chart")
     extent = QUICK if args.quick else Extent()
     run = script.start(args, Settings(args.work / "kept", extent.size, args.threads, args.seed))
     scenes = chart_scenes.scenes(run.data, run.renders, extent.worlds)

@@ -1,4 +1,4 @@
-"""The tables of docs/chart."""
+"""The tables of docs/results/chart."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Writes docs/chart: a plot and a CSV per scene, and the page with the tables derived from them."""
+"""Writes docs/results/chart: a plot and a CSV per scene, and the page with the tables derived from them."""
 
 from __future__ import annotations
 
@@ -71,8 +71,9 @@ def _head(conditions: dict, extent) -> str:
     width, height = extent.size
     return f"""# Error against time
 
-Written by `scripts/chart`; how to read it and how to take it on another machine: `docs/chart.md`. Beside each
-picture lies the CSV of the same name; the targets are in [targets.csv](targets.csv).
+Written by `scripts/chart`; how to read it and how to take it on another machine:
+[chart.md](../chart.md). Beside each picture lies the CSV of the same name; the targets are in
+[targets.csv](targets.csv).
 {provenance.sentence(conditions)}
 
 {width}x{height}, default camera, direct light, split 8, models of at most 16 lobes a view. Errors are against

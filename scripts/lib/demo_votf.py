@@ -93,11 +93,11 @@ def _add_objects(scene: Scene, tile: Tile, model: Model, geometry: bool) -> None
         scene.add_instance(number, place, [net])
     if not geometry:
         scene.set_shell_tile(net, period)
-    grey = scene.add_principled_material(base_color=(0.35, 0.35, 0.35), roughness=0.8)
+    gray = scene.add_principled_material(base_color=(0.35, 0.35, 0.35), roughness=0.8)
     side = 20 * _ball(period).radius
     corners = np.array([[-1, -1, 0], [1, -1, 0], [1, 1, 0], [-1, 1, 0]], np.float32) * np.float32(side)
     floor, _ = scene.add_mesh(positions=corners, triangles=np.array([[0, 1, 2], [0, 2, 3]], np.uint32))
-    scene.add_instance(floor, _UNMOVED, [grey])
+    scene.add_instance(floor, _UNMOVED, [gray])
     radius = _ball(period).radius
     scene.add_light("sun", (4, 3.8, 3.5), _sun(), angle=0.02)
     scene.set_world_color((0.3, 0.33, 0.4))

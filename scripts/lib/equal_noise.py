@@ -1,4 +1,4 @@
-"""The processor time that Cycles and Velour take to reach the same noise, in one run: docs/equal_noise.md."""
+"""Processor time of Cycles and Velour at the same noise, in one run: docs/results/equal_noise.md."""
 
 from __future__ import annotations
 
@@ -89,9 +89,9 @@ def main() -> int:
     if arguments.only or arguments.blender:
         print(page)
         return 0
-    folder = WORK if arguments.quick else ROOT / "docs"
+    folder = WORK if arguments.quick else ROOT / "docs/results"
     (folder / "equal_noise.md").write_text(page, encoding="utf-8")
-    _draw((WORK if arguments.quick else ROOT / "docs/images") / "equal_noise.png", results)
+    _draw((WORK if arguments.quick else ROOT / "docs/results/images") / "equal_noise.png", results)
     print(folder / "equal_noise.md")
     return 0
 

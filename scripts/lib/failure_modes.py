@@ -1,4 +1,4 @@
-"""The table of claimed and true errors in docs/failure_modes.md, from the records of the test."""
+"""The table of claimed and true errors in docs/results/failure_modes.md, from the records of the test."""
 
 from __future__ import annotations
 
@@ -17,8 +17,8 @@ from markdown_table import table
 from velour.core import files
 from velour_cli import ROOT
 
-_PROGRAM = ROOT / "build/release/native/tests/unit/fit/test_failure_modes"
-_PAGE = ROOT / "docs/failure_modes.md"
+_PROGRAM = ROOT / "build/release/native/tests/unit/brdf/fit/test_failure_modes"
+_PAGE = ROOT / "docs/results/failure_modes.md"
 _KINDS = ("scattered", "parametric")
 _VIEWS = ("5", "30", "60", "75", "85")
 

@@ -1,4 +1,4 @@
-"""Writes docs/figures/check.md: whether uniform samples of the measurements agree with the references."""
+"""Writes docs/results/figures/check.md: whether uniform samples of measurements agree with references."""
 
 from __future__ import annotations
 

@@ -88,7 +88,9 @@ class Figure:
 
 
 def main() -> int:
-    args = script.arguments("figures", ROOT / "docs/figures", check="the uniform reference's check alone")
+    args = script.arguments(
+        "figures", ROOT / "docs/results/figures", check="the uniform reference's check alone"
+    )
     extent = QUICK if args.quick else Extent()
     run = script.start(args, Settings(args.work / "kept", extent.size, args.threads, args.seed))
     subjects = figure_scenes.subjects(run.data, run.renders)

@@ -1,4 +1,4 @@
-"""Writes docs/figures/README.md and figures.csv from the numbers of scripts/figures."""
+"""Writes docs/results/figures/README.md and figures.csv from the numbers of scripts/figures."""
 
 from __future__ import annotations
 
@@ -43,7 +43,7 @@ views, interpolated, a lobe by its share, its zenith by closed-form inversion wh
 Metropolis and Hastings' method, independent numbers. `default` (`mis`): tables of the model, Sobol
 points. The pictures show the model, the reference the measurement, so errors do not fall below the fit's
 own: the last row of each figure. Seconds are wall clock, of a machine that may have done other work:
-docs/performance.md has those of a free one.
+[performance.md](../performance.md) has those of a free one.
 
 {_errors(figures)}
 ## References

@@ -12,8 +12,8 @@ from velour_cli import ROOT
 
 # Where scripts/setup --metrics installs FLIP. Last on the path, so that numpy remains the system's.
 _PACKAGES = ROOT / "build/tools/lib/python{}.{}/site-packages".format(*sys.version_info[:2])
-GREY = 0.18  # the object's mean luminance after exposure: the photographer's gray card
-_SIDE, _GREY_LIGHTNESS = 64, 50.0  # uniform patches: pixels, L*
+GRAY = 0.18  # the object's mean luminance after exposure: the photographer's gray card
+_SIDE, _GRAY_LIGHTNESS = 64, 50.0  # uniform patches: pixels, L*
 
 
 class NoFlipError(RuntimeError):
@@ -41,8 +41,8 @@ def flip_map(reference: np.ndarray, test: np.ndarray) -> np.ndarray:
 
 
 def exposure(picture: np.ndarray, where: np.ndarray) -> float:
-    """Factor that makes the mean luminance of the pixels of `where` equal to GREY."""
-    return float(GREY / (picture[where] @ LUMINANCE).mean())
+    """Factor that makes the mean luminance of the pixels of `where` equal to GRAY."""
+    return float(GRAY / (picture[where] @ LUMINANCE).mean())
 
 
 def display(linear: np.ndarray) -> np.ndarray:
@@ -53,7 +53,7 @@ def display(linear: np.ndarray) -> np.ndarray:
 
 def of_lightness(difference: float) -> float:
     """Mean FLIP of two uniform grays that differ by `difference` in L*, their color difference in CIELAB."""
-    patches = [np.full((_SIDE, _SIDE, 3), _luminance(_GREY_LIGHTNESS + d)) for d in (0.0, difference)]
+    patches = [np.full((_SIDE, _SIDE, 3), _luminance(_GRAY_LIGHTNESS + d)) for d in (0.0, difference)]
     return float(flip_map(*map(display, patches)).mean())
 
 

@@ -16,14 +16,14 @@ from velour_cli import ROOT
 
 
 def main() -> int:
-    args = script.arguments("for_scene", ROOT / "docs")
+    args = script.arguments("for_scene", ROOT / "docs/results")
     extent = QUICK if args.quick else Extent()
     run = script.start(args, Settings(args.work / "kept", extent.size, args.threads, args.seed))
     subjects = data_files.materials(run.data)[: extent.materials]
     study = Study(run.renders, extent)
     study.announce(len(subjects))
     rows = [study.row(name, measurement) for name, measurement in subjects]
-    for_scene_text.write(ROOT / "docs", args.output, rows, run.conditions, extent)
+    for_scene_text.write(ROOT / "docs/results", args.output, rows, run.conditions, extent)
     print(args.output / "for_scene.md")
     return 0
 

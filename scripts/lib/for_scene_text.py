@@ -1,4 +1,4 @@
-"""Writes the generated part of docs/for_scene.md and its CSV from the numbers of scripts/for_scene."""
+"""Writes the generated part of docs/results/for_scene.md and its CSV from scripts/for_scene."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Writes docs/inputs.md: how Velour handles files of other programs, as recorded by the reader tests."""
+"""Writes docs/reference/inputs.md: how Velour handles files of other programs, from the reader tests."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from markdown_table import table
 from velour.core import files
 from velour_cli import ROOT
 
-_PAGE = ROOT / "docs/inputs.md"
+_PAGE = ROOT / "docs/reference/inputs.md"
 _PROGRAMS = (
     "image/test_image",
     "image/test_portable_picture",

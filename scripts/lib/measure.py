@@ -1,4 +1,4 @@
-"""Measures the numbers of docs/measurements.md through the command line, as a user would."""
+"""Measures the numbers of docs/results/measurements.md through the command line, as a user would."""
 
 from __future__ import annotations
 
@@ -40,11 +40,11 @@ def main() -> int:
         "lobes": _image_error_by_lobes(scene, materials[MATERIAL]),
         "strategies": {f"{m}, {w}": _strategies(worlds[w], m) for m in CHARTED for w in WORLDS},
     }
-    files.write_text(ROOT / "docs/measurements.md", measure_text.page(results))
-    files.write_text(ROOT / "docs/measurements.csv", _csv(results))
+    files.write_text(ROOT / "docs/results/measurements.md", measure_text.page(results))
+    files.write_text(ROOT / "docs/results/measurements.csv", _csv(results))
     errors = {name: fit["by_view_angle"] for name, fit in results["fits"].items()}
-    plots.error_by_view_angle(ROOT / "docs/images/error_by_view_angle.png", errors, TOLERANCE)
-    print(ROOT / "docs/measurements.md")
+    plots.error_by_view_angle(ROOT / "docs/results/images/error_by_view_angle.png", errors, TOLERANCE)
+    print(ROOT / "docs/results/measurements.md")
     return 0
 
 

@@ -1,4 +1,4 @@
-"""The text of docs/measurements.md from the numbers of scripts/measure."""
+"""The text of docs/results/measurements.md from the numbers of scripts/measure."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ Written by `scripts/measure`; the rows behind the tables are in [measurements.cs
 
 The materials are decoded from neural fits of MERL materials (Sztrajman et al. 2021): stand-ins of the
 right layout and character, not the measurements themselves. What each number means is defined in
-[conventions.md](conventions.md).
+[conventions.md](../engine/conventions.md).
 """
 
 

@@ -20,7 +20,7 @@ SKY_RADIANCE = 0.35
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--spp", type=int, default=400, help="light directions a pixel (400)")
-    parser.add_argument("--output", type=Path, default=ROOT / "docs/mesostructures", metavar="FOLDER")
+    parser.add_argument("--output", type=Path, default=ROOT / "docs/results/mesostructures", metavar="FOLDER")
     arguments = parser.parse_args()
     arguments.output.mkdir(parents=True, exist_ok=True)
     for kind in Tile.kinds():

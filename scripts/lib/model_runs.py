@@ -1,4 +1,4 @@
-"""Fits, comparisons and measured costs for docs/models.md, kept under a hash of everything they depend on."""
+"""Fits, comparisons and costs for docs/results/models.md, kept under a hash of all that they depend on."""
 
 from __future__ import annotations
 

@@ -31,7 +31,7 @@ QUICK = Extent(1, (1, 4), (2000, 8000))
 
 
 def main() -> int:
-    args = script.arguments("models", ROOT / "docs")
+    args = script.arguments("models", ROOT / "docs/results")
     extent = QUICK if args.quick else Extent()
     load = provenance.busy_threads()
     run = script.start(args, Settings(args.work / "kept", (0, 0), args.threads, args.seed))
@@ -41,7 +41,7 @@ def main() -> int:
     results = [runs.result(name, path, extent) for name, path in subjects]
     floor = runs.floor()
     models_plot.draw(args.output / "models", results)
-    models_text.write(ROOT / "docs", args.output, results, floor, {**run.conditions, "load": load})
+    models_text.write(ROOT / "docs/results", args.output, results, floor, {**run.conditions, "load": load})
     print(args.output / "models.md")
     return 0
 

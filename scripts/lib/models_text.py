@@ -1,4 +1,4 @@
-"""Writes docs/models.md, its CSV, and generated tables of docs/fit.md, docs/ggx.md, docs/principled.md."""
+"""Writes models.md of docs/results, its CSV, and the generated tables of fit.md, ggx.md and principled.md."""
 
 from __future__ import annotations
 

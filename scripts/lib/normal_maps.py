@@ -32,7 +32,7 @@ HEADER = [
     "75°",
     "by its own judges",
     "map",
-    "seconds: colours",
+    "seconds: colors",
     "normals",
 ]
 

@@ -16,7 +16,7 @@ from velour_cli import ROOT
 
 
 def main() -> int:
-    args = script.arguments("perceptual", ROOT / "docs")
+    args = script.arguments("perceptual", ROOT / "docs/results")
     extent = QUICK if args.quick else Extent()
     run = script.start(args, Settings(args.work / "kept", extent.size, args.threads, args.seed))
     thresholds = Seen(*map(flip_metric.of_lightness, THRESHOLDS))

@@ -1,4 +1,4 @@
-"""Writes docs/perceptual.md, its CSV and its chart from the numbers of scripts/perceptual."""
+"""Writes docs/results/perceptual.md, its CSV and its chart from the numbers of scripts/perceptual."""
 
 from __future__ import annotations
 
@@ -42,7 +42,7 @@ then the sRGB curve, clipped, unrounded. FLIP is made for two pictures that take
 strictest way to compare.
 
 Threshold: the mean below {thresholds.mean:.3f}, and 99 of 100 pixels below {thresholds.percentile:.3f}.
-These are what FLIP says of two even greys that differ by 1 and by 2.3 in CIELAB: what observers do not
+These are what FLIP says of two even grays that differ by 1 and by 2.3 in CIELAB: what observers do not
 notice [MT11], and the classical just noticeable difference [MVO94].
 
 {_verdict(rows, thresholds)}

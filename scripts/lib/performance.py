@@ -1,4 +1,4 @@
-"""Measures the numbers of docs/performance.md: renders by the command line, kernels by the benchmarks."""
+"""Measures the numbers of docs/results/performance.md: renders by command line, kernels by benchmarks."""
 
 from __future__ import annotations
 
@@ -69,7 +69,7 @@ def main() -> int:
         "gathering": _bench("bench_material", "prepare_neighbors"),
     }
     # A small version only tries the script; it must not replace the numbers of a full run.
-    document = WORK / "quick.md" if quick else ROOT / "docs/performance.md"
+    document = WORK / "quick.md" if quick else ROOT / "docs/results/performance.md"
     files.write_text(document, performance_text.page(results))
     print(document)
     return 0

@@ -1,4 +1,4 @@
-"""The text of docs/performance.md from the numbers of scripts/performance."""
+"""The text of docs/results/performance.md from the numbers of scripts/performance."""
 
 from __future__ import annotations
 
@@ -50,7 +50,7 @@ def _pictures(threads: dict[str, dict[int, dict]], size: tuple[str, int]) -> str
 
 {table(header, rows)}
 Targets: 640x480 with 800 directions in under 40 s on two threads, at least 1.9 times faster than on one,
-and the `ray_share` in brackets ([conventions.md](conventions.md)).
+and the `ray_share` in brackets ([conventions.md](../engine/conventions.md)).
 """
 
 
@@ -86,7 +86,7 @@ up to so many lobes (fits to a tolerance that no view reaches before).
 def _kernels(results: dict) -> str:
     return f"""## The mixture kernel against the machine's arithmetic
 
-Value (RGB) and density of a batch of directions under the Gaussian lobes of four neighbouring views,
+Value (RGB) and density of a batch of directions under the Gaussian lobes of four neighboring views,
 one thread. `share of peak`: what the same operations take in chains that wait for nothing, on registers
 alone (11 fused multiply-adds, 3 products, 6 sums, a maximum and a shift a lobe; the best of many short
 runs), measured in the same run and divided by the kernel's time.
@@ -98,7 +98,7 @@ By instruction set, 16 lobes and 16 directions:
 Drawing directions from a mixture, random number included:
 
 {_drawing(results["kernels"])}
-Gathering the lobes of four neighbours of 400 views over the hemisphere (search, rotations, weights):
+Gathering the lobes of four neighbors of 400 views over the hemisphere (search, rotations, weights):
 
 {_gathering(results["gathering"])}"""
 
@@ -141,8 +141,8 @@ _LIMIT = """## What the limit is
 
 `ray_share` 1 would be a renderer that shades for nothing: the picture would then take `ray_share` times
 its seconds, and only a faster ray tracer could make it shorter. Embree has no faster call for these
-rays ([rendering.md](rendering.md#speed)), and spatial splits (`RTC_BUILD_QUALITY_HIGH`) left the
-seconds as they were.
+rays ([strategies.md](../engine/strategies.md#tiles-and-batches)), and spatial splits
+(`RTC_BUILD_QUALITY_HIGH`) left the seconds as they were.
 
 How shading was made cheap:
 
@@ -155,7 +155,7 @@ How shading was made cheap:
 
 What is left is spread thin. The mixture kernel runs near the limit of its arithmetic. Vectors hold 16
 directions under one lobe, or up to eight under two: of the eight of the default split some fall below the
-horizon, and their lanes stay empty. The search of neighbours (by a table of directions), the gathering of
+horizon, and their lanes stay empty. The search of neighbors (by a table of directions), the gathering of
 their lobes and, for `product`, the products are paid once a camera ray: a larger split spreads them over
 more directions.
 """

@@ -178,7 +178,7 @@ PRESETS += (
             (_yarn((0.05, 0.12, 0.5), _SILK, 1.57), _yarn((0.7, 0.16, 0.06), _SILK, 1.57)),
             {"size": 0.0012, "gap": 0.04, "thickness": 0.2, "irregularity": 0.05},
         ),
-        "Blue warp, orange weft: turns its colour with the view",
+        "Blue warp, orange weft: turns its color with the view",
         ("shiny", "plain weave"),
     ),
     Preset(

@@ -23,7 +23,7 @@ from velour.native import images
 from velour_cli import ROOT
 
 _BUILT = ROOT / "build/presets"
-_PICTURE = ROOT / "docs/images/presets.png"
+_PICTURE = ROOT / "docs/results/images/presets.png"
 _COST = {True: 10, False: 1}  # relative time of a cloth and of other presets, for the progress
 _COLUMNS = 6  # columns of the sheet of all previews
 _LICENCE = """The materials of this folder are in the public domain: CC0-1.0,

@@ -57,7 +57,7 @@ def _arguments() -> argparse.Namespace:
     args = parser.parse_args()
     args.work = args.work or ROOT / "out" / ("real-geometry-quick" if args.quick else "real-geometry")
     small = args.work / "sheet.png"
-    args.output = args.output or (small if args.quick else ROOT / "docs/images/btf_geometry.png")
+    args.output = args.output or (small if args.quick else ROOT / "docs/results/images/btf_geometry.png")
     return args
 
 

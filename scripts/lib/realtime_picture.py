@@ -7,7 +7,7 @@ import numpy as np
 import plots
 from display import display
 
-_TIMES, _GREY = 10, 0.214  # factor of the difference, around middle gray (linear)
+_TIMES, _GRAY = 10, 0.214  # factor of the difference, around middle gray (linear)
 _SHOWN = 0.82  # share of the height: above it is the shell's hem, which has no sides in real time
 _CELL = 2.9  # width of a picture in inches, at 100 dots per inch
 _TITLES = ("ray traced", "real time", f"{_TIMES} times the difference")
@@ -16,7 +16,7 @@ _TITLES = ("ray traced", "real time", f"{_TIMES} times the difference")
 def main() -> int:
     traced, drawn = np.load(sys.argv[1])[..., :3]
     white = np.percentile(traced, 99.5)
-    difference = _GREY + _TIMES * (drawn - traced) / white
+    difference = _GRAY + _TIMES * (drawn - traced) / white
     draw(Path(sys.argv[2]), (traced / white, drawn / white, difference))
     return 0
 

@@ -1,4 +1,4 @@
-"""The table of times in docs/testing.md, from the times that the last run of scripts/test kept."""
+"""The table of times in docs/results/test_times.md, from the times that the last run of scripts/test kept."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from velour.core import files
 from velour.core.machine import threads
 from velour_cli import ROOT
 
-_PAGE = ROOT / "docs/testing.md"
+_PAGE = ROOT / "docs/results/test_times.md"
 _TIMES = ROOT / "build/release/tests/times.json"
 _SHOWN = 10  # number of slowest tests shown per group
 
@@ -47,7 +47,7 @@ def text(groups: dict[str, dict]) -> str:
         for test, seconds in group["slowest"][:_SHOWN]
     ]
     return (
-        f"\n{conditions} Two tests run at a time, so the seconds of one are those of a busy machine.\n\n"
+        f"\n{conditions}\nTwo tests run at a time, so the seconds of one are those of a busy machine.\n\n"
         + table(["group", "tests", "seconds", "processor seconds"], rows)
         + "\n"
         + table(["group", "slowest tests", "seconds"], slowest)

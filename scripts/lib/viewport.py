@@ -1,4 +1,4 @@
-"""Measures for docs/viewport.md how long the rendered viewport takes to show a change."""
+"""Measures for docs/results/viewport.md how long the rendered viewport takes to show a change."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ sys.path.insert(0, str(ROOT / "blend-tests"))
 
 from support import process
 
-PAGE = ROOT / "docs/viewport.md"
+PAGE = ROOT / "docs/results/viewport.md"
 FILES = ROOT / "build/viewport"
 SCENES = {
     "monkey": "a monkey of 31 thousand triangles in a measured paint, under a picture of a sky",
@@ -121,7 +121,7 @@ def _text(scene: str, result: dict) -> str:
 
 def _real_time_text(result: dict) -> str:
     seconds, (width, height) = statistics.median(result["seconds"]), result["size"]
-    return f"""In real time ([realtime.md](realtime.md)) a picture of {width} x {height} of it takes
+    return f"""In real time ([realtime.md](../engine/realtime.md)) a picture of {width} x {height} of it takes
 {1000 * seconds:.0f} ms, {1 / seconds:.1f} a second, reading it back included; the target is 30 on a modest
 graphics processor."""
 

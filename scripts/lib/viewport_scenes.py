@@ -26,7 +26,7 @@ def objects():
     """Five million triangles in 500 objects, each with a mesh of its own."""
     with _viewport():
         first = _grid(FACES, 0.9)
-        _wear_grey(first)
+        _wear_gray(first)
     side = math.ceil(math.sqrt(OBJECTS))
     for i in range(1, OBJECTS):
         twin = bpy.data.objects.new("Object", first.data.copy())
@@ -41,7 +41,7 @@ def instances():
     with _viewport():
         bpy.ops.mesh.primitive_uv_sphere_add(segments=32, ring_count=16, radius=0.01)
         sphere = bpy.context.object
-        _wear_grey(sphere)
+        _wear_gray(sphere)
         bpy.ops.mesh.primitive_grid_add(x_subdivisions=side - 1, y_subdivisions=side - 1, size=10)
         plane = bpy.context.object
     sphere.name, sphere.parent, plane.instance_type = "Subject", plane, "VERTS"
@@ -76,7 +76,7 @@ def change_world(time):
 def change_material(time):
     """Changes the color, or the placement of a measured material."""
     material = bpy.data.objects["Subject"].active_material
-    if material.name == "Grey":
+    if material.name == "Gray":
         node = next(node for node in material.node_tree.nodes if node.type == "BSDF_DIFFUSE")
         node.inputs["Color"].default_value = (0.5, 0.1 * (time % 9), 0.3, 1)
     else:
@@ -126,8 +126,8 @@ def _grid(faces, size):
     return grid
 
 
-def _wear_grey(obj):
-    material = bpy.data.materials.new("Grey")
+def _wear_gray(obj):
+    material = bpy.data.materials.new("Gray")
     material.use_nodes = True
     nodes = material.node_tree.nodes
     nodes.remove(nodes["Principled BSDF"])

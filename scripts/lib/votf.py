@@ -51,7 +51,7 @@ class Row:
 
 
 def main() -> int:
-    args = script.arguments("votf", ROOT / "docs")
+    args = script.arguments("votf", ROOT / "docs/results")
     extent = QUICK if args.quick else Extent()
     args.work.mkdir(parents=True, exist_ok=True)
     (args.output / "images").mkdir(parents=True, exist_ok=True)

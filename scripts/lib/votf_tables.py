@@ -39,7 +39,7 @@ QUICK = (Case("net", 0, 64, 100, 16), _IRREGULAR, Case("chainmail", 0, 64, 100, 
 
 
 def main() -> int:
-    args = script.arguments("votf_tables", ROOT / "docs")
+    args = script.arguments("votf_tables", ROOT / "docs/results")
     args.output.mkdir(parents=True, exist_ok=True)
     progress = Progress()
     results = []

@@ -1,4 +1,4 @@
-"""Writes docs/votf_tables.md and its CSV."""
+"""Writes docs/results/votf_tables.md and its CSV."""
 
 from __future__ import annotations
 
@@ -47,9 +47,9 @@ def _page(results: list[dict], conditions: dict) -> str:
 By `scripts/votf_tables`. {provenance.sentence(conditions)}
 All rows: [votf_tables.csv](votf_tables.csv).
 
-V(t, wv) says whether the line through the centre of texel t along wv meets the structure
-([votf.md](votf.md)). Ways to keep it, of texels and views up to 80 degrees, evenly over solid angle, made by
-rays:
+V(t, wv) says whether the line through the center of texel t along wv meets the structure
+([votf.md](../engine/votf.md)). Ways to keep it, of texels and views up to 80 degrees, evenly over solid
+angle, made by rays:
 
 - *V, whole*: a bit for every texel and view. *Signed distance, whole*: in every view's picture, to the
   nearest border of what is covered, in a byte, at most 4 texels. Between views both are linear

@@ -1,4 +1,4 @@
-"""Writes docs/votf_numbers.md and its pictures."""
+"""Writes docs/results/votf_numbers.md and its pictures."""
 
 from __future__ import annotations
 
@@ -60,7 +60,7 @@ def write(folder: Path, rows: list, conditions: dict, extent) -> None:
 By `scripts/votf`. {provenance.sentence(conditions)}
 
 Three pictures of each surface under a sun and an even sky: with the tile's geometry all over it (every
-vertex at p + height n), smooth, and with the tile's shell ([votf.md](votf.md)).
+vertex at p + height n), smooth, and with the tile's shell ([votf.md](../engine/votf.md)).
 The shell is 6 % of the sphere's radius high. Outline: soft intersection over union of alpha (sum of
 minima over sum of maxima) with holes filled; alpha: the same with holes; light: root mean square of the
 difference where both show the object, over that of the geometry. Pictures are {extent.side} pixels

@@ -22,7 +22,7 @@ from ..native.images import Frame
 from . import picture_parts
 from .picture_parts import Part, Range
 
-_COLOURS = 4
+_COLORS = 4
 _LONGEST_NAME = 200  # bytes; a suffix follows, and most file systems allow 255
 
 
@@ -164,6 +164,6 @@ def _opened(path: Path) -> Part | None:
 
 def _sums(part: Part, job: Job) -> np.ndarray:
     width, height, channels = images.size(part.name)
-    if (width, height) != job.size or channels != _COLOURS + job.sums_per_pixel():
+    if (width, height) != job.size or channels != _COLORS + job.sums_per_pixel():
         raise refuse(f"{part.name} differs from this render in its pixels or passes; remove it.")
-    return images.read(part.name)[..., _COLOURS:]
+    return images.read(part.name)[..., _COLORS:]

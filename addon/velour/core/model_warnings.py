@@ -51,7 +51,7 @@ def gain_warning(albedo_max: float | None, gain: tuple[float, float, float]) -> 
 
 
 def tolerance_words(tolerance: float) -> str:
-    """Describes how visible errors within a tolerance are; docs/perceptual.md has the measurements."""
+    """Describes how visible errors within a tolerance are. Measured in docs/results/perceptual.md."""
     seen = next(words for most, words in _LOOKS if tolerance <= most)
     return f"Error of at most {100 * tolerance:.3g} % up to 75\N{DEGREE SIGN}, twice that beyond: {seen}."
 

@@ -9,7 +9,7 @@ from .capture_size import duration
 from .sizes import data_size
 
 _LEAST_TEXELS = 4
-# Limits of the library, which refuses more (native/src/votf/occlusion_volume.h).
+# Limits of the library, which refuses more (native/src/votf/eval/occlusion_volume.h).
 _MOST_SIDE, _MOST_DEPTH, _MOST_POINTS = 4096, 1024, 1 << 28
 _OF_A_POINT, _OF_A_LINE = 21, 96  # bytes: vectors and distances; crossings of a vertical line
 # The time for distances grows with a power of the points, which probes measure; it is clamped to this range.

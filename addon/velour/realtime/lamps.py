@@ -1,4 +1,4 @@
-"""Lights as five texture pixels each (site.glsl), in the terms of native/src/render/lamp.h."""
+"""Lights as five texture pixels each (site.glsl), in the terms of native/src/render/lights/area_light.h."""
 
 import math
 

@@ -1,6 +1,6 @@
 // Surface of a pixel in a shell (VOTF): the structure that the view ray hits below the top, which is the drawn mesh;
-// rays without a hit pass through. Sphere tracing as in votf/shell_trace.h and render/shell_crossing.h.
-// shell_maps: native/src/realtime/shell_maps.h; shell_terms: bottom, top, reference, aspect; then the largest distance
+// rays without a hit pass through. Sphere tracing as in votf/eval/shell_trace.h and render/shell_crossing.h.
+// shell_maps: native/src/realtime/votf_maps.h; shell_terms: bottom, top, reference, aspect; then the largest distance
 // that the maps resolve, and whether the structure is open.
 
 const int DEPTH_LOOKS = 64;
@@ -59,7 +59,7 @@ float way_speed(ShellWay way, float depth)
                      way.scale * (way.curvature < 0.0 ? 1.0 : way.cosine)));
 }
 
-// Whether the ray hits the structure, and where. Takes the steps of votf/shell_march-inl.h, since shading near a
+// Whether the ray hits the structure, and where. Takes the steps of votf/eval/shell_march-inl.h, since shading near a
 // silhouette is sensitive to the hit point.
 bool met(ShellWay way, float top, out float s)
 {

@@ -307,8 +307,8 @@ typedef struct vlr_compress_options {
   uint64_t seed;
   const vlr_btf* held_out; /* pairs that no fit has used, of the same texels; NULL: none */
   /* Makes the model as small as images of these scenes allow, observed with a material of the BTF: it is refitted at
-   * the resolution and for the views that they show, or levels that no ray resolves are left out (docs/for_scene.md).
-   * NULL: a model for any scene. */
+   * the resolution and for the views that they show, or levels that no ray resolves are left out
+   * (docs/engine/scene_usage.md). NULL: a model for any scene. */
   const vlr_observation* for_scene;
   const vlr_model* full_model; /* with for_scene: the BTF's full model; NULL: fit it first */
   /* Maximum relative L2 error of companded values (docs/engine/conventions.md); the smallest model within it is chosen.

@@ -1,13 +1,13 @@
 #include "capi/btf_reports.h"
 
 #include <algorithm>
-
+#include "capi/fit_reports.h"
 #include "capi/json_text.h"
-#include "capi/model_reports.h"
 #include "capi/scene_reports.h"
-#include "model/order_json.h"
+#include "model/record_json.h"
 
 namespace velour::capi {
+
 namespace {
 
 double largest_theta(const std::vector<PolarAngles>& directions) {
@@ -86,6 +86,84 @@ std::string btf_errors_json(const BtfErrors& errors, double p99) {
                {"brightness", errors.brightness},
                {"p99", p99},
                {"pairs", errors.pairs}});
+}
+
+std::string capture_json(const BtfCaptureReport& report) {
+  return text({{"seconds", report.seconds},
+               {"rays", report.rays},
+               {"rays_per_second", report.rays_per_second},
+               {"ray_share", report.ray_share ? Json(*report.ray_share) : Json()},
+               {"bytes", report.bytes},
+               {"views", report.views},
+               {"lights", report.lights},
+               {"pairs", report.pairs},
+               {"views_resumed", report.views_resumed},
+               {"sides", report.two_sided ? 2 : 1},
+               {"open", report.open},
+               {"thickness", report.thickness},
+               {"reference_height", report.reference_height},
+               {"warnings", report.warnings}});
+}
+
+std::string microsurface_json(const MicrosurfaceReport& report) {
+  return text({{"seconds", report.seconds},
+               {"rays", report.rays},
+               {"rays_per_second", report.rays_per_second},
+               {"bytes", report.bytes},
+               {"resolution_degrees", report.resolution_degrees},
+               {"relative_standard_error", report.relative_standard_error},
+               {"albedo", report.albedo}});
+}
+
+namespace {
+
+Json material_json(const TileMaterial& material) {
+  const PrincipledParameters& p = material.parameters;
+  return {{"name", material.name},
+          {"base_color", color(p.base_color)},
+          {"metallic", p.metallic},
+          {"roughness", p.roughness},
+          {"specular", p.specular}};
+}
+
+Json shape_json(const TileShape& shape) {
+  return {{"size", shape.size},           {"count", shape.count}, {"resolution", shape.resolution},
+          {"thickness", shape.thickness}, {"gap", shape.gap},     {"irregularity", shape.irregularity}};
+}
+
+Json heights_json(const TileMesh& mesh) {
+  const auto [lowest, highest] = std::minmax_element(mesh.positions.begin(), mesh.positions.end(),
+                                                     [](const Vec3& a, const Vec3& b) { return a.z < b.z; });
+  return {lowest->z, highest->z};
+}
+
+}  // namespace
+
+std::string tile_json(const Tile& tile) {
+  const TileMesh& mesh = tile.parts.mesh;
+  Json shape = shape_json(tile.shape), materials = Json::array();
+  shape["seed"] = tile.shape.seed;
+  for (const TileMaterial& material : tile.parts.materials) materials.push_back(material_json(material));
+  return text({{"kind", tile.kind},
+               {"period", {tile.period.x, tile.period.y}},
+               {"heights", heights_json(mesh)},
+               {"open", tile.parts.open},
+               {"open_area", or_null(tile.parts.open_area)},
+               {"vertices", mesh.positions.size()},
+               {"triangles", mesh.triangles.size()},
+               {"shape", shape},
+               {"materials", materials}});
+}
+
+std::string tile_kinds_json() {
+  Json kinds = Json::array();
+  for (const TileKind& kind : tile_kinds()) {
+    Json defaults = shape_json(kind.defaults);
+    if (kind.least_gap == 0) defaults.erase("gap");
+    if (!kind.has_irregularity) defaults.erase("irregularity");
+    kinds.push_back({{"name", kind.name}, {"summary", kind.summary}, {"defaults", defaults}});
+  }
+  return text({{"kinds", kinds}});
 }
 
 }  // namespace velour::capi

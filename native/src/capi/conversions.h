@@ -3,12 +3,14 @@
 
 #include <algorithm>
 #include <string>
-
+#include "base/error.h"
 #include "capi/guard.h"
+#include "capi/handles.h"
 #include "image/picture.h"
-#include "job/error.h"
-#include "scene/affine.h"
-#include "sphere/vec.h"
+#include "material/principled/principled_material.h"
+#include "material/texture_slot.h"
+#include "math/sphere/affine.h"
+#include "math/sphere/vec.h"
 #include "velour/velour.h"
 
 namespace velour::capi {
@@ -43,5 +45,24 @@ inline PictureOptions converted(const vlr_picture_options* given) {
   require_choice(options.as_stored, 1, "vlr_picture_options.as_stored");
   return {.layer = options.layer ? options.layer : "", .as_stored = options.as_stored != 0};
 }
+
+// Conversion of Principled parameters and their textures.
+
+/// These throw Error(invalid_argument), which names `field`, for a texture of the wrong kind and for a set of texture
+/// coordinates beyond the last.
+TextureSlot<Rgb> color_slot(const vlr_texture* texture, const float* map, uint32_t set, const char* field);
+TextureSlot<float> number_slot(const vlr_texture* texture, const float* map, uint32_t set, const char* field);
+PrincipledTextures converted_textures(const vlr_principled_textures& textures);
+MeshSets sets_of(const PrincipledTextures& textures);
+
+/// These throw Error(invalid_argument) for values outside their enums.
+GgxLobe lobe_of(const vlr_principled_desc& desc);
+PrincipledParameters parameters_of(const vlr_principled_desc& desc);
+std::shared_ptr<const Material> material_of(const vlr_principled_desc& desc, const PrincipledTextures& textures);
+
+// Conversion of texture coordinate maps.
+
+/// `m` [2 x 3, row-major] is applied to (u, v, 1).
+inline TextureMap map_from(const float* m) { return {{m[0], m[3], m[1], m[4]}, {m[2], m[5]}}; }
 
 }  // namespace velour::capi

@@ -1,11 +1,15 @@
 #include "capi/fit_reports.h"
 
+#include <algorithm>
+#include "btf/model/tensor_btf.h"
+#include "btf/model/tensor_contraction.h"
+#include "btf/model/tensor_evaluator.h"
 #include "capi/json_text.h"
-#include "capi/model_reports.h"
 #include "capi/scene_reports.h"
-#include "model/order_json.h"
+#include "model/record_json.h"
 
 namespace velour::capi {
+
 namespace {
 
 Json narrow_views(const Comparison& comparison) {
@@ -22,20 +26,18 @@ Json errors_of(const Comparison& comparison) {
 }
 
 Json peer_of(const GgxParameters& p) {
-  return {{"ggx",
-           {{"alpha", {p.alpha.x, p.alpha.y}},
-            {"f0", colour(p.f0)},
-            {"f90", colour(p.f90)},
-            {"diffuse", colour(p.diffuse)}}}};
+  return {
+      {"ggx",
+       {{"alpha", {p.alpha.x, p.alpha.y}}, {"f0", color(p.f0)}, {"f90", color(p.f90)}, {"diffuse", color(p.diffuse)}}}};
 }
 
 Json peer_of(const PrincipledParameters& p) {
   return {{"principled",
-           {{"base_color", colour(p.base_color)},
+           {{"base_color", color(p.base_color)},
             {"metallic", p.metallic},
             {"roughness", p.roughness},
             {"specular", p.specular},
-            {"specular_tint", colour(p.specular_tint)},
+            {"specular_tint", color(p.specular_tint)},
             {"coat", p.coat},
             {"coat_roughness", p.coat_roughness}}}};
 }
@@ -63,6 +65,189 @@ std::string peer_json(const PeerFit& fit) {
   Json json = errors_of(fit.error);
   json.update(Json{{"seconds", fit.seconds}, {"parameter_bytes", fit.parameter_bytes()}});
   json.update(std::visit([](const auto& p) { return peer_of(p); }, fit.parameters));
+  return text(json);
+}
+
+namespace {
+
+Json count_json(const ScatteredBrdf& brdf) { return {{"lobes", brdf.lobe_count()}}; }
+Json count_json(const ParametricBrdf& brdf) { return {{"lobes", brdf.lobe_count()}}; }
+Json count_json(const FactoredBtf& btf) { return {{"components", btf.components()}}; }
+
+/// Largest counts of any side.
+Json count_json(const SrbfBtf& btf) {
+  size_t lobes = 0, coefficients = 0;
+  for (const SrbfSide& side : btf.sides) {
+    lobes = std::max(lobes, side.lobes.size());
+    coefficients = std::max(coefficients, side.coefficients());
+  }
+  return {{"lobes", lobes}, {"coefficients", coefficients}};
+}
+
+/// Largest number of coefficients per texel of any side.
+Json count_json(const TensorBtf& btf) {
+  size_t coefficients = 0;
+  for (const TensorSide& side : btf.sides) {
+    coefficients = std::max(coefficients, size_t{side.members} * side.rank.texel);
+  }
+  return {{"coefficients", coefficients}};
+}
+
+/// Keys of one kind of model only.
+Json own_json(const ScatteredBrdf& brdf) {
+  return {{"kernel", kernel_name(brdf.kernel)},
+          {"isotropic", brdf.isotropic},
+          {"views", brdf.views.size()},
+          {"max_lobes_per_view", brdf.max_lobes_per_view()}};
+}
+
+Json own_json(const ParametricBrdf& brdf) {
+  const auto half = std::count(brdf.space.begin(), brdf.space.end(), LobeSpace::half);
+  return {{"kernel", kernel_name(Kernel::gaussian)},
+          {"isotropic", brdf.isotropic},
+          {"cells", brdf.cells},
+          {"symmetric", brdf.symmetric},
+          {"view_range", views_json(brdf.views)},
+          {"spaces", {{"light", brdf.lobe_count() - half}, {"half", half}}}};
+}
+
+template <class Btf>
+Json btf_own_json(const Btf& btf) {
+  return {{"texels", {btf.grid.width, btf.grid.height}},
+          {"tile_metres", tile_json(btf.grid)},
+          {"views", btf.layout.views().size()},
+          {"lights", btf.layout.lights().size()},
+          {"companding", btf.companding == Companding::root ? "root" : "none"}};
+}
+
+Json own_json(const FactoredBtf& btf) { return btf_own_json(btf); }
+
+const char* where(bool below) { return below ? "below" : "above"; }
+
+/// Keys of one kind of side only.
+Json own_side_json(const SrbfBtf&, const SrbfSide& side) {
+  return {{"lobes", {{"tile", side.tile_lobes}, {"texel", side.lobes.size() - side.tile_lobes}}}};
+}
+Json own_side_json(const TensorBtf& btf, const TensorSide& side) {
+  const TensorSide::Ranks& rank = side.rank;
+  const TensorBytes bytes = bytes_of(side);
+  return {{"clusters", side.clusters.size()},
+          {"members", side.members},
+          {"ranks", {{"texel", rank.texel}, {"view", rank.view}, {"light", rank.light}, {"color", rank.color}}},
+          {"relief", !side.levels.at(0).relief.empty()},
+          {"table_bytes", TensorContraction::bytes(btf, side, TensorEvaluator::kMaxTableBytes)},
+          {"bytes",
+           {{"coefficients", bytes.coefficients},
+            {"members", bytes.members},
+            {"relief", bytes.relief},
+            {"factors", bytes.factors},
+            {"cores", bytes.cores},
+            {"scales", bytes.scales}}}};
+}
+
+/// The sides of a BTF, then those served by another side, with the same fields.
+template <class Btf>
+Json sided_json(const Btf& btf) {
+  Json json = btf_own_json(btf), sides = Json::array();
+  for (const auto& side : btf.sides) {
+    Json& row = sides.emplace_back(Json{{"view", where(side.view_below)}, {"light", where(side.light_below)}});
+    row.update(own_side_json(btf, side));
+    row.update(Json{{"parameter_bytes", side.parameter_bytes()}, {"as", nullptr}});
+  }
+  for (const SharedSide& shared : btf.shared) {
+    Json row = sides.at(shared.side);
+    for (auto& [key, value] : row.items()) value = nullptr;
+    row.update(Json{{"view", where(shared.view_below)},
+                    {"light", where(shared.light_below)},
+                    {"parameter_bytes", 0},
+                    {"as", shared.side}});
+    sides.push_back(row);
+  }
+  json["sides"] = std::move(sides);
+  return json;
+}
+
+Json own_json(const SrbfBtf& btf) { return sided_json(btf); }
+Json own_json(const TensorBtf& btf) { return sided_json(btf); }
+
+/// Results of the fit of a BRDF.
+Json record_json(const FitRecord& fit) {
+  return {{"relative_l2", fit.relative_l2},
+          {"by_view_angle", by_view_angle(fit.by_view_angle)},
+          {"albedo_by_view_angle", by_view_angle(fit.albedo_by_view_angle)},
+          {"albedo_max", fit.albedo_max},
+          {"reciprocity", fit.reciprocity},
+          {"measured_reciprocity", or_null(fit.measured_reciprocity)},
+          {"tolerance", fit.tolerance},
+          {"seconds", fit.seconds},
+          {"seed", fit.seed},
+          {"all_data", fit.all_data},
+          {"warnings", fit.warnings},
+          {"order", order_json(fit.order)}};
+}
+
+/// Results of the fit of a BTF.
+Json record_json(const BtfRecord& btf) {
+  const bool timed = btf.evaluations_per_second > 0;  // not in files of earlier versions
+  const bool measured = btf.relative_l2 > 0;
+  return {{"method", btf.method},
+          {"psnr", btf.psnr},
+          {"psnr_held_out", or_null(btf.psnr_held_out)},
+          {"ser", btf.ser},
+          {"p99", btf.p99},
+          {"raw_bytes", btf.raw_bytes},
+          {"evaluations_per_second", timed ? Json(btf.evaluations_per_second) : Json()},
+          {"seconds", btf.seconds},
+          {"seed", btf.seed},
+          {"warnings", btf.warnings},
+          {"relative_l2", measured ? Json(btf.relative_l2) : Json()},
+          {"tolerance", btf.tolerance},
+          {"order", order_json(btf.order)},
+          {"search", trials_json(btf.search)},
+          {"shapes", shapes_json(btf.shapes)}};
+}
+
+Json shell_json(const ModelShell& shell) {
+  const OcclusionVolume& v = *shell.volume;
+  const auto of_errors = [&](double OcclusionErrors::*value) {
+    return shell.errors ? Json((*shell.errors).*value) : Json();
+  };
+  return {{"source", shell.source},
+          {"bytes", v.parameter_bytes()},
+          {"points", {v.width, v.height, v.depth}},
+          {"heights", {v.bottom, v.top}},
+          {"tile_width", v.tile_width > 0 ? Json(v.tile_width) : Json()},
+          {"closed", v.closed},
+          {"coverage", of_errors(&OcclusionErrors::coverage)},
+          {"wrong", of_errors(&OcclusionErrors::wrong)}};
+}
+
+}  // namespace
+
+Json size_json(const Model& model, uint64_t file_bytes) {
+  return std::visit(
+      [&](const auto& body) {
+        Json json = count_json(body);
+        json.update(Json{{"bytes", file_bytes}, {"parameter_bytes", body.parameter_bytes()}});
+        return json;
+      },
+      model.body);
+}
+
+std::string votf_json(const ModelShell& shell, double seconds, const std::vector<std::string>& warnings) {
+  Json json = shell_json(shell);
+  json.update(Json{{"seconds", seconds}, {"warnings", warnings}});
+  return text(json);
+}
+
+std::string model_json(const Model& model, uint64_t file_bytes) {
+  Json json = {{"kind", "model"}, {"model", model_kind(model)}};
+  json.update(std::visit([](const auto& brdf) { return own_json(brdf); }, model.body));
+  json.update(size_json(model, file_bytes));
+  json.update(model.btf ? record_json(*model.btf) : record_json(model.fit));
+  json["source"] = {{"name", model.source.name}, {"format", model.source.format}, {"sha256", model.source.sha256}};
+  if (model.scene) json["scene"] = reduced_json(*model.scene);
+  if (model.shell) json["shell"] = shell_json(*model.shell);
   return text(json);
 }
 

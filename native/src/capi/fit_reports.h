@@ -1,10 +1,11 @@
-// JSON reports on fits and their errors, with the keys of the command line's verbs (docs/command_line.md).
+// JSON reports on fits and their errors, with the keys of the command line's verbs (docs/reference/command_line.md).
 #pragma once
 
 #include <string>
-
-#include "fit/compare.h"
-#include "fit/peer.h"
+#include <vector>
+#include "brdf/fit/error/compare.h"
+#include "brdf/fit/peer.h"
+#include "capi/json_text.h"
 #include "model/model.h"
 
 namespace velour::capi {
@@ -12,5 +13,14 @@ namespace velour::capi {
 std::string fit_json(const Model& model, uint64_t file_bytes);
 std::string comparison_json(const Comparison& comparison);
 std::string peer_json(const PeerFit& fit);
+
+// JSON reports on models, with the keys of the command line's verbs (docs/reference/command_line.md).
+
+/// Number of lobes or components of a model, and its sizes in bytes.
+Json size_json(const Model& model, uint64_t file_bytes);
+
+std::string model_json(const Model& model, uint64_t file_bytes);
+/// Report on a VOTF that took `seconds` to compute.
+std::string votf_json(const ModelShell& shell, double seconds, const std::vector<std::string>& warnings);
 
 }  // namespace velour::capi

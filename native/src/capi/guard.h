@@ -4,7 +4,7 @@
 #include <cstring>
 #include <string>
 
-#include "job/error.h"
+#include "base/error.h"
 #include "velour/velour.h"
 
 namespace velour::capi {

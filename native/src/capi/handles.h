@@ -9,18 +9,18 @@
 #include <string>
 #include <vector>
 
-#include "brdf/measurement.h"
-#include "btf/btf_measurement.h"
-#include "domain/observation.h"
-#include "job/job.h"
+#include "base/job.h"
+#include "brdf/measure/measurement.h"
+#include "btf/measure/btf_measurement.h"
+#include "capture/tile/tile.h"
 #include "material/shader_layers.h"
 #include "model/model.h"
 #include "plot/plot.h"
-#include "realtime/table_pixels.h"
-#include "render/film.h"
+#include "realtime/lobe_rows.h"
+#include "render/film/film.h"
 #include "render/progressive.h"
 #include "scene/scene.h"
-#include "tile/tile.h"
+#include "usage/observation.h"
 
 namespace velour::capi {
 

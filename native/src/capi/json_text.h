@@ -5,8 +5,8 @@
 #include <optional>
 #include <string>
 
-#include "brdf/measurement.h"
-#include "btf/btf_measurement.h"
+#include "brdf/measure/measurement.h"
+#include "btf/measure/btf_measurement.h"
 #include "model/model.h"
 
 namespace velour::capi {
@@ -49,6 +49,6 @@ inline Json by_view_angle(const ErrorByViewAngle& errors) {
 
 inline Json views_json(const ViewRange& views) { return {views.begin, views.end}; }
 
-inline Json colour(const Rgb& c) { return {c.r, c.g, c.b}; }
+inline Json color(const Rgb& c) { return {c.r, c.g, c.b}; }
 
 }  // namespace velour::capi

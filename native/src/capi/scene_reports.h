@@ -1,10 +1,13 @@
 // JSON reports on scene usage, and on scene models.
 #pragma once
 
+#include <string>
 #include "capi/json_text.h"
-#include "domain/observation.h"
-#include "domain/surface_domain.h"
-#include "model/scene_record.h"
+#include "model/records.h"
+#include "render/render.h"
+#include "scene/scene.h"
+#include "usage/observation.h"
+#include "usage/scene_domain.h"
 
 namespace velour::capi {
 
@@ -17,5 +20,10 @@ Json surface_json(const SurfaceDomain& surface);
 std::string observation_json(const SceneObservation& observation);
 /// Report of the job that made the observation, which took `seconds`.
 std::string observe_json(const SceneObservation& observation, double seconds);
+
+// JSON reports on scenes and renders, with the keys of the command line's verbs (docs/reference/command_line.md).
+
+std::string scene_json(const Scene& scene);
+std::string render_json(const RenderReport& report);
 
 }  // namespace velour::capi

@@ -4,8 +4,8 @@
 #include <span>
 #include <string>
 
+#include "base/progress.h"
 #include "denoise/open_image_denoise.h"
-#include "job/progress.h"
 
 namespace velour {
 

@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <string>
 
-#include "file/private_library.h"
+#include "base/private_library.h"
 
 namespace velour {
 

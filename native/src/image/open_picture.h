@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "image/color_primaries.h"
-#include "image/exr_part.h"
+#include "image/formats/exr_part.h"
 #include "image/orientation.h"
 #include "image/picture_format.h"
 

@@ -2,8 +2,13 @@
 
 #include <algorithm>
 #include <array>
+#include <optional>
+#include <string_view>
+#include "base/error.h"
+#include "base/file.h"
 
 namespace velour {
+
 namespace {
 
 /// Corner of the stored pixels where the upright picture's first pixel lies.
@@ -60,6 +65,131 @@ std::string name_of(Orientation orientation) {
                                               "mirrored and rotated by 90 degrees",
                                               "rotated by 270 degrees"};
   return kNames[static_cast<size_t>(orientation)];
+}
+
+namespace {
+
+using namespace std::string_view_literals;
+
+constexpr int kMaxSegments = 4096;  // protects against hostile files with segments of a few bytes
+
+/// Bounds-checked view of a part of a file; reads beyond its end return nothing.
+class Part {
+ public:
+  explicit Part(const RandomAccessFile& file) : file_(file), begin_(0), size_(file.size()) {}
+
+  uint64_t size() const { return size_; }
+
+  Part from(uint64_t at) const { return {file_, begin_ + std::min(at, size_), size_ - std::min(at, size_)}; }
+
+  std::optional<uint64_t> number(uint64_t at, size_t count, bool big_endian) const {
+    std::array<uint8_t, 8> bytes{};
+    if (at > size_ || count > size_ - at) return std::nullopt;
+    file_.read(begin_ + at, std::span(bytes).first(count));
+    uint64_t value = 0;
+    for (size_t i = 0; i < count; ++i) value |= uint64_t{bytes[i]} << (8 * (big_endian ? count - 1 - i : i));
+    return value;
+  }
+
+  bool holds(uint64_t at, std::string_view text) const {
+    std::array<char, 16> bytes{};
+    if (at > size_ || text.size() > size_ - at) return false;
+    file_.read(begin_ + at, {reinterpret_cast<uint8_t*>(bytes.data()), text.size()});
+    return text == std::string_view(bytes.data(), text.size());
+  }
+
+ private:
+  Part(const RandomAccessFile& file, uint64_t begin, uint64_t size) : file_(file), begin_(begin), size_(size) {}
+
+  const RandomAccessFile& file_;
+  uint64_t begin_, size_;
+};
+
+/// Reads the first directory of EXIF data, which have the form of a TIFF file.
+Orientation of_tiff(const Part& tiff) {
+  constexpr uint64_t kEntryBytes = 12, kOrientationTag = 274, kShort = 3;
+  const bool big = tiff.holds(0, "MM\0\x2a"sv);
+  if (!big && !tiff.holds(0, "II\x2a\0"sv)) return Orientation::normal;  // BigTIFF, which no camera writes
+  const auto directory = tiff.number(4, 4, big);
+  const auto count = directory ? tiff.number(*directory, 2, big) : std::nullopt;
+  for (uint64_t i = 0; count && i < *count; ++i) {
+    const uint64_t entry = *directory + 2 + i * kEntryBytes;
+    const auto tag = tiff.number(entry, 2, big), type = tiff.number(entry + 2, 2, big);
+    const auto value = tiff.number(entry + 8, 2, big);
+    if (!tag || !type || !value) break;
+    if (*tag == kOrientationTag && *type == kShort && *value >= 1 && *value <= 8)
+      return static_cast<Orientation>(*value);
+  }
+  return Orientation::normal;
+}
+
+/// Searches the segments before the first scan.
+Orientation of_jpeg(const Part& jpeg) {
+  constexpr uint64_t kFill = 0xff, kStartOfScan = 0xda, kApp1 = 0xe1;
+  constexpr auto kExif = "Exif\0\0"sv;
+  uint64_t at = 2;
+  for (int i = 0; i < kMaxSegments && jpeg.number(at, 1, true) == kFill; ++i) {
+    const auto marker = jpeg.number(at + 1, 1, true), size = jpeg.number(at + 2, 2, true);
+    if (marker == kFill) {
+      ++at;
+      continue;
+    }
+    if (!marker || marker == kStartOfScan || !size || *size < 2) break;
+    if (marker == kApp1 && jpeg.holds(at + 4, kExif)) return of_tiff(jpeg.from(at + 4 + kExif.size()));
+    at += 2 + *size;
+  }
+  return Orientation::normal;
+}
+
+Orientation of_png(const Part& png) {
+  constexpr uint64_t kSignature = 8, kBesideData = 12;  // length, type and checksum of a chunk
+  uint64_t at = kSignature;
+  for (int i = 0; i < kMaxSegments && at + kBesideData <= png.size(); ++i) {
+    if (png.holds(at + 4, "eXIf"sv)) return of_tiff(png.from(at + 8));
+    at += kBesideData + *png.number(at, 4, true);
+  }
+  return Orientation::normal;
+}
+
+}  // namespace
+
+void check_png_chunks(const std::string& path) {
+  constexpr uint64_t kSignature = 8, kBesideData = 12;
+  constexpr uint64_t kLengthAndType = 8;
+  constexpr int kMaxChunks = 1 << 20;
+  const RandomAccessFile file(path);
+  const Part png(file);
+  uint64_t at = kSignature;
+  for (int i = 0; at + kLengthAndType <= png.size() && !png.holds(at + 4, "IEND"sv); ++i) {
+    if (i == kMaxChunks)
+      throw Error(Status::bad_data, path + ": has more than a million chunks. Save the image again.");
+    const uint64_t length = *png.number(at, 4, true);
+    if (at + kBesideData + length > png.size()) {
+      throw Error(Status::bad_data, path + ": is damaged: the chunk at byte " + std::to_string(at) +
+                                        " has a length of " + std::to_string(length) +
+                                        " bytes, which is beyond the end of the file. Save the image again.");
+    }
+    at += kBesideData + length;
+  }
+}
+
+Orientation exif_orientation(PictureFormat format, const std::string& path) {
+  const auto found_by = [&](auto&& find) {
+    const RandomAccessFile file(path);
+    return find(Part(file));
+  };
+  switch (format) {
+    case PictureFormat::jpeg:
+      return found_by(of_jpeg);
+    case PictureFormat::png:
+      return found_by(of_png);
+    case PictureFormat::tiff:
+    case PictureFormat::exr:
+    case PictureFormat::radiance:
+    case PictureFormat::bmp:
+      break;
+  }
+  return Orientation::normal;
 }
 
 }  // namespace velour

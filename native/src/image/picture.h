@@ -1,11 +1,13 @@
 // Pictures of linear float pixels, read from and written to files.
 #pragma once
 
+#include <cmath>
+#include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
-
 #include "image/color_primaries.h"
 
 namespace velour {
@@ -60,5 +62,28 @@ struct PictureDifference {
 };
 /// Compares the first three channels: relmse = mean((x - r)^2 / (r^2 + 0.01 mean(r)^2)).
 PictureDifference compare_pictures(const float* pixels, const float* reference, size_t pixel_count, int channels);
+
+// The sRGB transfer curve (IEC 61966-2-1) and its inverse.
+
+inline float linear_from_srgb(float v) { return v <= 0.04045f ? v / 12.92f : std::pow((v + 0.055f) / 1.055f, 2.4f); }
+inline float srgb_from_linear(float v) {
+  return v <= 0.0031308f ? 12.92f * v : 1.055f * std::pow(v, 1.0f / 2.4f) - 0.055f;
+}
+
+// Values that are invalid for light, and their replacements.
+
+struct ValueFaults {
+  size_t infinite = 0, no_number = 0, negative = 0;  // numbers of such values; no_number: NaN and -infinity
+  float brightest = 65504;                           // largest finite value, at least the largest half float
+
+  /// Infinity means "brighter than could be stored" and becomes the brightest value; NaN and -infinity become 0.
+  float finite(float v) const { return std::isfinite(v) ? v : (v > 0 ? brightest : 0.0f); }
+};
+
+/// Examines the first `used` of every `stride` values.
+ValueFaults find_value_faults(std::span<const float> values, size_t stride = 1, size_t used = 1);
+
+/// "SUBJECT: 12 values are infinite and count as 65504.", one sentence for each kind that occurs.
+std::vector<std::string> fault_sentences(const ValueFaults& faults, const std::string& subject);
 
 }  // namespace velour

@@ -4,7 +4,7 @@
 #include <string_view>
 #include <utility>
 
-#include "job/error.h"
+#include "base/error.h"
 
 namespace velour {
 namespace {

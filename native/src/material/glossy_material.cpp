@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
-#include "material/ggx.h"
-#include "material/interreflection.h"
+#include "material/microfacet/ggx.h"
+#include "material/microfacet/ggx_albedo.h"
 
 namespace velour {
 namespace {

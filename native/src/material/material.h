@@ -2,27 +2,77 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstdint>
 #include <memory>
 #include <span>
 #include <vector>
-
-#include "btf/srbf_point.h"
-#include "btf/tensor_point.h"
-#include "material/btf_table_point.h"
-#include "material/factored_point.h"
-#include "material/ggx_sampler.h"
-#include "material/lobe_filter.h"
-#include "material/principled_point.h"
+#include "btf/measure/half_floats.h"
+#include "btf/model/srbf_evaluator.h"
+#include "btf/model/tensor_evaluator.h"
+#include "material/footprint_taps.h"
+#include "material/microfacet/ggx_sampler.h"
+#include "material/principled/principled_point.h"
 #include "material/surface_site.h"
-#include "material/table_point.h"
-#include "sphere/direction_batch.h"
-#include "sphere/frame.h"
-#include "srbf/lobe_mixture.h"
-#include "srbf/lobe_products.h"
-#include "srbf/warped_mixture.h"
+#include "math/sphere/directions.h"
+#include "math/sphere/frame.h"
+#include "math/sphere/vec.h"
+#include "math/srbf/lobe_mixture.h"
+#include "math/srbf/lobe_products.h"
+#include "math/srbf/warped_mixture.h"
 
 namespace velour {
+
+// Rows of an uncompressed BTF at a hit.
+
+/// Rows of lights of an uncompressed BTF to blend for a site and a view, and their weights.
+struct BtfTablePoint {
+  /// Maximum number of rows: footprint taps, two levels, four texels, three views.
+  static constexpr int kMost = FootprintTaps::kMost * 2 * 4 * 3;
+  struct Row {
+    const HalfBits* lights;  // [light][channel]
+    float weight;
+  };
+  std::array<Row, kMost> row;
+  int count;
+  bool back;  // a two-sided BTF seen from below
+};
+
+// Per-view state of table sampling.
+
+/// Partition of the sphere about an axis: rows of d = 1 - cos of the angle to it, with edges at 2 (k / kRows)^4, and
+/// columns of equal length along the square |x| + |y| = 1 in azimuth.
+struct TableGrid {
+  static constexpr int kColumnBits = 5;
+  static constexpr int kRows = 64, kColumns = 1 << kColumnBits;  // multiples of 16
+  static constexpr int kRowsPadded = kRows + 16;
+
+  static constexpr float row_edge(int row) {
+    const float s = static_cast<float>(row) / kRows;
+    return 2 * (s * s) * (s * s);
+  }
+};
+
+/// The tables of two or four nodes, their weights in the mixture, and their frame.
+struct TablePoint {
+  const float* table[4];
+  float weight[4];
+  int count = 0;
+  float mass;  // integral of the tables: luminance of f cos and the defensive share
+  Vec3 tangent, bitangent, axis;
+};
+
+// Coefficients of a factored BTF at a hit, and the views around the direction of view.
+
+/// What site and view decide of a factored BTF: the coefficients of its components, interpolated between texels.
+struct FactoredPoint {
+  static constexpr int kMost = 512 + 16;  // components, and what vectors read beyond them
+  alignas(64) float value[kMost];         // of all components, or of those of each view in turn, times its weight
+  std::array<uint32_t, 3> view;           // numbers of views
+  std::array<float, 3> weight;            // barycentric; 0 everywhere: the BTF has no view on this side
+  bool back;                              // seen from below, in a BTF of two sides
+};
 
 struct PreparedBrdf;
 class TableSampler;
@@ -87,7 +137,7 @@ class Material {
   virtual Rgb passing(const SurfaceSite& /*site*/) const { return Rgb(1.0f); }
 
   /// Whether emission() may be nonzero.
-  virtual bool glows() const { return false; }
+  virtual bool emits() const { return false; }
   /// Radiance emitted by the opaque part, equal in all directions, in the working space.
   virtual Rgb emission(const SurfaceSite& /*site*/) const { return Rgb(0.0f); }
 
@@ -140,5 +190,15 @@ class Material {
   /// True when f depends on the azimuth difference alone (tables of it need one meridian of views).
   virtual bool isotropic() const = 0;
 };
+
+// Which side of the surface a BTF material is lit from.
+
+/// f is given for light from one side of the surface. For other_side, light directions are mirrored (z > 0).
+enum class BtfLight { viewers_side, other_side };
+
+// Share of samples reserved for directions that tables and lobes miss.
+
+/// Probability of plain cosine sampling, so that the density is positive wherever f may be.
+inline constexpr float kDefensiveShare = 0.05f;
 
 }  // namespace velour

@@ -7,7 +7,7 @@ namespace velour {
 namespace {
 
 constexpr float kMinNormalCosine = 1e-6f;  // of the light with the surface normal; keeps f finite
-constexpr float kLeastViewCosine = 1e-3f;  // of the view with the mapped normal
+constexpr float kMinViewCosine = 1e-3f;    // of the view with the mapped normal
 
 class NormalMappedMaterial final : public Material {
  public:
@@ -17,7 +17,7 @@ class NormalMappedMaterial final : public Material {
   void prepare(const Vec3& wv, const SurfaceSite& site, PreparedBrdf& point) const override {
     const Frame seen = frame_of(part_ != ReliefPart::diffuse, wv, site);
     Vec3 local = seen.to_local(wv);
-    if (local.z < kLeastViewCosine) local = glm::normalize(Vec3(local.x, local.y, kLeastViewCosine));
+    if (local.z < kMinViewCosine) local = glm::normalize(Vec3(local.x, local.y, kMinViewCosine));
     material_->prepare(local, site, point);
     point.relief = part_ == ReliefPart::base ? frame_of(false, wv, site) : seen;
   }

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "sphere/warp.h"
+#include "math/sphere/warp.h"
 
 namespace velour {
 namespace {

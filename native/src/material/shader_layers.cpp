@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
-#include "sphere/random.h"
-#include "sphere/warp.h"
+#include "math/sphere/random.h"
+#include "math/sphere/warp.h"
 
 namespace velour {
 namespace {
@@ -108,7 +108,7 @@ class LayeredMaterial final : public Material {
 
   bool varies() const override {
     const auto varies = [](const ColorLayer& l) { return l.varies(); };
-    return std::ranges::any_of(layers_.transparent, varies) || std::ranges::any_of(layers_.glowing, varies) ||
+    return std::ranges::any_of(layers_.transparent, varies) || std::ranges::any_of(layers_.emissive, varies) ||
            std::ranges::any_of(layers_.reflecting,
                                [](const ReflectingLayer& l) { return l.weight.varies() || l.material->varies(); });
   }
@@ -127,10 +127,10 @@ class LayeredMaterial final : public Material {
     return glm::distance(passed, Rgb(1.0f)) < 1e-5f ? Rgb(1.0f) : passed;  // rounding errors of mixes with white
   }
 
-  bool glows() const override { return !layers_.glowing.empty(); }
+  bool emits() const override { return !layers_.emissive.empty(); }
   Rgb emission(const SurfaceSite& site) const override {
     Rgb sum(0.0f);
-    for (const ColorLayer& l : layers_.glowing) sum += l.at(site);
+    for (const ColorLayer& l : layers_.emissive) sum += l.at(site);
     return sum == Rgb(0.0f) ? sum : sum / there(site);
   }
 
@@ -148,7 +148,7 @@ class LayeredMaterial final : public Material {
   float stopping(const SurfaceSite& site) const {
     float sum = 0;
     for (const ReflectingLayer& l : layers_.reflecting) sum += l.weight.at(site);
-    for (const ColorLayer& l : layers_.glowing) sum += std::min(l.weight.at(site), 1.0f);
+    for (const ColorLayer& l : layers_.emissive) sum += std::min(l.weight.at(site), 1.0f);
     return sum;
   }
   /// alpha(), or 1 where it is 0 and the layers are not evaluated.

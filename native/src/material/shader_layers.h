@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "material/material.h"
-#include "material/principled_point.h"
+#include "material/principled/principled_point.h"
 #include "material/texture_slot.h"
 
 namespace velour {
@@ -52,7 +52,7 @@ struct ColorLayer {
 /// A sum of layers; the weights of a mix add up to 1.
 struct ShaderLayers {
   std::vector<ReflectingLayer> reflecting{};
-  std::vector<ColorLayer> transparent{}, glowing{};
+  std::vector<ColorLayer> transparent{}, emissive{};
 };
 
 /// f is the weighted sum of the layers' f. Samples come from one layer, with a probability proportional to its weight

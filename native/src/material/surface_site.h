@@ -3,8 +3,7 @@
 
 #include <array>
 #include <cstddef>
-
-#include "sphere/vec.h"
+#include "math/sphere/vec.h"
 
 namespace velour {
 
@@ -21,11 +20,11 @@ struct SurfaceSite {
   /// angle it is long, but finite.
   Mat2 footprint{0.0f};
   /// Places on further sets of texture coordinates, for materials that use several (place()).
-  static constexpr size_t kMostSets = 4;  // `uv` included
-  std::array<SitePlace, kMostSets - 1> others{};
+  static constexpr size_t kMaxSets = 4;  // `uv` included
+  std::array<SitePlace, kMaxSets - 1> others{};
   /// Interpolated corner colors of the mesh, for materials that use them. Not averaged over the footprint.
-  static constexpr size_t kMostColorSets = 4;
-  std::array<Rgb, kMostColorSets> colors{};
+  static constexpr size_t kMaxColorSets = 4;
+  std::array<Rgb, kMaxColorSets> colors{};
   /// For HoledBtfMaterial: offset from `uv` to its mirror image at a silhouette close enough for texels to reach over
   /// it; else zero.
   Vec2 beyond_outline{0.0f};
@@ -35,7 +34,7 @@ struct SurfaceSite {
   Vec3 ground{0, 0, 1};
   bool back = false;  // seen from behind the mesh normal; uv, +x and +y are those of the front
 
-  /// Place on a set of texture coordinates below kMostSets; 0: `uv`.
+  /// Place on a set of texture coordinates below kMaxSets; 0: `uv`.
   SitePlace place(size_t set) const { return set == 0 ? SitePlace{uv, footprint} : others[set - 1]; }
 
   /// The average of a repeating texture, and gray in place of a mesh's colors: for tables and fits of a whole material.
@@ -45,6 +44,15 @@ struct SurfaceSite {
     site.colors.fill(Rgb(0.5f));
     return site;
   }
+};
+
+// Filters that a path applies to the lobes of the surface it meets, to reduce noise.
+
+/// Effect of Cycles' Filter Glossy and Reflective Caustics on microfacet lobes. Both bias the image. Measured materials
+/// have no such lobes and are unaffected.
+struct LobeFilter {
+  float min_alpha = 0;  // minimum alpha of lobes; does not change their brightness
+  bool diffuse_only = false;
 };
 
 }  // namespace velour

@@ -5,9 +5,9 @@
 #include <cstring>
 #include <string>
 
+#include "base/error.h"
 #include "image/half_image.h"
-#include "image/value_faults.h"
-#include "job/error.h"
+#include "image/picture.h"
 #include "material/footprint_taps.h"
 
 namespace velour {

@@ -2,9 +2,9 @@
 
 #include <algorithm>
 
-#include "sphere/mirrored.h"
-#include "sphere/random.h"
-#include "sphere/warp.h"
+#include "math/sphere/frame.h"
+#include "math/sphere/random.h"
+#include "math/sphere/warp.h"
 
 namespace velour {
 namespace {
@@ -34,7 +34,7 @@ ThroughMaterial::ThroughMaterial(std::shared_ptr<const Material> reflected, std:
   for (const bool back : {false, true}) {
     const double beyond = mean_albedo(*through_, back), both = beyond + mean_albedo(*reflected_, back);
     const double share = both > 0 ? beyond / both : 0.5;
-    share_[back] = std::clamp(static_cast<float>(share), kLeastShare, 1 - kLeastShare);
+    share_[back] = std::clamp(static_cast<float>(share), kMinShare, 1 - kMinShare);
   }
 }
 

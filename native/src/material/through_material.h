@@ -9,12 +9,12 @@ namespace velour {
 
 /// f of `reflected` for light on the viewer's side, of `through` for light on the other side. Both are evaluated with
 /// directions of z > 0; those of `through` are mirrored in the surface. `through` is sampled with the probability of
-/// its share of the albedo of both under uniform light, seen from the same side of the surface: at least kLeastShare,
-/// at most 1 - kLeastShare. There are no proposal lobes: `product` acts as `mis`.
+/// its share of the albedo of both under uniform light, seen from the same side of the surface: at least kMinShare,
+/// at most 1 - kMinShare. There are no proposal lobes: `product` acts as `mis`.
 class ThroughMaterial final : public Material {
  public:
   ThroughMaterial(std::shared_ptr<const Material> reflected, std::shared_ptr<const Material> through);
-  static constexpr float kLeastShare = 0.1f;
+  static constexpr float kMinShare = 0.1f;
 
   void prepare(const Vec3& wv, const SurfaceSite& site, PreparedBrdf& point) const override;
   void eval(const PreparedBrdf& point, const DirectionBatch& wl, RgbBatch& f, ScalarBatch& pdf) const override;

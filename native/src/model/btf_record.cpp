@@ -1,8 +1,8 @@
 #include "model/btf_record.h"
 
-#include "file/json_fields.h"
-#include "job/error.h"
-#include "model/order_json.h"
+#include "base/error.h"
+#include "base/json_fields.h"
+#include "model/record_json.h"
 
 namespace velour {
 
@@ -10,10 +10,10 @@ using Json = JsonFields::Json;
 
 namespace {
 
-constexpr size_t kMostTrials = 100, kMostShapes = 1000;
+constexpr size_t kMaxTrials = 100, kMaxShapes = 1000;
 
 std::vector<SizeTrial> parse_trials(const Json& json, const JsonFields& record, const JsonSource& source) {
-  if (!json.is_array() || json.size() > kMostTrials) record.fail("search", "a list of at most 100 fits");
+  if (!json.is_array() || json.size() > kMaxTrials) record.fail("search", "a list of at most 100 fits");
   std::vector<SizeTrial> trials;
   for (const Json& entry : json) {
     if (!entry.is_object()) record.fail("search", "a list of fits");
@@ -26,7 +26,7 @@ std::vector<SizeTrial> parse_trials(const Json& json, const JsonFields& record, 
 }
 
 std::vector<ShapeTrial> parse_shapes(const Json& json, const JsonFields& record, const JsonSource& source) {
-  if (!json.is_array() || json.size() > kMostShapes) record.fail("shapes", "a list of at most 1000 shapes");
+  if (!json.is_array() || json.size() > kMaxShapes) record.fail("shapes", "a list of at most 1000 shapes");
   std::vector<ShapeTrial> shapes;
   for (const Json& entry : json) {
     if (!entry.is_object()) record.fail("shapes", "a list of shapes");

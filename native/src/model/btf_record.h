@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "model/order_curve.h"
+#include "model/records.h"
 
 namespace velour {
 

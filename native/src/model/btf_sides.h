@@ -1,11 +1,52 @@
 // Parts shared by the model files of BTFs that consist of sides.
 #pragma once
 
-#include "btf/sides.h"
-#include "btf/srbf_btf.h"
-#include "model/btf_parts.h"
+#include <string>
+#include <vector>
+#include "btf/model/factored_btf.h"
+#include "btf/model/srbf_btf.h"
+#include "model/model_fields.h"
 
 namespace velour {
+
+// Parts shared by the model files of all BTFs.
+
+/// Description of a BTF without its coefficients.
+struct BtfFrame {
+  PairLayout layout;
+  TexelGrid grid;
+  Companding companding = Companding::root;
+  Mat3 axes{1.0f};  // columns
+};
+
+void write_btf_frame(const BtfFrame& frame, TensorFile& file);
+/// Throws Error(bad_data) for layouts that leave out pairs.
+BtfFrame read_btf_frame(const ModelFields& fields);
+
+/// Throws Error(bad_data) unless `tensor`, a part of the file, has this shape.
+void expect_shape(const ModelFields& fields, const std::string& part, const Tensor& tensor,
+                  const std::vector<uint64_t>& shape);
+/// Reads a part of this shape as half floats, all of which must be finite.
+std::vector<HalfBits> shaped_halves(const ModelFields& fields, const std::string& part,
+                                    const std::vector<uint64_t>& shape);
+/// Makes a part of half floats.
+Tensor tensor_of(const std::vector<HalfBits>& halves, const std::vector<uint64_t>& shape);
+
+/// Transposes [from][to] to [to][from].
+template <class Value>
+std::vector<Value> transposed(const std::vector<Value>& values, size_t to) {
+  std::vector<Value> out(values.size());
+  const size_t from = values.size() / to;
+  for (size_t f = 0; f < from; ++f) {
+    for (size_t t = 0; t < to; ++t) out[t * from + f] = values[f * to + t];
+  }
+  return out;
+}
+
+/// Converts values [texel][coefficient] to a part with one image per coefficient, and back.
+Tensor maps_tensor(const std::vector<HalfBits>& values, uint64_t coefficients, uint32_t width, uint32_t height);
+std::vector<HalfBits> read_maps(const ModelFields& fields, const std::string& part, uint64_t coefficients,
+                                uint32_t width, uint32_t height);
 
 /// "btf.side.S.", the prefix of the names of a side's parts.
 std::string side_prefix(size_t number);

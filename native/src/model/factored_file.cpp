@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "image/half_image.h"
-#include "model/btf_parts.h"
+#include "model/btf_sides.h"
 
 namespace velour {
 namespace {

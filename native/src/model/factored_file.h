@@ -1,7 +1,7 @@
 // A factored BTF's parts and attributes in the model file (docs/reference/model_file.md, "Model file").
 #pragma once
 
-#include "btf/factored_btf.h"
+#include "btf/model/factored_btf.h"
 #include "model/model_fields.h"
 
 namespace velour {

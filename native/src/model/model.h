@@ -8,15 +8,14 @@
 #include <variant>
 #include <vector>
 
-#include "brdf/parametric_brdf.h"
-#include "brdf/scattered_brdf.h"
-#include "btf/factored_btf.h"
-#include "btf/srbf_btf.h"
-#include "btf/tensor_btf.h"
+#include "brdf/model/parametric_brdf.h"
+#include "brdf/model/per_view_brdf.h"
+#include "btf/model/factored_btf.h"
+#include "btf/model/srbf_btf.h"
+#include "btf/model/tensor_btf.h"
 #include "model/btf_record.h"
-#include "model/order_curve.h"
-#include "model/scene_record.h"
-#include "votf/occlusion_volume.h"
+#include "model/records.h"
+#include "votf/eval/occlusion_volume.h"
 
 namespace velour {
 
@@ -29,7 +28,7 @@ struct FitRecord {
   ErrorByViewAngle by_view_angle;
   ErrorByViewAngle albedo_by_view_angle;                      // directional albedo (largest channel) at those views
   double albedo_max = 0;                                      // over all fitted views, largest channel
-  double reciprocity = 0;                                     // of the model: fit/reciprocity.h
+  double reciprocity = 0;                                     // of the model: brdf/fit/fit_report.h
   std::optional<double> measured_reciprocity = std::nullopt;  // of the measurement, if it covers pairs both ways
   double tolerance = 0;
   double seconds = 0;  // wall clock of the fit

@@ -2,7 +2,7 @@
 
 #include <charconv>
 
-#include "job/error.h"
+#include "base/error.h"
 
 namespace velour {
 

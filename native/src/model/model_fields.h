@@ -4,7 +4,7 @@
 #include <map>
 #include <string>
 
-#include "image/exr_tensors.h"
+#include "image/tensors/exr_tensors.h"
 
 namespace velour {
 

@@ -3,13 +3,13 @@
 #include <algorithm>
 #include <charconv>
 
-#include "file/file.h"
-#include "image/exr_tensors.h"
-#include "job/error.h"
+#include "base/error.h"
+#include "base/file.h"
+#include "image/tensors/exr_tensors.h"
 #include "model/factored_file.h"
-#include "model/fit_record_json.h"
 #include "model/parametric_file.h"
-#include "model/scattered_file.h"
+#include "model/per_view_file.h"
+#include "model/record_json.h"
 #include "model/scene_json.h"
 #include "model/shell_file.h"
 #include "model/srbf_btf_file.h"

@@ -1,12 +1,11 @@
 #include "model/model_material.h"
 
-#include "btf/pair_interpolation.h"
-#include "job/error.h"
-#include "material/factored_material.h"
-#include "material/parametric_material.h"
-#include "material/scattered_material.h"
-#include "material/srbf_btf_material.h"
-#include "material/tensor_btf_material.h"
+#include "base/error.h"
+#include "brdf/eval/parametric_material.h"
+#include "brdf/eval/per_view_material.h"
+#include "btf/eval/factored_material.h"
+#include "btf/eval/sided_btf_material.h"
+#include "btf/measure/pair_interpolation.h"
 #include "material/through_material.h"
 
 namespace velour {

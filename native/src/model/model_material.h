@@ -3,7 +3,7 @@
 
 #include <memory>
 
-#include "brdf/measurement.h"
+#include "brdf/measure/measurement.h"
 #include "material/material.h"
 #include "model/model.h"
 

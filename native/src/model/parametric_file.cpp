@@ -1,6 +1,6 @@
 #include "model/parametric_file.h"
 
-#include "brdf/parametric_limits.h"
+#include "brdf/model/parametric_brdf.h"
 
 namespace velour {
 namespace {

@@ -1,7 +1,7 @@
 // The parametric model's parts and attributes in the model file (docs/reference/model_file.md, "Model file").
 #pragma once
 
-#include "brdf/parametric_brdf.h"
+#include "brdf/model/parametric_brdf.h"
 #include "model/model_fields.h"
 
 namespace velour {

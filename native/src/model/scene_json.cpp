@@ -5,17 +5,17 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
-#include "domain/hash_text.h"
-#include "file/json_fields.h"
-#include "job/error.h"
-#include "model/order_json.h"
+#include "base/error.h"
+#include "base/json_fields.h"
+#include "model/record_json.h"
+#include "usage/observation_hash.h"
 
 namespace velour {
 namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr uint32_t kMostTexels = 1u << 20;  // per side of a tile; far beyond what a file holds
+constexpr uint32_t kMaxTexels = 1u << 20;  // per side of a tile; far beyond what a file holds
 
 /// Writes the bins from the first to the last that was observed.
 void write_views(const SceneDomain& domain, Json& json) {
@@ -106,7 +106,7 @@ class SceneReader {
   }
   std::array<uint32_t, 2> texels(const char* key) const {
     const Json& json = at(key);
-    const auto good = [](const Json& n) { return n.is_number_unsigned() && n >= 1u && n <= kMostTexels; };
+    const auto good = [](const Json& n) { return n.is_number_unsigned() && n >= 1u && n <= kMaxTexels; };
     if (!json.is_array() || json.size() != 2 || !good(json[0]) || !good(json[1])) fail(key, "two positive integers");
     return {json[0].get<uint32_t>(), json[1].get<uint32_t>()};
   }

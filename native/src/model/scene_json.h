@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "model/scene_record.h"
+#include "model/records.h"
 
 namespace velour {
 

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "file/json_fields.h"
+#include "base/json_fields.h"
 
 namespace velour {
 namespace {

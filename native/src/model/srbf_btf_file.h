@@ -1,7 +1,7 @@
 // A BTF of multivariate SRBFs as parts and attributes of the model file (docs/reference/model_file.md, "Model file").
 #pragma once
 
-#include "btf/srbf_btf.h"
+#include "btf/model/srbf_btf.h"
 #include "model/model_fields.h"
 
 namespace velour {

@@ -1,7 +1,7 @@
 // Clustered tensors of BTFs as named parts of model files: docs/reference/model_file.md.
 #pragma once
 
-#include "btf/tensor_btf.h"
+#include "btf/model/tensor_btf.h"
 #include "model/model_fields.h"
 
 namespace velour {

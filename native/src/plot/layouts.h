@@ -1,4 +1,4 @@
-// The two layouts of a plot. Only for plot_layout.cpp.
+// The two layouts of a plot. Internal to plot/.
 #pragma once
 
 #include "plot/pen.h"

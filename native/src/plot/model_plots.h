@@ -3,9 +3,9 @@
 
 #include <array>
 #include <memory>
-
-#include "brdf/measurement.h"
-#include "job/progress.h"
+#include "base/progress.h"
+#include "brdf/measure/measurement.h"
+#include "material/material.h"
 #include "model/model.h"
 #include "plot/plot.h"
 
@@ -32,5 +32,26 @@ struct PlotView {
 /// per-view model take the time to construct its material.
 Plot make_plot(PlotKind kind, const std::shared_ptr<const Model>& model, const Measurement* measurement,
                const PlotView& view, Progress& progress);
+
+// Plots of the errors recorded by a fit.
+
+/// BRDF: the worst view's error over the tolerance against lobes. BTF: the error against bytes. Throws
+/// Error(unsupported) if nothing was recorded.
+Plot order_plot(const Model& model);
+
+/// Relative L2 at the reported views. Throws Error(unsupported) if there is none.
+Plot view_error_plot(const FitRecord& fit);
+
+// Directional albedo against the view angle.
+
+/// Albedo by channel at views of azimuth `phi` (radians), and that of the measurement at views whose lights it covers
+/// almost entirely.
+Plot albedo_plot(const Material& material, const Measurement* measurement, double phi, Progress& progress);
+
+// Coverage of a VOTF against the view angle.
+
+/// Share of a tile that its structure covers, at view angles three degrees apart: mean, minimum and maximum over
+/// azimuths. Throws Error(unsupported) for a model without a VOTF.
+Plot outline_plot(const Model& model, Progress& progress);
 
 }  // namespace velour

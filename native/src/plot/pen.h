@@ -4,12 +4,23 @@
 #include <optional>
 #include <string>
 #include <vector>
-
-#include "plot/drawing.h"
+#include "math/sphere/vec.h"
+#include "plot/axes.h"
 #include "plot/plot.h"
-#include "plot/plot_layout.h"
 
 namespace velour {
+
+// Lays out a plot in a square of pixels.
+
+struct PlotStyle {
+  static constexpr int kMinSide = 64, kLargestSide = 8192;
+  int side = 800;  // pixels
+  float text = 0;  // em of the text in pixels, at most a sixteenth of the side; 0: derived from the side
+  PlotColors colors = {};
+};
+
+/// Throws Error(invalid_argument) for a side or text that is out of range.
+Drawing lay_out(const Plot& plot, const PlotStyle& style);
 
 class Pen {
  public:
@@ -41,5 +52,14 @@ class Pen {
   float em_;
   Drawing drawing_;
 };
+
+// Simplification and dashing of polylines.
+
+/// A subset of `points`, including the first and the last, whose line is within `tolerance` of all omitted points
+/// [DP73].
+std::vector<Vec2> simplified(const std::vector<Vec2>& points, float tolerance);
+
+/// Pieces of the line, `on` long, with gaps of `off` between them.
+std::vector<std::vector<Vec2>> dashed(const std::vector<Vec2>& points, float on, float off);
 
 }  // namespace velour

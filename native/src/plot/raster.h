@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "plot/drawing.h"
+#include "plot/plot.h"
 
 namespace velour {
 

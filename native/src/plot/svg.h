@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "plot/drawing.h"
+#include "plot/plot.h"
 
 namespace velour {
 

@@ -2,9 +2,9 @@
 
 #include <algorithm>
 
-#include "btf/relief.h"
+#include "base/error.h"
+#include "btf/measure/relief.h"
 #include "image/half_image.h"
-#include "job/error.h"
 
 namespace velour {
 namespace {

@@ -3,15 +3,15 @@
 
 #include <vector>
 
-#include "btf/srbf_btf.h"
-#include "realtime/table_pixels.h"
+#include "btf/model/srbf_btf.h"
+#include "realtime/lobe_rows.h"
 
 namespace velour {
 
-/// One side of a BTF, f = expanded(axes s) as in btf/srbf_btf.h. `maps` stacks `layers` vertically, each of maps.height
-/// / layers rows: four coefficients per layer, in the order of `terms` and padded with zeros, then one layer of the
-/// relief: height over the reference plane in tile widths, and its slope along x and y. A layer has all levels of the
-/// pyramid side by side, each with a border of one pixel that repeats the tile.
+/// One side of a BTF, f = expanded(axes s) as in btf/model/srbf_btf.h. `maps` stacks `layers` vertically, each of
+/// maps.height / layers rows: four coefficients per layer, in the order of `terms` and padded with zeros, then one
+/// layer of the relief: height over the reference plane in tile widths, and its slope along x and y. A layer has all
+/// levels of the pyramid side by side, each with a border of one pixel that repeats the tile.
 struct BtfMaps {
   struct Level {
     uint32_t x, width, height;  // x of the first pixel inside the border, which is in the second row

@@ -3,14 +3,14 @@
 #include <algorithm>
 #include <cmath>
 
-#include "sphere/frame.h"
-#include "srbf/kernel.h"
+#include "math/sphere/frame.h"
+#include "math/srbf/kernel.h"
 
 namespace velour {
 namespace {
 
-constexpr double kMostBandwidth = 1e6;
-constexpr double kLeastAbove = 1e-9;        // minimum share of a Gaussian above the horizon
+constexpr double kMaxBandwidth = 1e6;
+constexpr double kMinAbove = 1e-9;          // minimum share of a Gaussian above the horizon
 constexpr double kBroad = 8, kNarrow = 24;  // bandwidths
 constexpr double kRowSpacing = 1.8;         // in deviations of a Gaussian; the sum is smooth to one in two hundred
 
@@ -59,7 +59,7 @@ void multiply_by_cosine(LightGaussian& g) {
   const double first = s * density + m * above;  // moments of max(z, 0)
   const double second = (m * m + s * s) * above + m * s * density;
   const double third = (m * m + 2 * s * s) * s * density + m * (m * m + 3 * s * s) * above;
-  if (!(first > kLeastAbove)) {
+  if (!(first > kMinAbove)) {
     g.color = Vec3d(0.0);
     g.is_used = false;
     return;
@@ -68,7 +68,7 @@ void multiply_by_cosine(LightGaussian& g) {
                variance = std::max(third / first - second / first * second / first, 0.1 * s * s);
   const double planar = std::sqrt((1 - mean * mean) / (1 - m * m));
   g.center = glm::normalize(Vec3d(planar * g.center.x, planar * g.center.y, mean));
-  g.bandwidth = std::clamp(g.bandwidth * s / std::sqrt(variance), 1.0, kMostBandwidth);
+  g.bandwidth = std::clamp(g.bandwidth * s / std::sqrt(variance), 1.0, kMaxBandwidth);
   g.color *= first;
 }
 
@@ -76,7 +76,7 @@ void clip_at_horizon(LightGaussian& g) {
   const double deviation = std::sqrt(std::max(1 - g.center.z * g.center.z, 1e-12) / g.bandwidth);
   const double above = 0.5 * std::erfc(-g.center.z / deviation / std::sqrt(2.0));
   g.color *= above;
-  g.is_used = g.is_used && above > kLeastAbove;
+  g.is_used = g.is_used && above > kMinAbove;
 }
 
 /// Share of a lobe that becomes Gaussians. Broad lobes times the cosine are not Gaussian; BroadPart fits them.
@@ -147,14 +147,14 @@ void light_gaussians(const ReachedLobe& reached, LobeOf of, const Vec3d& wv, std
   const auto center = unwarped(lobe, lobe.center, wv);
   const double whole = kernel_integral(Kernel::gaussian, lobe.bandwidth), share = gaussian_share(across);
   for (int i = 0; i < row.n; ++i) {
-    LightGaussian& g = out[static_cast<size_t>(i)] = {.bandwidth = std::clamp(across, 1.0, kMostBandwidth)};
+    LightGaussian& g = out[static_cast<size_t>(i)] = {.bandwidth = std::clamp(across, 1.0, kMaxBandwidth)};
     const auto wl = center ? light_at(lobe, reach.along, row.x(i) * spread, wv) : std::nullopt;
     if (!wl) continue;
     const double area = 1 / warp_jacobian(lobe, *wl, wv), growth = area * warp_jacobian(lobe, *center, wv);
     g.is_used = share > 0;
     g.center = *wl;
     // The growth of half vectors is all across: the exact power is 2, and 1 keeps the row smooth along.
-    g.bandwidth = std::clamp(across / std::pow(growth, 1.5), 1.0, kMostBandwidth);
+    g.bandwidth = std::clamp(across / std::pow(growth, 1.5), 1.0, kMaxBandwidth);
     g.color = share * whole * row.share[i] * area * lobe.coefficient;
     of == LobeOf::f ? multiply_by_cosine(g) : clip_at_horizon(g);
   }

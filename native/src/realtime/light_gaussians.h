@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "srbf/warped_lobe.h"
+#include "math/srbf/warped_lobe.h"
 
 namespace velour {
 

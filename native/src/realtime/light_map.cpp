@@ -4,15 +4,15 @@
 #include <array>
 #include <cmath>
 
-#include "job/parallel.h"
-#include "sphere/octahedral.h"
-#include "srbf/kernel.h"
-#include "srbf/lobe_products.h"
+#include "base/parallel.h"
+#include "math/sphere/warp.h"
+#include "math/srbf/kernel.h"
+#include "math/srbf/lobe_products.h"
 
 namespace velour {
 namespace {
 
-constexpr int kCosineSide = 48, kSkySide = 1024, kLeastSide = 24, kMostSide = 640;
+constexpr int kCosineSide = 48, kSkySide = 1024, kMinSide = 24, kMaxSide = 640;
 constexpr double kPixelsOfDeviation = 3.5;  // per lobe's; linear look-ups then err by 1/98 of its peak along each axis
 constexpr int kTableAngles = 256;           // entries of the table of ReceivedLight
 
@@ -24,7 +24,7 @@ int side_of(int level) {
   if (level == LightLevels::kCosine) return kCosineSide;
   if (level == LightLevels::kSky) return kSkySide;
   const double deviations = std::sqrt(4 * kPiD * LightLevels::bandwidth(level));
-  return std::clamp(static_cast<int>(kPixelsOfDeviation * deviations), kLeastSide, kMostSide);
+  return std::clamp(static_cast<int>(kPixelsOfDeviation * deviations), kMinSide, kMaxSide);
 }
 
 /// Places the maps on shelves below the row of entries, largest first.

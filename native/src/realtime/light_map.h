@@ -1,15 +1,15 @@
 // Environment light prefiltered by lobes, so that the product integrals of shading become look-ups.
 //
-// The integral of a Gaussian lobe times the environment's mixture of Gaussians has a closed form (srbf/kernel.h, [T06])
-// that depends on the lobe's center and bandwidth alone. For each bandwidth it is thus a function over the sphere: one
-// octahedral map [ED08] per level, finer as lobes get narrower. This generalizes environments preconvolved with one
-// lobe [GKD07] to any mixture of lobes.
+// The integral of a Gaussian lobe times the environment's mixture of Gaussians has a closed form (math/srbf/kernel.h,
+// [T06]) that depends on the lobe's center and bandwidth alone. For each bandwidth it is thus a function over the
+// sphere: one octahedral map [ED08] per level, finer as lobes get narrower. This generalizes environments preconvolved
+// with one lobe [GKD07] to any mixture of lobes.
 #pragma once
 
-#include "job/progress.h"
-#include "realtime/table_pixels.h"
-#include "scene/environment.h"
-#include "scene/sky_mixture.h"
+#include "base/progress.h"
+#include "light/environment.h"
+#include "light/environment_mixture.h"
+#include "realtime/lobe_rows.h"
 
 namespace velour {
 

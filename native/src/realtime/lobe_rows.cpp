@@ -4,10 +4,10 @@
 #include <cmath>
 #include <iterator>
 
-#include "job/error.h"
-#include "job/parallel.h"
-#include "material/scattered_lobes.h"
-#include "realtime/broad_part.h"
+#include "base/error.h"
+#include "base/parallel.h"
+#include "brdf/eval/per_view_lobes.h"
+#include "realtime/exchanged_lobes.h"
 #include "realtime/light_map.h"
 #include "realtime/lobes_of_views.h"
 

@@ -5,6 +5,7 @@
 #include <limits>
 
 namespace velour {
+
 namespace {
 
 bool zero(const Rgb& c) { return c.r == 0.0f && c.g == 0.0f && c.b == 0.0f; }
@@ -26,7 +27,7 @@ void DirectLight::gather(std::span<const Receiver> receivers, bool go_on, Shadow
   terms_.clear();
   for (size_t k = 0; k < receivers.size(); ++k) shade(receivers[k], static_cast<uint8_t>(k), output);
   settle(receivers, output);
-  if (!lighting_.glow().empty()) settle_glow(receivers, output);
+  if (!lighting_.emissive().empty()) settle_emissive(receivers, output);
 }
 
 void DirectLight::prepare(const Receiver& receiver, bool go_on, Work& work, const LightView& view) {
@@ -85,7 +86,7 @@ void DirectLight::draw_towards_lights(std::span<const Receiver> receivers) {
   }
   if (count == 0) return;
   lighting_.sample(views_, {view_of, static_cast<size_t>(count)}, points_.points(0, count), towards_lights_,
-                   {aims_, lighting_.glow().empty() ? 0 : static_cast<size_t>(count)});
+                   {aims_, lighting_.emissive().empty() ? 0 : static_cast<size_t>(count)});
 }
 
 /// Products are Gaussians in the world frame, so those of all vertices are sampled together.
@@ -109,7 +110,7 @@ void DirectLight::keep_if_lit(const Vertex& vertex, const Vec3& wl, const Vec3& 
 }
 
 void DirectLight::keep_world(const Vertex& vertex, const DirectionBatch& drawn, int first, int count, Drawer drawer) {
-  const bool aimed = drawer == Drawer::lights && !lighting_.glow().empty();
+  const bool aimed = drawer == Drawer::lights && !lighting_.emissive().empty();
   for (int i = first; i < first + count; ++i) {
     const Vec3 wl_world = drawn.get(i);  // zero for the dark side of a light: then not above the horizon
     const uint8_t aim = aimed && aims_[i].instance != kNoHit ? static_cast<uint8_t>(i + 1) : 0;
@@ -200,17 +201,17 @@ void DirectLight::settle(std::span<const Receiver> receivers, Output output) {
   }
 }
 
-void DirectLight::settle_glow(std::span<const Receiver> receivers, Output output) {
+void DirectLight::settle_emissive(std::span<const Receiver> receivers, Output output) {
   Ray rays[DirectionBatch::kCapacity];
   const int count = terms_.world.count;
   for (int i = 0; i < count; ++i) {
     rays[i] =
         receivers[terms_.receiver[i]].vertex.shadow_ray(terms_.world.get(i), std::numeric_limits<float>::infinity());
   }
-  terms_.look_up_glow(lighting_, views_, aims_, {rays, static_cast<size_t>(count)});
-  for (const LightTerms::Glow& g : terms_.glow) {
+  terms_.look_up_emissive(lighting_, views_, aims_, {rays, static_cast<size_t>(count)});
+  for (const LightTerms::EmissiveTerm& g : terms_.emissive) {
     const Receiver& receiver = receivers[terms_.receiver[g.direction]];
-    const auto [radiance, far] = lighting_.glow().light(rays[g.direction], g.hit, receiver.vertex.cone);
+    const auto [radiance, far] = lighting_.emissive().light(rays[g.direction], g.hit, receiver.vertex.cone);
     const Rgb light = g.weight * radiance * terms_.reflected.get(g.direction);
     settle_term(receivers, g.direction, {terms_.world.get(g.direction), light, limit_of_term(receiver), far, true},
                 output);
@@ -260,6 +261,53 @@ PathPast DirectLight::past_after(const Receiver& receiver, size_t place, const C
   past.was_diffuse =
       receiver.numbers->label() < material.diffuse_share(work_[place].prepared, onward.wl, onward.density);
   return past;
+}
+
+float LightTerms::weighed(Heuristic heuristic, int direction, float light_pdf) const {
+  const float q[3] = {product.v[direction], surface.v[direction], light_share.v[direction] * light_pdf};
+  const float density = effective_density(heuristic, q, drawer[direction]);
+  // A density of 0 results from rounding alone. NaN passes, to be counted.
+  return density == 0.0f ? 0.0f : 1.0f / density;
+}
+
+void LightTerms::look_up(const Lighting& lighting, std::span<const LightView> views, Heuristic heuristic) {
+  const int count = world.count;
+  if (count == 0) return;
+  world.pad();
+  ScalarBatch light_pdf;
+  lighting.look_up(views, {receiver, static_cast<size_t>(count)}, world, environment, light_pdf, lamp_hits);
+  for (int i = 0; i < count; ++i) weight.v[i] = aim[i] != 0 ? 0.0f : weighed(heuristic, i, light_pdf.v[i]);
+  for (const LampHit& hit : lamp_hits) {
+    const int i = hit.direction;
+    lamp_weight.v[i] = aim[i] != 0 ? 0.0f : weighed(kLampHeuristic, i, light_pdf.v[i]);
+  }
+}
+
+void LightTerms::look_up_emissive(const Lighting& lighting, std::span<const LightView> views, std::span<const Hit> aims,
+                                  std::span<const Ray> rays) {
+  find_emissive(lighting.emissive(), aims, rays);
+  for (EmissiveTerm& g : emissive) {
+    const int i = g.direction;
+    const float pdf = light_share.v[i] > 0.0f ? lighting.emissive_pdf(views[receiver[i]], world.get(i), g.hit) : 0.0f;
+    g.weight = weighed(kLampHeuristic, i, pdf);
+  }
+}
+
+void LightTerms::find_emissive(const EmissiveMeshes& surfaces, std::span<const Hit> aims, std::span<const Ray> rays) {
+  Ray searching[DirectionBatch::kCapacity];
+  int number[DirectionBatch::kCapacity];
+  size_t count = 0;
+  for (int i = 0; i < world.count; ++i) {
+    if (aim[i] != 0) {
+      emissive.push_back({i, aims[aim[i] - size_t{1}], 0.0f});
+    } else if (drawer[i] != Drawer::lights) {
+      number[count] = i;
+      searching[count++] = rays[static_cast<size_t>(i)];
+    }
+  }
+  found_.clear();
+  surfaces.meet({searching, count}, found_);
+  for (const EmissiveHit& f : found_) emissive.push_back({number[f.ray], f.hit, 0.0f});
 }
 
 }  // namespace velour

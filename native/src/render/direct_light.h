@@ -5,16 +5,64 @@
 #include <limits>
 #include <optional>
 #include <span>
-
-#include "render/light_terms.h"
-#include "render/onward.h"
+#include <vector>
+#include "math/sphere/directions.h"
+#include "math/srbf/lobe_mixture.h"
+#include "render/continuation.h"
+#include "render/direction_sampling.h"
+#include "render/lights/delta_light.h"
+#include "render/lights/lighting.h"
 #include "render/path_numbers.h"
 #include "render/scene_samplers.h"
 #include "render/shadow_queue.h"
-#include "render/sharp_lamps.h"
-#include "srbf/lobe_draws.h"
 
 namespace velour {
+
+// Directions of several vertices whose light is looked up together.
+
+/// Each direction contributes  reflected x radiance / d,  with d the density of direction_sampling.h. Light is looked
+/// up for a whole batch, so that all fetches of environment texels are in flight together and vectors are full.
+///
+/// Directions aimed at emissive meshes carry the light of these alone, other light-sampled directions carry none of it,
+/// and the remaining ones carry both. Each kind of light is weighted with the densities of the techniques that carry
+/// it: the environment by the chosen `heuristic`, lights and meshes by kLampHeuristic.
+struct alignas(64) LightTerms {
+  DirectionBatch world;
+  RgbBatch reflected;            // throughput f cos / n of n directions
+  ScalarBatch product, surface;  // share of a technique times its density
+  ScalarBatch light_share;
+  Drawer drawer[DirectionBatch::kCapacity];     // technique that sampled it
+  uint8_t receiver[DirectionBatch::kCapacity];  // index of the vertex in the batch
+  uint8_t aim[DirectionBatch::kCapacity];       // 0: none; otherwise 1 + index among the aims (Lighting::sample)
+
+  // Results of look_up().
+  RgbBatch environment;             // radiance
+  ScalarBatch weight, lamp_weight;  // 1 / d: for the environment, and for lights where one is hit
+  std::vector<LampHit> lamp_hits;
+  struct EmissiveTerm {
+    int direction;
+    Hit hit;
+    float weight;  // 1 / d
+  };
+  std::vector<EmissiveTerm> emissive;
+
+  void clear() {
+    world.count = 0;
+    lamp_hits.clear();
+    emissive.clear();
+  }
+  /// `views`: by index of the vertex.
+  void look_up(const Lighting& lighting, std::span<const LightView> views, Heuristic heuristic);
+  /// `rays`: along the directions, starting at their vertices.
+  void look_up_emissive(const Lighting& lighting, std::span<const LightView> views, std::span<const Hit> aims,
+                        std::span<const Ray> rays);
+
+ private:
+  /// 1 / d, with the density of the technique that samples the light.
+  float weighed(Heuristic heuristic, int direction, float light_pdf) const;
+  void find_emissive(const EmissiveMeshes& surfaces, std::span<const Hit> aims, std::span<const Ray> rays);
+  std::vector<EmissiveHit> found_;
+};
 
 /// A vertex that gathers light.
 struct Receiver {
@@ -58,15 +106,15 @@ class DirectLight {
 
   /// For each receiver, samples its light directions, estimates
   ///   throughput / n  sum_i f(wl_i) L(wl_i) cos(wl_i) / d(wl_i)
-  /// with d the density of the strategy (combination.h), and queues every nonzero term. `product` has a third density
-  /// beside surface and lights: the products of the material's lobes with those of the environment. A vertex without
-  /// products is lit as by `mis`.
+  /// with d the density of the strategy (direction_sampling.h), and queues every nonzero term. `product` has a third
+  /// density beside surface and lights: the products of the material's lobes with those of the environment. A vertex
+  /// without products is lit as by `mis`.
   ///
-  /// Emissive meshes are lights like the others (see counts_glow()). Directions hit them behind whatever shadow rays
-  /// pass through.
+  /// Emissive meshes are lights like the others (see counts_emissive()). Directions hit them behind whatever shadow
+  /// rays pass through.
   ///
   /// Delta lights, which no sampled direction can hit, are added under every strategy: each once if there are at most
-  /// kSharpLamps, otherwise that many sampled by contribution (Lighting::sharp_view).
+  /// kDeltaLights, otherwise that many sampled by contribution (Lighting::sharp_view).
   ///
   /// Contributions are clamped like Cycles' samples, each of which has one direction from the lights and one from the
   /// surface. For strategies that are not mixed, one direction is a sample; a delta light is one as well.
@@ -81,9 +129,9 @@ class DirectLight {
 
   /// Whether the terms of gather() include the emission of the surface hit by a ray from its vertex. Otherwise extend()
   /// must add it: emitters that are not light-sampled, under a strategy that samples no directions from the surface.
-  bool counts_glow(const Hit& hit) const {
-    const GlowingSurfaces& glow = lighting_.glow();
-    return meets_surfaces_ ? glow.holds(hit) : glow.draws(hit);
+  bool counts_emissive(const Hit& hit) const {
+    const EmissiveMeshes& emissive = lighting_.emissive();
+    return meets_surfaces_ ? emissive.holds(hit) : emissive.draws(hit);
   }
 
   /// Continuation ray of vertex `place` of the last gather(), sampled from the surface alone. gather() included no
@@ -97,7 +145,7 @@ class DirectLight {
   /// Number of directions dropped so far because their term was not finite.
   uint64_t nan_samples() const { return nan_samples_; }
 
-  static constexpr int kSharpLamps = 4;
+  static constexpr int kDeltaLights = 4;
   static constexpr int kReceivers = 8;  // maximum number of vertices in a batch
 
  private:
@@ -138,7 +186,7 @@ class DirectLight {
   /// Continues the path along direction `i` of the vertex, which is term `term`.
   void go_on_along(const Receiver& receiver, int i, int term, Work& work);
   void settle(std::span<const Receiver> receivers, Output output);
-  void settle_glow(std::span<const Receiver> receivers, Output output);
+  void settle_emissive(std::span<const Receiver> receivers, Output output);
   struct Contribution {
     Vec3 wl_world;
     Rgb light;
@@ -184,7 +232,7 @@ class DirectLight {
   RgbBatch f_;
   ScalarBatch material_pdf_, surface_pdf_, product_pdf_;
   LobeProducts products_;
-  SharpLight sharp_[kSharpLamps];
+  SharpLight sharp_[kDeltaLights];
   int sharp_count_ = 0;
   uint64_t nan_samples_ = 0;
 };

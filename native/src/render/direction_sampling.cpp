@@ -1,9 +1,9 @@
 #include "render/direction_sampling.h"
 
-#include "material/ggx_sampler.h"
-#include "material/table_sampler.h"
-#include "sphere/mirrored.h"
-#include "sphere/warp.h"
+#include "brdf/eval/table_sampler.h"
+#include "material/microfacet/ggx_sampler.h"
+#include "math/sphere/frame.h"
+#include "math/sphere/warp.h"
 
 namespace velour {
 

@@ -25,4 +25,49 @@ void sample_surface(SurfaceSampling sampling, const Vertex& vertex, const Prepar
 void surface_pdf(SurfaceSampling sampling, const Vertex& vertex, const PreparedBrdf& prepared, const DirectionBatch& wl,
                  const ScalarBatch& material_pdf, ScalarBatch& pdf);
 
+// Combination of directions from several sampling techniques into one estimate.
+
+/// Sampling technique of a direction.
+enum class Drawer : uint8_t { product = 0, surface = 1, lights = 2 };
+
+/// Multiple importance sampling [VG95]: of n directions, the share c_k comes from density p_k; the shares sum to 1.
+/// With q_k = c_k p_k, a direction contributes f / (n d):
+///   balance  d = sum_k q_k               weight q_own / sum_k q_k
+///   power    d = sum_k q_k^2 / q_own     weight q_own^2 / sum_k q_k^2, exponent 2
+/// where "own" is the density that the direction was sampled from. A share of 0 leaves a density out. Returns d for
+/// `q`, which is indexed by Drawer.
+inline float effective_density(Heuristic heuristic, const float (&q)[3], Drawer own) {
+  if (heuristic == Heuristic::balance) return q[0] + q[1] + q[2];
+  const float q_own = q[static_cast<int>(own)];
+  float d = 0.0f;
+  // Quotients instead of squares: squared densities of narrow lobes and suns exceed float32. NaN densities stay NaN.
+  for (const float other : q) d += other == 0.0f ? 0.0f : other * (other / q_own);
+  return d;
+}
+
+/// Heuristic for lights and emissive meshes, whatever is chosen for the environment. Directions sampled toward an
+/// unoccluded light have hardly any noise of their own; under the balance heuristic most of the noise came from the few
+/// surface-sampled directions that hit it, up to 12 times the variance of the power heuristic
+/// (docs/engine/strategies.md).
+inline constexpr Heuristic kLampHeuristic = Heuristic::power;
+
+/// Share of the products in the directions of `product` where the environment gives all light; other lights reduce it.
+/// Six of eight directions; the rest guards against light and shadow that the lobes do not represent.
+inline constexpr float kProductShare = 0.75f;
+
+/// Shares of the sampling techniques of a strategy.
+struct Shares {
+  float product = 0, surface = 0, lights = 0;
+};
+
+/// Shares at a vertex where a share `product` of the directions comes from products and `instead` from the lights in
+/// their place (both 0 for all strategies except `product`). Mixed strategies split the rest between surface and
+/// lights; the others have a single density.
+inline Shares shares(const RenderOptions& options, float product, float instead = 0) {
+  const float lights =
+      is_mixed(options.strategy) ? options.light_share : (options.strategy == Strategy::light ? 1.0f : 0.0f);
+  const float rest = 1.0f - product - instead;
+  return {product, rest * (1.0f - lights), rest * lights + instead};
+}
+
 }  // namespace velour

@@ -4,12 +4,12 @@
 #include <cmath>
 
 #include "material/material.h"
-#include "sphere/frame.h"
+#include "math/sphere/frame.h"
 
 namespace velour {
 namespace {
 
-constexpr float kLeastPart = 0.125f;  // minimum share of a pixel's side
+constexpr float kMinPart = 0.125f;  // minimum share of a pixel's side
 
 bool varies(const Scene& scene) {
   return std::ranges::any_of(scene.materials(), [](const SurfaceMaterial& m) { return m.material->varies(); });
@@ -24,7 +24,7 @@ RaySides across(const RayCone& cone, const Vec3& direction) {
 
 PixelFootprint::PixelFootprint(const Scene& scene, int width, int height, int camera_rays)
     : camera_(scene.camera()), needed_(varies(scene)) {
-  const float part = std::max(kLeastPart, 1.0f / std::sqrt(static_cast<float>(camera_rays)));
+  const float part = std::max(kMinPart, 1.0f / std::sqrt(static_cast<float>(camera_rays)));
   const Vec2 window(camera_.window[1] - camera_.window[0], camera_.window[3] - camera_.window[2]);
   pitch_ = part * window / Vec2(static_cast<float>(width), static_cast<float>(height));
 }
@@ -44,7 +44,7 @@ RaySides PixelFootprint::sides(const Vec3& position) const {
 
 Mat2 texture_footprint(const RaySides& sides, const Vec3& direction, const Vec3& normal, const TexturePoint& texture) {
   const float slope =
-      std::copysign(std::max(std::abs(glm::dot(normal, direction)), kLeastSlope), glm::dot(normal, direction));
+      std::copysign(std::max(std::abs(glm::dot(normal, direction)), kMinSlope), glm::dot(normal, direction));
   const auto side = [&](const Vec3& s) {
     const Vec3 on_plane = s - glm::dot(normal, s) / slope * direction;
     return Vec2(glm::dot(texture.u_gradient, on_plane), glm::dot(texture.v_gradient, on_plane));

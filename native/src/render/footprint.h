@@ -50,7 +50,7 @@ class PixelFootprint {
 };
 
 /// Footprint in texture coordinates: `sides` projected along unit `direction` onto the plane through the hit. At
-/// grazing angles its stretch is limited by kLeastSlope. Zero without texture coordinates.
+/// grazing angles its stretch is limited by kMinSlope. Zero without texture coordinates.
 Mat2 texture_footprint(const RaySides& sides, const Vec3& direction, const Vec3& normal, const TexturePoint& texture);
 
 /// Number of instances with a varying material on a mesh without texture coordinates, which show a single point of the
@@ -58,6 +58,6 @@ Mat2 texture_footprint(const RaySides& sides, const Vec3& direction, const Vec3&
 uint64_t untextured_instances(const Scene& scene);
 
 /// Minimum cosine to the geometric normal in footprints, which are thus at most a thousand times as long as wide.
-inline constexpr float kLeastSlope = 1e-3f;
+inline constexpr float kMinSlope = 1e-3f;
 
 }  // namespace velour

@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "render/film.h"
+#include "render/film/film.h"
 
 namespace velour {
 

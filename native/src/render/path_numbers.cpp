@@ -2,8 +2,7 @@
 
 #include <cmath>
 
-#include "render/lattice.h"
-#include "sphere/sobol.h"
+#include "math/sphere/sobol.h"
 
 namespace velour {
 

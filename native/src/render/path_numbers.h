@@ -1,15 +1,47 @@
 // Random numbers of one path: independent, or from a sequence that covers the unit square evenly.
 #pragma once
 
+#include <algorithm>
+#include <bit>
+#include <cmath>
 #include <cstdint>
 #include <span>
-
+#include "math/sphere/random.h"
+#include "math/sphere/sobol.h"
+#include "math/sphere/vec.h"
 #include "render/options.h"
 #include "render/point_batch.h"
-#include "render/ray_number.h"
-#include "sphere/random.h"
+#include "scene/embree_scene.h"
 
 namespace velour {
+
+// Random decisions of a ray at a surface, independent of threads and order.
+
+enum class RayDecision : uint64_t { alpha = 1, shell_edge };
+
+/// Uniform over [0, 1), hashed from the bits of ray and triangle.
+inline float ray_number(const Ray& ray, const Hit& hit, RayDecision decision) {
+  uint64_t key = mix64((static_cast<uint64_t>(hit.instance) << 32) + hit.triangle) + static_cast<uint64_t>(decision);
+  for (const Vec3& v : {ray.origin, ray.direction}) {
+    for (int i = 0; i < 3; ++i) key = mix64(key + std::bit_cast<uint32_t>(v[i]));
+  }
+  return unit_float(key);
+}
+
+/// Source of decisions for one of many related rays, such as the camera rays of a pixel: a key that they share, and the
+/// index of the ray.
+struct RayDecisions {
+  uint64_t key;
+  uint32_t index;
+
+  /// Uniform over [0, 1), for the decision that follows `before` others. Stratified over successive rays: of 2^m
+  /// aligned rays, one falls into each interval of length 2^-m.
+  float number(uint32_t before) const {
+    Vec2 u;
+    sobol_points(mix64(key + before), index, {&u, 1});
+    return u.x;
+  }
+};
 
 /// Purpose of the numbers at a vertex; each has its own sequence. `lens` has the key of the next vertex' `camera`,
 /// which does not exist.
@@ -79,5 +111,17 @@ class PathNumbers {
   uint32_t ray_;
   uint64_t key_ = 0, vertex_ = 0;
 };
+
+// Point sets of the unit square for the directions of one camera ray.
+
+/// Point `i` of `n` of a Fibonacci-like rank-1 lattice, shifted by `shift` modulo 1 [CP76]. With a uniform shift every
+/// point is uniform in [0, 1)^2, and together they cover the square evenly.
+inline Vec2 lattice_point(int i, int n, const Vec2& shift) {
+  constexpr float kGoldenRatio = 0.618033989f;
+  const float x = static_cast<float>(i) / static_cast<float>(n) + shift.x;
+  const float y = static_cast<float>(i) * kGoldenRatio + shift.y;
+  constexpr float kBelowOne = 0x1.fffffep-1f;
+  return {std::min(x - std::floor(x), kBelowOne), std::min(y - std::floor(y), kBelowOne)};
+}
 
 }  // namespace velour

@@ -6,7 +6,7 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
-#include "srbf/simd_dispatch.h"
+#include "base/simd_dispatch.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace velour {

@@ -3,7 +3,7 @@
 
 #include <span>
 
-#include "sphere/sobol.h"
+#include "math/sphere/sobol.h"
 
 namespace velour {
 

@@ -7,8 +7,8 @@
 #include <bit>
 #include <string>
 
-#include "job/threads.h"
-#include "render/denoise_film.h"
+#include "base/parallel.h"
+#include "render/denoised_target.h"
 #include "render/noise_target.h"
 #include "render/preparation.h"
 

@@ -10,7 +10,7 @@
 #include <span>
 #include <vector>
 
-#include "render/first_level.h"
+#include "render/film/film.h"
 #include "render/tile_renderer.h"
 
 namespace velour {

@@ -9,11 +9,11 @@
 #include <optional>
 #include <string>
 
-#include "job/threads.h"
+#include "base/parallel.h"
 #include "render/denoised_target.h"
 #include "render/noise_target.h"
 #include "render/preparation.h"
-#include "render/ray_share.h"
+#include "render/ray_log.h"
 #include "render/tile_renderer.h"
 
 namespace velour {

@@ -2,9 +2,9 @@
 
 #include <mutex>
 
-#include "fit/ggx_fit.h"
-#include "render/lights_part.h"
-#include "scene/sky_misfit.h"
+#include "brdf/fit/ggx_fit.h"
+#include "light/environment_mixture.h"
+#include "render/lights/environment_proposals.h"
 
 namespace velour {
 namespace {

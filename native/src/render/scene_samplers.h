@@ -4,11 +4,11 @@
 #include <memory>
 #include <vector>
 
-#include "job/progress.h"
-#include "material/ggx_sampler.h"
-#include "material/table_sampler.h"
-#include "render/report.h"
-#include "render/sky_proposals.h"
+#include "base/progress.h"
+#include "brdf/eval/table_sampler.h"
+#include "material/microfacet/ggx_sampler.h"
+#include "render/lights/environment_proposals.h"
+#include "render/render.h"
 #include "scene/scene.h"
 
 namespace velour {
@@ -19,7 +19,7 @@ using GgxSamplers = std::vector<std::unique_ptr<const GgxSampler>>;
 
 struct SkySampler {
   SkyProposals proposals;
-  std::vector<float> lights_part;  // by material (lights_part.h)
+  std::vector<float> lights_part;  // by material (environment_proposals.h)
   RenderReport::Sky report;
 };
 

@@ -3,19 +3,19 @@
 #include <algorithm>
 #include <cmath>
 
-#include "render/ray_number.h"
-#include "votf/shell_depth.h"
+#include "render/path_numbers.h"
+#include "votf/eval/shell_depth.h"
 
 namespace velour {
 namespace {
 
 /// Minimum cosine of texture look-ups; below it, the texels would be ever farther away.
-constexpr float kLeastCosine = 0.15f;
+constexpr float kMinCosine = 0.15f;
 /// Offset of rays that start on a structure, in pitches, so that they do not hit it again at once.
 constexpr float kOffStructure = 0.3f;
 
 /// Minimum radius of curvature below the top, as a share of that at the top.
-constexpr float kLeastRadius = 0.1f;
+constexpr float kMinRadius = 0.1f;
 
 Vec3 downwards(const Ray& ray, const Hit& top) {
   return glm::dot(ray.direction, top.geometric_normal) > 0 ? -ray.direction : ray.direction;
@@ -64,7 +64,7 @@ ShellWay ShellCrossing::way_at_side(const Ray& ray, const Hit& hit, const ShellE
   ShellRay way = in_shell();
   way.height = -foot_.below * (volume.top - volume.bottom);
   // Below the top of a convex shell the radius is smaller.
-  const float radius = std::max(kLeastRadius, 1 + frame_.curvature * way.height / way.scale);
+  const float radius = std::max(kMinRadius, 1 + frame_.curvature * way.height / way.scale);
   way.along /= radius;
   way.curvature /= radius;
   frame_.normal_turn /= radius;
@@ -163,7 +163,7 @@ SurfacePoint ShellCrossing::surface(SurfacePoint top, bool shaded) const {
 TexturePoint ShellCrossing::texture(TexturePoint top) const {
   const OcclusionVolume& volume = field().volume();
   const Vec3 up = normal(), wv = -direction_;
-  const float cosine = std::max(glm::dot(wv, up), kLeastCosine);
+  const float cosine = std::max(glm::dot(wv, up), kMinCosine);
   // Vector from the hit along the ray to the plane of the texels.
   const Vec3 to_plane = (wv - glm::dot(wv, up) * up) * ((volume.reference - hit_.place.z) / (frame_.scale * cosine));
   top.uv = Vec2(hit_.place) / Vec2(1, volume.aspect) +

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "scene/scene.h"
-#include "votf/shell_trace.h"
+#include "votf/eval/shell_trace.h"
 
 namespace velour {
 

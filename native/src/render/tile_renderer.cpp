@@ -141,7 +141,7 @@ void TileRenderer::follow(size_t index, int depth) {
     }
   }
   const LightPathOptions& light_paths = context_.options.light_paths;
-  if (depth == 0 || !flight_.light.counts_glow(hit)) {
+  if (depth == 0 || !flight_.light.counts_emissive(hit)) {
     sample.radiance += clamped(path.throughput * vertex.emission(), light_paths.limit(depth - 1));
   }
   const int most = depth == 0 ? context_.options.split : std::min(context_.options.split, kIndirectDirections);

@@ -4,12 +4,12 @@
 #include <memory>
 #include <vector>
 
-#include "job/progress.h"
-#include "render/film.h"
+#include "base/progress.h"
+#include "render/film/film.h"
+#include "render/film/surface_recorder.h"
 #include "render/paths_in_flight.h"
-#include "render/report.h"
+#include "render/render.h"
 #include "render/scene_samplers.h"
-#include "render/surface_recorder.h"
 
 namespace velour {
 

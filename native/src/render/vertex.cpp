@@ -31,7 +31,7 @@ Vertex::Vertex(const SurfacePoint& point, const Vec3& wv_world)
       table(nullptr) {
   Vec3 normal = facing(point.shading_normal, geometric_normal);
   const float cosine = glm::dot(normal, wv_world);
-  if (cosine < kLeastCosine) normal = glm::normalize(normal + (kLeastCosine - cosine) * wv_world);
+  if (cosine < kMinCosine) normal = glm::normalize(normal + (kMinCosine - cosine) * wv_world);
   frame = frame_along(normal, point.tangent);
   wv = frame.to_local(wv_world);
 }

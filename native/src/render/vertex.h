@@ -2,11 +2,11 @@
 #pragma once
 
 #include <algorithm>
-
+#include "material/material.h"
+#include "math/sphere/frame.h"
 #include "render/footprint.h"
-#include "render/light_tree.h"
+#include "render/lights/light_tree.h"
 #include "scene/scene.h"
-#include "sphere/frame.h"
 
 namespace velour {
 
@@ -16,14 +16,14 @@ class TableSampler;
 
 /// Surfaces are two-sided: both normals are turned to the viewer's side of the geometric surface. Where interpolation
 /// leaves the viewer below the shading horizon, the shading normal is bent toward the viewer until wv.z is
-/// kLeastCosine: continuous, no division by zero, no black rim. Light from below the geometric surface does not count
+/// kMinCosine: continuous, no division by zero, no black rim. Light from below the geometric surface does not count
 /// unless the material transmits; then light from below both horizons counts as well.
 ///
 /// The frame is right-handed, so a measured sample can be rotated but not mirrored. Where the material varies, +y is
 /// the side on which the second texture coordinate increases, so that a texture that is mapped mirrored, or seen from
 /// behind, is lit as it looks; the frame may then be left-handed.
 struct Vertex {
-  static constexpr float kLeastCosine = 0.01f;
+  static constexpr float kMinCosine = 0.01f;
 
   Vec3 position;
   Vec3 geometric_normal;  // unit, on the viewer's side
@@ -101,5 +101,26 @@ struct Vertex {
   void find_colors(const Scene& scene, const Hit& hit);
   void find_site(const SurfacePoint& point, const TexturePoint& texture, const Vec3& direction, const RaySides& sides);
 };
+
+// Site of a hit on its material, and whether rays of a kind hit it.
+
+/// Whether `ray` has reached a back face that is hidden from its kind. For shadow rays the direction of the light
+/// counts, which comes the other way.
+inline bool passes_back(const SurfaceMaterial& surface, const Ray& ray, const Hit& hit, uint8_t kind) {
+  if (!surface.hides_backs() || (surface.hidden_backs & kind) == 0) return false;
+  const float along = glm::dot(hit.geometric_normal, ray.direction);
+  return kind == hidden::kFromShadows ? along < 0.0f : along > 0.0f;
+}
+
+/// Site at which a material is queried for opacity and transmission: a point, because the rays of a pixel average what
+/// a footprint would.
+inline SurfaceSite point_site(const Scene& scene, const Hit& hit, const SurfaceMaterial& surface) {
+  SurfaceSite site;
+  if (!surface.material->varies()) return site;
+  site.uv = scene.texture(hit).uv;
+  for (size_t set = 1; set < surface.uv_sets; ++set) site.others[set - 1].uv = scene.texture(hit, set).uv;
+  for (size_t set = 0; set < surface.color_sets; ++set) site.colors[set] = scene.color(hit, set);
+  return site;
+}
 
 }  // namespace velour

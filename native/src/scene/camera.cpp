@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "sphere/warp.h"
+#include "math/sphere/warp.h"
 
 namespace velour {
 namespace {

@@ -1,8 +1,7 @@
 // Cameras.
 #pragma once
 
-#include "scene/affine.h"
-#include "scene/bounds.h"
+#include "math/sphere/affine.h"
 #include "scene/embree_scene.h"
 
 namespace velour {

@@ -7,7 +7,7 @@
 #include <embree3/rtcore.h>
 #endif
 
-#include "file/private_library.h"
+#include "base/private_library.h"
 
 namespace velour {
 

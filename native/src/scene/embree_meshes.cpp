@@ -11,8 +11,8 @@
 #include <thread>
 #include <utility>
 
-#include "job/error.h"
-#include "job/threads.h"
+#include "base/error.h"
+#include "base/parallel.h"
 
 namespace velour {
 namespace {

@@ -8,10 +8,10 @@
 #include <span>
 #include <vector>
 
-#include "job/progress.h"
-#include "scene/affine.h"
+#include "base/progress.h"
+#include "math/sphere/affine.h"
+#include "math/sphere/vec.h"
 #include "scene/embree_api.h"
-#include "sphere/vec.h"
 
 namespace velour {
 

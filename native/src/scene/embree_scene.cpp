@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <vector>
 
-#include "job/error.h"
-#include "job/threads.h"
+#include "base/error.h"
+#include "base/parallel.h"
 #include "scene/embree_meshes.h"
 
 namespace velour {
@@ -65,7 +65,7 @@ struct EmbreeScene::Impl {
       if (!used[instance.mesh]) once += triangles;
       used[instance.mesh] = true;
     }
-    return static_cast<double>(all) > kMostRepeated * static_cast<double>(once);
+    return static_cast<double>(all) > kMaxRepeated * static_cast<double>(once);
   }
 
   RTCScene build_top() const {

@@ -9,9 +9,9 @@
 #include <span>
 #include <string>
 
-#include "job/progress.h"
-#include "scene/affine.h"
-#include "sphere/vec.h"
+#include "base/progress.h"
+#include "math/sphere/affine.h"
+#include "math/sphere/vec.h"
 
 namespace velour {
 
@@ -58,11 +58,11 @@ class EmbreeScene {
   void clear_instances();
   enum class Levels { one, two };
   /// Builds with at most `threads` threads (0: all). A scene whose only instance has the identity transform always has
-  /// one level. Otherwise there are two if instances repeat their meshes much: if they have more than kMostRepeated
+  /// one level. Otherwise there are two if instances repeat their meshes much: if they have more than kMaxRepeated
   /// triangles per triangle of their meshes. Throws Error(cancelled) soon after `progress` is cancelled; builds of
   /// meshes for two levels continue, and another commit() waits for them.
   void commit(int threads, const Progress* progress = nullptr, Levels levels = Levels::two);
-  static constexpr double kMostRepeated = 1.5;
+  static constexpr double kMaxRepeated = 1.5;
 
   /// Levels of the committed scene.
   Levels levels() const;

@@ -8,11 +8,9 @@
 #include <utility>
 #include <vector>
 
-#include "scene/border_edges.h"
-#include "scene/bounds.h"
-#include "scene/corner_tangents.h"
+#include "math/sphere/affine.h"
+#include "math/sphere/vec.h"
 #include "scene/mesh_arrays.h"
-#include "sphere/vec.h"
 
 namespace velour {
 

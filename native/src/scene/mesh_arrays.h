@@ -4,8 +4,7 @@
 #include <cstdint>
 #include <span>
 #include <vector>
-
-#include "sphere/vec.h"
+#include "math/sphere/vec.h"
 
 namespace velour {
 
@@ -48,5 +47,34 @@ Vec3d area_normal(const Vec3& a, const Vec3& b, const Vec3& c);
 
 /// Triangles per parallel task.
 inline constexpr size_t kTrianglesOfPiece = 1 << 15;
+
+// Tangents for normal maps, in the convention of the programs that bake them.
+
+/// Tangent at a corner. `direction`: unit, perpendicular to the corner's normal, in which the first texture coordinate
+/// grows. The bitangent is `side` cross(normal, direction), where `side` is 1, or -1 if the texture is mirrored.
+struct CornerTangent {
+  Vec3 direction;
+  float side;
+};
+
+/// Tangent space of Mikkelsen 2008 ("MikkTSpace") on the given triangles, 3 tangents per triangle. Corners with the
+/// same position, normal and texture coordinate share the mean tangent of their triangles of the same side, weighted by
+/// angle; triangles without area in texture space take one of those. Unlike in MikkTSpace, triangles that share a
+/// vertex but no edge form one group. Normals are unit; non-finite texture coordinates count as 0.
+std::vector<CornerTangent> corner_tangents(std::span<const Vec3> positions, std::span<const glm::uvec3> triangles,
+                                           std::span<const Vec3> corner_normals, std::span<const Vec2> corner_uvs);
+
+// Border edges of a surface.
+
+/// Edge from corner `corner` of a triangle to the next corner.
+struct BorderEdge {
+  uint32_t triangle;
+  uint32_t corner;
+};
+
+/// Edges of the `chosen` triangles that no other chosen triangle shares, in triangle order. Vertices that coincide
+/// within a millionth of the surface's extent count as one, so a seam of texture coordinates is not a border.
+std::vector<BorderEdge> border_edges(std::span<const Vec3> positions, std::span<const glm::uvec3> triangles,
+                                     const std::vector<bool>& chosen);
 
 }  // namespace velour

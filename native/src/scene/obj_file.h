@@ -1,8 +1,11 @@
 // Wavefront OBJ files.
 #pragma once
 
+#include <cstdint>
+#include <span>
 #include <string>
-
+#include <vector>
+#include "math/sphere/vec.h"
 #include "scene/mesh.h"
 
 namespace velour {
@@ -13,5 +16,31 @@ namespace velour {
 /// without the normals or texture coordinates that others have. Throws Error(io, bad_data) with the file's name and the
 /// line at fault.
 Mesh read_obj(const std::string& path);
+
+// Triangulation of polygons.
+
+/// Cuts simple polygons, convex or not, into count - 2 triangles by ear clipping (Meisters 1975) in the plane of the
+/// polygon's normal (Newell). Up to the choice of diagonals, the result does not depend on the origin or the first
+/// corner. Self-intersecting polygons also give some triangles. Reuses its memory between calls.
+class PolygonTriangles {
+ public:
+  /// Maximum number of corners. The time grows with its square.
+  static constexpr size_t kMaxCorners = 20000;
+
+  /// `corners`: positions of the polygon's corners in order, at least 3 and at most kMaxCorners. Returns triangles of
+  /// indices into `corners`, valid until the next call.
+  std::span<const glm::uvec3> cut(std::span<const Vec3> corners);
+
+ private:
+  void project(std::span<const Vec3> corners);
+  void cut_quad();
+  void clip_ears();
+  double turn(uint32_t a, uint32_t b, uint32_t c) const;
+  bool is_ear(uint32_t corner) const;
+
+  std::vector<glm::dvec2> points_;  // counterclockwise
+  std::vector<uint32_t> next_, previous_;
+  std::vector<glm::uvec3> triangles_;
+};
 
 }  // namespace velour

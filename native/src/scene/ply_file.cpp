@@ -8,9 +8,9 @@
 #include <optional>
 #include <sstream>
 
-#include "file/file.h"
-#include "job/error.h"
-#include "scene/polygon_triangles.h"
+#include "base/error.h"
+#include "base/file.h"
+#include "scene/obj_file.h"
 
 namespace velour {
 namespace {

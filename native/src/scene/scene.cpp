@@ -4,8 +4,8 @@
 #include <chrono>
 #include <string>
 
-#include "job/error.h"
-#include "scene/box_around.h"
+#include "base/error.h"
+#include "math/sphere/affine.h"
 
 namespace velour {
 namespace {

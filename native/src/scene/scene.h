@@ -1,23 +1,48 @@
 // The scene: meshes, materials, instances, lights, environment and camera, in plain arrays.
 #pragma once
 
+#include <cstdint>
 #include <memory>
+#include <mutex>
 #include <optional>
 #include <string>
+#include <typeinfo>
 #include <vector>
-
-#include "job/progress.h"
-#include "material/texture_map.h"
+#include "base/progress.h"
+#include "light/environment.h"
+#include "light/light.h"
+#include "material/texture_slot.h"
 #include "scene/camera.h"
 #include "scene/embree_scene.h"
-#include "scene/environment.h"
-#include "scene/light.h"
 #include "scene/mesh.h"
-#include "scene/scene_keep.h"
-#include "scene/shell_top.h"
-#include "votf/shell_field.h"
+#include "scene/scene_shells.h"
+#include "votf/eval/shell_field.h"
 
 namespace velour {
+
+// Cache for data derived from a state of a scene, kept with that scene.
+
+/// One object, of one type, for one revision of a scene. Thread-safe.
+class SceneKeep {
+ public:
+  /// The T of `revision`, default-constructed at the first call. Holders of a T of another revision keep theirs.
+  template <typename T>
+  std::shared_ptr<T> of(uint64_t revision) {
+    const std::lock_guard lock(mutex_);
+    if (!kept_ || type_ != &typeid(T) || revision_ != revision) {
+      kept_ = std::make_shared<T>();
+      type_ = &typeid(T);
+      revision_ = revision;
+    }
+    return std::static_pointer_cast<T>(kept_);
+  }
+
+ private:
+  std::mutex mutex_;
+  std::shared_ptr<void> kept_;
+  const std::type_info* type_ = nullptr;
+  uint64_t revision_ = 0;
+};
 
 class Material;
 
@@ -28,8 +53,8 @@ struct SurfaceMaterial {
   bool rec709_colors = true;  // f is Rec. 709 (measured) and is converted to the working space; false: already there
   bool relief = false;        // has a normal map: its meshes need tangents
   bool brushed = false;       // uniform and anisotropic: +x is smooth_tangent(), its meshes need tangents
-  uint8_t uv_sets = 1;        // number of texture coordinate sets in use, at most SurfaceSite::kMostSets
-  uint8_t color_sets = 0;     // number of corner color sets in use, at most SurfaceSite::kMostColorSets
+  uint8_t uv_sets = 1;        // number of texture coordinate sets in use, at most SurfaceSite::kMaxSets
+  uint8_t color_sets = 0;     // number of corner color sets in use, at most SurfaceSite::kMaxColorSets
   /// Structure over the surface that rays can pass through; null: none. Needs texture coordinates.
   std::shared_ptr<const ShellField> shell = nullptr;
   /// True: the structure's own surface is shaded and shadowed. False: f describes the appearance of the structure over

@@ -5,7 +5,7 @@
 #include <string>
 #include <utility>
 
-#include "job/error.h"
+#include "base/error.h"
 #include "scene/scene.h"
 
 namespace velour {

@@ -73,7 +73,7 @@ class RoundTrip : public ::testing::TestWithParam<int32_t> {
 };
 INSTANTIATE_TEST_SUITE_P(Models, RoundTrip, ::testing::Values(VLR_MODEL_SCATTERED, VLR_MODEL_PARAMETRIC));
 
-/// The mean colour of `scene`.
+/// The mean color of `scene`.
 std::vector<double> mean_of(const TestScene& scene) {
   constexpr uint32_t kSide = 8;
   vlr_job* job = scene.render_job(kSide, 256);

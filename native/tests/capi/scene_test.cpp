@@ -27,7 +27,7 @@ std::vector<float> rendered(const TestScene& scene, const char* pass, uint32_t c
   return pixels;
 }
 
-TEST(CScene, AWhiteSquareUnderAGreyWorldReflectsItsAlbedo) {
+TEST(CScene, AWhiteSquareUnderAGrayWorldReflectsItsAlbedo) {
   // Radiance = albedo x world = 0.8 x 0.5: cosine sampling of a Lambertian surface has no variance.
   const auto pixels = rendered(TestScene(), "Combined", 4, 2);
   for (size_t i = 0; i < pixels.size(); i += 4) {
@@ -52,12 +52,12 @@ TEST(CScene, ThreadsDoNotChangeABit) {
   EXPECT_EQ(0, std::memcmp(one.data(), three.data(), one.size() * sizeof(float)));
 }
 
-TEST(CScene, AWorldsImageIsPlacedAnewAndAColourIsNot) {
+TEST(CScene, AWorldsImageIsPlacedAnewAndAColorIsNot) {
   const TestScene scene;
   vlr_scene* world = scene.scene;
   EXPECT_EQ(VLR_INVALID_ARGUMENT, vlr_scene_place_world(world, 1, nullptr));
-  const std::vector<float> grey(8, 0.25f);
-  ASSERT_EQ(VLR_OK, vlr_scene_set_world_pixels(world, 4, 2, 1, grey.data(), 1, nullptr)) << vlr_last_error();
+  const std::vector<float> gray(8, 0.25f);
+  ASSERT_EQ(VLR_OK, vlr_scene_set_world_pixels(world, 4, 2, 1, gray.data(), 1, nullptr)) << vlr_last_error();
   ASSERT_EQ(VLR_OK, vlr_scene_place_world(world, 2, nullptr)) << vlr_last_error();
   ASSERT_EQ(VLR_OK, vlr_scene_commit(world)) << vlr_last_error();
   const auto pixels = rendered(scene, "Combined", 4, 2);

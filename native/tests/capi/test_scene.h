@@ -1,4 +1,4 @@
-// A small scene through the C API: a white square of 2 m under a grey world, seen from above.
+// A small scene through the C API: a white square of 2 m under a gray world, seen from above.
 #pragma once
 
 #include <gtest/gtest.h>

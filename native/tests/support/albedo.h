@@ -1,12 +1,12 @@
 // Directional albedos by quadrature.
 #pragma once
 
-#include "sphere/quadrature.h"
+#include "math/sphere/quadrature.h"
 #include "support/materials.h"
 
 namespace velour::test {
 
-/// Of green, by `polar` x `turns` light directions, as prepared for a view.
+/// Green albedo of a material prepared for a view, integrated over `polar` x `turns` light directions.
 inline double albedo(const Material& material, const PreparedBrdf& point, int polar, int turns) {
   const Quadrature z = gauss_legendre(polar, 0, 1);
   double sum = 0;

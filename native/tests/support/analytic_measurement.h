@@ -4,7 +4,7 @@
 #include <functional>
 #include <memory>
 
-#include "brdf/measurement.h"
+#include "brdf/measure/measurement.h"
 
 namespace velour::test {
 

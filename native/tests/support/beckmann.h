@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "sphere/vec.h"
+#include "math/sphere/vec.h"
 
 namespace velour::test {
 

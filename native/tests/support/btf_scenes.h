@@ -3,7 +3,7 @@
 
 #include <memory>
 
-#include "sphere/random.h"
+#include "math/sphere/random.h"
 #include "support/proof_strategies.h"
 #include "support/renders.h"
 #include "support/textured_scenes.h"

@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "btf/btf_folder.h"
-#include "capture/btf_capture.h"
+#include "btf/formats/btf_folder.h"
+#include "capture/btf/btf_capture.h"
 #include "support/statistics.h"
 #include "support/test_data.h"
 #include "support/test_scene.h"

@@ -6,7 +6,7 @@
 #include <limits>
 #include <numeric>
 
-#include "sphere/random.h"
+#include "math/sphere/random.h"
 #include "support/artifacts.h"
 
 namespace velour::test {
@@ -110,7 +110,7 @@ void write_cells(const std::filesystem::path& path, const ChiSquareResult& resul
   const SphereCells cells(result.options);
   std::ofstream file(path);
   file.precision(9);
-  file << "d0,d1,phi0,phi1,observed,expected,normalised_difference\n";
+  file << "d0,d1,phi0,phi1,observed,expected,normalized_difference\n";
   const auto columns = static_cast<size_t>(cells.columns());
   for (size_t i = 0; i < result.observed.size(); ++i) {
     const int column = static_cast<int>(i % columns);

@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "btf/factored_btf.h"
+#include "btf/model/factored_btf.h"
 
 namespace velour::test {
 

@@ -1,8 +1,8 @@
 // Observations made by hand.
 #pragma once
 
-#include "domain/observation.h"
-#include "sphere/random.h"
+#include "math/sphere/random.h"
+#include "usage/observation.h"
 
 namespace velour::test {
 

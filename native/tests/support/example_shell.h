@@ -6,8 +6,8 @@
 #include <functional>
 #include <memory>
 
-#include "sphere/vec.h"
-#include "votf/occlusion_volume.h"
+#include "math/sphere/vec.h"
+#include "votf/eval/occlusion_volume.h"
 
 namespace velour::test {
 

@@ -3,9 +3,9 @@
 
 #include <cmath>
 
-#include "btf/bilinear_texels.h"
-#include "btf/relief.h"
-#include "btf/srbf_btf.h"
+#include "btf/measure/bilinear_texels.h"
+#include "btf/measure/relief.h"
+#include "btf/model/srbf_btf.h"
 #include "image/half_image.h"
 
 namespace velour::test {
@@ -79,7 +79,7 @@ inline Relief relief_of(const SrbfBtf& btf, const SrbfLevel& level) {
   return {level.width, level.height, heights, tile_aspect(btf.grid)};
 }
 
-/// f by the definition in btf/srbf_btf.h: of a side, at a place of a level, for directions with z > 0.
+/// f by the definition in btf/model/srbf_btf.h: of a side, at a place of a level, for directions with z > 0.
 inline Rgb defined_value(const SrbfBtf& btf, const SrbfSide& side, size_t level, const Vec2& uv,
                          const DirectionPair& pair) {
   const SrbfLevel& of = side.levels[level];

@@ -3,13 +3,12 @@
 
 #include <cmath>
 
-#include "btf/bilinear_texels.h"
-#include "btf/relief.h"
-#include "btf/tensor_btf.h"
-#include "btf/tensor_factors.h"
+#include "btf/measure/bilinear_texels.h"
+#include "btf/measure/relief.h"
+#include "btf/model/tensor_btf.h"
 #include "image/half_image.h"
-#include "sphere/direction_mesh.h"
-#include "sphere/random.h"
+#include "math/sphere/direction_mesh.h"
+#include "math/sphere/random.h"
 
 namespace velour::test {
 
@@ -101,7 +100,7 @@ inline double between(const std::vector<HalfBits>& factor, size_t rank, size_t e
   return sum;
 }
 
-/// basis_{c,r}(v, l, a) of btf/tensor_btf.h, for the three axes.
+/// basis_{c,r}(v, l, a) of btf/model/tensor_btf.h, for the three axes.
 inline Vec3d defined_basis(const TensorSide& side, const TensorBtfCluster& c, size_t r,
                            const DirectionMesh::Weights& view, const DirectionMesh::Weights& light) {
   const TensorSide::Ranks& rank = side.rank;
@@ -137,7 +136,7 @@ inline Vec3d defined_sum(const TensorSide& side, const TensorLevel& level, size_
   return sum;
 }
 
-/// f by the definition in btf/tensor_btf.h: of a side, at a place of a level, for directions with z > 0.
+/// f by the definition in btf/model/tensor_btf.h: of a side, at a place of a level, for directions with z > 0.
 inline Rgb defined_value(const TensorBtf& btf, const TensorSide& side, size_t number, const Vec2& uv,
                          const DirectionPair& pair) {
   const TensorLevel& level = side.levels[number];

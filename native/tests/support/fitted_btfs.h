@@ -7,7 +7,7 @@
 #include <limits>
 #include <string>
 
-#include "job/error.h"
+#include "base/error.h"
 #include "support/relief_btf.h"
 
 namespace velour::test {

@@ -1,8 +1,8 @@
 // A scene that has everything that strategies must agree on.
 #pragma once
 
-#include "material/principled_material.h"
-#include "sphere/random.h"
+#include "material/principled/principled_material.h"
+#include "math/sphere/random.h"
 #include "support/test_scene.h"
 
 namespace velour::test {

@@ -4,9 +4,9 @@
 #include <cmath>
 #include <initializer_list>
 
-#include "brdf/half_diff.h"
-#include "sphere/random.h"
-#include "srbf/kernel.h"
+#include "brdf/measure/half_diff.h"
+#include "math/sphere/random.h"
+#include "math/srbf/kernel.h"
 
 namespace velour::test {
 namespace {
@@ -52,10 +52,10 @@ Rgb opposed_lobes(const DirectionPair& p) {
 /// f cos that does not depend on the light at all: a lobe of bandwidth 0.
 Rgb constant_radiance(const DirectionPair& p) { return Rgb(0.1f) / p.wl.z; }
 
-/// A saturated colour, as a spectral measurement of a laser-like pigment has in Rec. 709.
+/// A saturated color, as a spectral measurement of a laser-like pigment has in Rec. 709.
 Rgb outside_gamut(const DirectionPair& p) { return ggx(0.3f, 0.3f)(p) * Rgb(-0.3f, 1.0f, 0.2f); }
 
-/// Of albedo 0.4 at the normal and 1.4 at grazing views.
+/// The albedo is 0.4 at the normal and 1.4 at grazing views.
 Rgb too_bright_at_grazing(const DirectionPair& p) { return Rgb((0.4f + 3 * (1 - p.wv.z) * (1 - p.wl.z)) / kPi); }
 
 /// The light side has a cosine too many.
@@ -142,7 +142,7 @@ std::vector<HostileCase> hostile_cases() {
       {"noise of 30 %", measured(noisy(glossy, 0.3)), glossy, {"noise"}},
       sound("scale too large", scaled(glossy, 1500), {"scale"}),
       sound("scale too small", scaled(glossy, 1 / 1500.0f), {"scale"}),
-      sound("colours outside the gamut", outside_gamut, {"outside Rec. 709"}),
+      sound("colors outside the gamut", outside_gamut, {"outside Rec. 709"}),
       sound("albedo above 1", too_bright_at_grazing, {"more light there than arrives"}),
       sound("non-reciprocal", non_reciprocal, {"not reciprocal"}),
       with_holes("holes at grazing angles", glossy, away_from_grazing,

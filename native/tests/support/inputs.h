@@ -1,4 +1,4 @@
-// What a test proves of files that other programs write: a line of docs/inputs.md (scripts/inputs).
+// What a test proves of files that other programs write: a line of docs/reference/inputs.md (scripts/inputs).
 #pragma once
 
 #include <gtest/gtest.h>

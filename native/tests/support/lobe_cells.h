@@ -1,7 +1,7 @@
 // Samplers made of lobes, and the cells that resolve them.
 #pragma once
 
-#include "srbf/lobe_mixture.h"
+#include "math/srbf/lobe_mixture.h"
 #include "support/mixtures.h"
 #include "support/sampler_proof.h"
 

@@ -1,14 +1,14 @@
 // Small models and one-direction calls for tests of materials.
 #pragma once
 
-#include "brdf/scattered_brdf.h"
+#include "brdf/eval/table_sampler.h"
+#include "brdf/model/per_view_brdf.h"
 #include "material/material.h"
-#include "material/table_sampler.h"
-#include "sphere/directions.h"
+#include "math/sphere/directions.h"
 
 namespace velour::test {
 
-/// A coloured highlight about each view's mirror direction over a broad lobe about the normal and a retro-reflecting
+/// A colored highlight about each view's mirror direction over a broad lobe about the normal and a retro-reflecting
 /// one.
 inline ScatteredBrdf glossy_model(Kernel kernel, const std::vector<Vec3>& views, bool isotropic, float sharp = 300) {
   ScatteredBrdf brdf;

@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "btf/btf_measurement.h"
+#include "btf/measure/btf_measurement.h"
 
 namespace velour::test {
 

@@ -3,9 +3,9 @@
 
 #include <array>
 
-#include "sphere/directions.h"
-#include "sphere/random.h"
-#include "srbf/lobe_mixture.h"
+#include "math/sphere/directions.h"
+#include "math/sphere/random.h"
+#include "math/srbf/lobe_mixture.h"
 
 namespace velour::test {
 
@@ -14,7 +14,7 @@ inline std::vector<float> bandwidth_grid(Kernel kernel) {
   return {0, 1e-4f, 0.1f, 0.5f, 0.9f, 0.99f, 0.9999f, 1 - 0x1p-24f};
 }
 
-/// `lobes` lobes of random centre over the sphere and bandwidth log-uniform over the kernel's range.
+/// `lobes` lobes of random center over the sphere and bandwidth log-uniform over the kernel's range.
 inline LobeMixture random_mixture(Kernel kernel, int lobes, uint64_t seed, float share = 0.05f) {
   LobeMixture mixture;
   mixture.clear(kernel);

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "sphere/random.h"
+#include "math/sphere/random.h"
 
 namespace velour::test {
 

@@ -1,20 +1,20 @@
 // Scenes for the proof of observations: a glossy body over a floor, whose f is scaled, lit in several ways. All
-// surfaces are grey, so that luminance is linear along every path.
+// surfaces are gray, so that luminance is linear along every path.
 #pragma once
 
-#include "domain/observation.h"
 #include "material/through_material.h"
-#include "render/scene_observer.h"
-#include "sphere/random.h"
+#include "math/sphere/random.h"
 #include "support/proof_materials.h"
 #include "support/renders.h"
+#include "usage/observation.h"
+#include "usage/observe/scene_observer.h"
 
 namespace velour::test {
 
 /// Luminance of another material's f, times a factor.
-class ScaledGrey final : public Material {
+class ScaledGray final : public Material {
  public:
-  ScaledGrey(std::shared_ptr<const Material> material, float factor)
+  ScaledGray(std::shared_ptr<const Material> material, float factor)
       : material_(std::move(material)), factor_(factor) {}
   void prepare(const Vec3& wv, const SurfaceSite& site, PreparedBrdf& point) const override {
     material_->prepare(wv, site, point);
@@ -35,7 +35,7 @@ class ScaledGrey final : public Material {
   float factor_;
 };
 
-enum class ObservedLight { sky, lamps, sharp_lamps };
+enum class ObservedLight { sky, lamps, delta_lights };
 inline constexpr uint32_t kObservedMaterial = 0;
 
 inline void add_sky(Scene& scene) {
@@ -64,7 +64,7 @@ inline void add_extended_lamps(Scene& scene) {
 }
 
 /// More than are all lit by name.
-inline void add_sharp_lamps(Scene& scene) {
+inline void add_delta_lights(Scene& scene) {
   for (int i = 0; i < 6; ++i) {
     Light lamp;
     lamp.type = i < 5 ? Light::Type::point : Light::Type::sun;
@@ -75,24 +75,24 @@ inline void add_sharp_lamps(Scene& scene) {
   }
 }
 
-/// Of both sides' light.
+/// Reflects light from the viewer's side and transmits light from the other.
 inline std::shared_ptr<const Material> translucent_material() {
   return std::make_shared<const ThroughMaterial>(std::make_shared<Lambert>(0.3f), std::make_shared<Lambert>(0.4f));
 }
 
-/// Committed. Half the floor is a mirror-like neighbour that shines itself.
+/// Committed. Half the floor is a mirror-like neighbor that shines itself.
 inline Scene observed_scene(ObservedLight light, float factor,
                             std::shared_ptr<const Material> observed = highlight_material(10)) {
   Scene scene;
   const auto add = [&scene](Mesh mesh, const Affine& place, SurfaceMaterial material) {
     scene.add_instance(scene.add_mesh(std::move(mesh)), place, {scene.add_material(std::move(material))});
   };
-  add(sphere(24), {}, {std::make_shared<ScaledGrey>(std::move(observed), factor), Rgb(0.0f), false});
+  add(sphere(24), {}, {std::make_shared<ScaledGray>(std::move(observed), factor), Rgb(0.0f), false});
   add(square(4), shift({0, 0, -1}), {std::make_shared<Lambert>(0.7f), Rgb(0.0f), false});
   add(square(0.7f), shift({1.2f, -1.2f, -0.9f}), {std::make_shared<Lambert>(0.3f), {1.5f, 2, 1}, false});
   if (light == ObservedLight::sky) add_sky(scene);
   if (light == ObservedLight::lamps) add_extended_lamps(scene);
-  if (light == ObservedLight::sharp_lamps) add_sharp_lamps(scene);
+  if (light == ObservedLight::delta_lights) add_delta_lights(scene);
   scene.set_camera(Camera::look_at({0, -6, 3}, {0, 0, -0.2f}, {0, 0, 1}, 0.5f, 1));
   scene.commit(2);
   return scene;

@@ -3,9 +3,9 @@
 
 #include <cmath>
 
-#include "brdf/parametric_brdf.h"
+#include "brdf/model/parametric_brdf.h"
 #include "material/material.h"
-#include "srbf/kernel.h"
+#include "math/srbf/kernel.h"
 
 namespace velour::test {
 

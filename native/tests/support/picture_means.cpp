@@ -1,7 +1,7 @@
 #include "support/picture_means.h"
 
 #include "image/picture.h"
-#include "sphere/vec.h"
+#include "math/sphere/vec.h"
 #include "support/artifacts.h"
 
 namespace velour::test {

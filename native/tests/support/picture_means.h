@@ -8,7 +8,7 @@
 namespace velour::test {
 
 /// Luminance of RGBA pictures of one size. Square blocks of `block` pixels and the whole picture are means of their
-/// own, so that neighbouring pixels may be correlated within one render.
+/// own, so that neighboring pixels may be correlated within one render.
 class PictureMeans {
  public:
   PictureMeans(int width, int height, int block);

@@ -4,7 +4,7 @@
 #include <array>
 #include <cmath>
 
-#include "sphere/vec.h"
+#include "math/sphere/vec.h"
 
 namespace velour::test {
 

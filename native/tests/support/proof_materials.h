@@ -1,8 +1,8 @@
 // Materials of known highlights for the proofs of samplers and strategies.
 #pragma once
 
-#include "material/scattered_material.h"
-#include "srbf/kernel.h"
+#include "brdf/eval/per_view_material.h"
+#include "math/srbf/kernel.h"
 #include "support/materials.h"
 #include "support/sampler_proof.h"
 

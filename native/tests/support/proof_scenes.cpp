@@ -1,9 +1,9 @@
 #include "support/proof_scenes.h"
 
-#include "material/parametric_material.h"
-#include "material/principled_material.h"
-#include "sphere/directions.h"
-#include "sphere/random.h"
+#include "brdf/eval/parametric_material.h"
+#include "material/principled/principled_material.h"
+#include "math/sphere/directions.h"
+#include "math/sphere/random.h"
 #include "support/parametric_models.h"
 #include "support/proof_materials.h"
 #include "support/test_scene.h"

@@ -1,8 +1,8 @@
 // Tensors of random numbers, and what definitions say of them.
 #pragma once
 
-#include "sphere/random.h"
-#include "tensor/tucker.h"
+#include "math/sphere/random.h"
+#include "math/tensor/decompositions.h"
 
 namespace velour::test {
 
@@ -18,7 +18,7 @@ inline RowMatrix random_matrix(Index rows, Index columns, uint64_t seed) {
   return Eigen::Map<const RowMatrix>(tensor.data.data(), rows, columns);
 }
 
-/// Of the given ranks exactly.
+/// A random tensor of exactly the given Tucker ranks.
 inline DenseTensor random_tucker(const std::vector<Index>& extents, const std::vector<Index>& ranks, uint64_t seed) {
   Tucker tucker{{}, random_tensor(ranks, seed)};
   for (size_t mode = 0; mode < extents.size(); ++mode) {
@@ -44,7 +44,7 @@ inline double squared_distance(const DenseTensor& a, const DenseTensor& b) {
   return sum;
 }
 
-/// Of orthonormal columns: how far their products are from those.
+/// Largest difference between the dot products of the columns and those of orthonormal columns.
 inline float orthonormality_error(const RowMatrix& m) {
   return (m.transpose() * m - RowMatrix::Identity(m.cols(), m.cols())).cwiseAbs().maxCoeff();
 }

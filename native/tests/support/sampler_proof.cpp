@@ -1,6 +1,6 @@
 #include "support/sampler_proof.h"
 
-#include "sphere/directions.h"
+#include "math/sphere/directions.h"
 
 namespace velour::test {
 

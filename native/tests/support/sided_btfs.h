@@ -7,8 +7,7 @@
 #include <memory>
 #include <vector>
 
-#include "material/srbf_btf_material.h"
-#include "material/tensor_btf_material.h"
+#include "btf/eval/sided_btf_material.h"
 #include "support/example_srbf.h"
 #include "support/glossy_tensor.h"
 

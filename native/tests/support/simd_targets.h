@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "srbf/simd_target.h"
+#include "base/simd.h"
 
 namespace velour::test {
 

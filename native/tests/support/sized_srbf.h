@@ -1,7 +1,7 @@
 // A small BTF of SRBFs whose texels all differ.
 #pragma once
 
-#include "btf/srbf_btf.h"
+#include "btf/model/srbf_btf.h"
 #include "support/example_btf.h"
 
 namespace velour::test {

@@ -1,7 +1,7 @@
 // Skies of few lobes.
 #pragma once
 
-#include "scene/sky_mixture.h"
+#include "light/environment_mixture.h"
 
 namespace velour::test {
 

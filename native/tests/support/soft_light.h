@@ -4,8 +4,8 @@
 #include <cmath>
 #include <functional>
 
-#include "domain/observation.h"
-#include "sphere/random.h"
+#include "math/sphere/random.h"
+#include "usage/observation.h"
 
 namespace velour::test {
 

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "sphere/frame.h"
-#include "sphere/quadrature.h"
+#include "math/sphere/frame.h"
+#include "math/sphere/quadrature.h"
 
 namespace velour::test {
 

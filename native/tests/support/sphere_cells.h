@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "sphere/vec.h"
+#include "math/sphere/vec.h"
 
 namespace velour::test {
 

@@ -1,8 +1,7 @@
 // Uncompressed BTFs made of a formula.
 #pragma once
 
-#include "btf/btf_table.h"
-#include "material/measured_btf_material.h"
+#include "btf/eval/measured_btf_material.h"
 #include "support/memory_btf.h"
 
 namespace velour::test {
@@ -23,7 +22,7 @@ inline PairLayout ringed_layout(bool two_sided = false) {
   return {views, lights};
 }
 
-/// Bright and dark stripes along y that lean with the light, with a highlight about the mirror direction; other colours
+/// Bright and dark stripes along y that lean with the light, with a highlight about the mirror direction; other colors
 /// from below. Never 0.
 inline Rgb striped(const DirectionPair& d, uint32_t x, uint32_t y) {
   const auto column = static_cast<float>(x), row = static_cast<float>(y);

@@ -4,10 +4,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "math/sphere/frame.h"
+#include "math/sphere/warp.h"
 #include "realtime/light_map.h"
 #include "realtime/lobe_rows.h"
-#include "sphere/frame.h"
-#include "sphere/octahedral.h"
 
 namespace velour::test {
 

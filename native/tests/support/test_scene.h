@@ -7,9 +7,9 @@
 #include <vector>
 
 #include "material/material.h"
+#include "math/sphere/warp.h"
 #include "render/render.h"
 #include "scene/scene.h"
-#include "sphere/warp.h"
 
 namespace velour::test {
 

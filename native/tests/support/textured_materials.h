@@ -1,7 +1,7 @@
 // Principled materials that get their parameters from textures.
 #pragma once
 
-#include "material/principled_material.h"
+#include "material/principled/principled_material.h"
 
 namespace velour::test {
 
@@ -10,7 +10,7 @@ TextureSlot<T> one_texel(const T& value) {
   return {std::make_shared<const Texture<T>>(1, 1, std::vector<T>{value}, TextureOptions{}), {}};
 }
 
-/// The material of `p` whose base colour, metallic and roughness come from textures of one texel.
+/// The material of `p` whose base color, metallic and roughness come from textures of one texel.
 inline std::shared_ptr<const Material> textured(const PrincipledParameters& p) {
   PrincipledParameters other = p;
   other.base_color = Rgb(0.123f);

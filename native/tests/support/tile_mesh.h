@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "tile/tile.h"
+#include "capture/tile/tile.h"
 
 namespace velour {
 

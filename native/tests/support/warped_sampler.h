@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "srbf/warped_lobe.h"
+#include "math/srbf/warped_lobe.h"
 #include "support/proof_materials.h"
 
 namespace velour::test {

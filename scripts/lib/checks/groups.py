@@ -65,6 +65,7 @@ def style(run: Run) -> list[Case]:
     found = [
         check(run, "clang-format", "clang-format", "--dry-run", "-Werror", *native),
         check(run, "layers", ROOT / "scripts/check_layers"),
+        check(run, "language", ROOT / "scripts/check_language"),
         check(run, "mutants", ROOT / "scripts/mutants", "--check"),
     ]
     own = ROOT / "build/tools/bin/ruff"

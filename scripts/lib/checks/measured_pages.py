@@ -7,27 +7,29 @@ import subprocess
 from pathlib import Path
 
 _COMMIT = re.compile(r"(?:one run|this page): [0-9-]+,\s+commit\s+([0-9a-f]{7,40})")
-_FITS = ("brdf", "fit", "model", "srbf", "sphere")
-_PICTURES = ("material", "render", "scene", "srbf", "sphere")
-_BTFS = ("btf", "capture", "compress", "tensor", "tile")
+_FITS = ("brdf", "math", "model")
+_PICTURES = ("light", "material", "math", "render", "scene")
+_BTFS = ("btf", "capture", "math")
 # Folders of native/src that the script of each page measures.
 PAGES = {
-    "docs/chart/README.md": _FITS + _PICTURES,
-    "docs/chart_btf.md": _BTFS,
-    "docs/equal_noise.md": _PICTURES,
-    "docs/figures/README.md": _FITS + _PICTURES,
-    "docs/figures/check.md": _FITS + _PICTURES,
-    "docs/fit.md": _FITS,
-    "docs/for_scene.md": (*_FITS, *_PICTURES, "domain"),
-    "docs/ggx.md": _FITS,
-    "docs/measurements.md": ("brdf",),
-    "docs/models.md": _FITS,
-    "docs/perceptual.md": _FITS + _PICTURES,
-    "docs/performance.md": _PICTURES,
-    "docs/principled.md": _FITS,
-    "docs/viewport.md": _PICTURES,
-    "docs/votf_numbers.md": (*_BTFS, *_PICTURES, "votf"),
-    "docs/votf_tables.md": ("votf", "tile"),
+    "docs/results/blender_export.md": ("capi", "scene"),
+    "docs/results/blender_parity.md": _PICTURES,
+    "docs/results/chart/README.md": _FITS + _PICTURES,
+    "docs/results/chart_btf.md": _BTFS,
+    "docs/results/equal_noise.md": _PICTURES,
+    "docs/results/figures/README.md": _FITS + _PICTURES,
+    "docs/results/figures/check.md": _FITS + _PICTURES,
+    "docs/results/fit.md": _FITS,
+    "docs/results/for_scene.md": (*_FITS, *_PICTURES, "usage"),
+    "docs/results/ggx.md": _FITS,
+    "docs/results/measurements.md": ("brdf",),
+    "docs/results/models.md": _FITS,
+    "docs/results/perceptual.md": _FITS + _PICTURES,
+    "docs/results/performance.md": _PICTURES,
+    "docs/results/principled.md": _FITS,
+    "docs/results/viewport.md": _PICTURES,
+    "docs/results/votf_numbers.md": (*_BTFS, *_PICTURES, "votf"),
+    "docs/results/votf_tables.md": ("capture", "votf"),
 }
 
 

@@ -33,13 +33,13 @@ class Header(NamedTuple):
 
 def find(strip: np.ndarray) -> list[Header]:
     """The headers from top to bottom. `strip`: [height x width x 3] bytes, the top row first."""
-    grey = strip.astype(np.float32).mean(axis=2)
-    found = [Header(*place, is_open) for arrow, is_open in _ARROWS for place in _places(grey, arrow)]
+    gray = strip.astype(np.float32).mean(axis=2)
+    found = [Header(*place, is_open) for arrow, is_open in _ARROWS for place in _places(gray, arrow)]
     return sorted(found)
 
 
-def _places(grey: np.ndarray, arrow: np.ndarray) -> list[tuple[int, int]]:
-    windows = np.lib.stride_tricks.sliding_window_view(grey, arrow.shape)
+def _places(gray: np.ndarray, arrow: np.ndarray) -> list[tuple[int, int]]:
+    windows = np.lib.stride_tricks.sliding_window_view(gray, arrow.shape)
     low = windows.min(axis=(2, 3))
     contrast = windows.max(axis=(2, 3)) - low
     likely = contrast > _CONTRAST

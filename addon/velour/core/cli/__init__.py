@@ -1,1 +1,1 @@
-"""The command line: scripts/velour VERB ... (docs/command_line.md). One module per verb."""
+"""The command line: scripts/velour VERB ... (docs/reference/command_line.md). One module per verb."""

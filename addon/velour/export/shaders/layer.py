@@ -40,7 +40,7 @@ class Layer(NamedTuple):
         return self._replace(factors=(*self.factors, factor))
 
 
-def grey():
+def gray():
     """The layer of a surface without a material, or with an unsupported one."""
     return Layer("principled", dict(_USUAL), {})
 

@@ -3,7 +3,7 @@
 from ..newer import has_nodes
 from ..nodes import active_output
 from ..plugs import Plug, fed_by
-from .layer import Factor, black, diffuse, grey, simplified, split
+from .layer import Factor, black, diffuse, gray, simplified, split
 from .readers import READERS
 from .values import Reader
 
@@ -13,7 +13,7 @@ _MOST_LAYERS = 64  # nested mixes with shared shaders can have far more
 def surface_layers(material, notes):
     """The Layers of a material that is not measured; notes what is left out."""
     if material is None:
-        return [grey()]
+        return [gray()]
     if not has_nodes(material):
         return [diffuse(tuple(material.diffuse_color[:3]))]  # the viewport color, as in Cycles
     owner = f"Material '{material.name}'"
@@ -29,7 +29,7 @@ def surface_layers(material, notes):
     layers = simplified(_read(plug, reader))
     if reader.steps_left <= 0 or len(layers) > _MOST_LAYERS:
         notes.add(f"{owner}: mixing more than {_MOST_LAYERS} shaders is not supported; rendered gray.")
-        return [grey()]
+        return [gray()]
     if not _shadows_are_clear(material) and any(
         part.kind == "transparent" for each in layers for part in split(each)
     ):
@@ -58,7 +58,7 @@ def _read(plug, reader):
         reader.notes.add(
             f"{reader.owner}: node '{node.name}' ({node.bl_label}) is not supported; rendered gray."
         )
-        return [grey()]
+        return [gray()]
     return read(plug, reader)
 
 

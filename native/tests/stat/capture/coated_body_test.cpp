@@ -1,13 +1,13 @@
 // Clear surfaces over pigment and flakes, against closed forms of flat ones and against the light that must come back.
-#include "capture/coated_body.h"
+#include "capture/goniometer/coated_body.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "capture/goniometer.h"
-#include "capture/microsurface_brdf.h"
-#include "sphere/directions.h"
+#include "capture/goniometer/goniometer.h"
+#include "capture/goniometer/microsurface_brdf.h"
+#include "math/sphere/directions.h"
 
 namespace velour {
 namespace {
@@ -28,7 +28,7 @@ GoniometerOptions clear_surface(double roughness, const CoatedBody& body) {
 
 CoatedBody pigment(float albedo) { return {kIor, Reflectance({0.0, 1.0}), 0.2, Rgb(albedo), 1.0}; }
 
-/// Of a metal that reflects everything.
+/// Flakes of a metal that reflects everything.
 CoatedBody flakes(double roughness) { return {kIor, Reflectance({0.0, 1.0}), roughness, Rgb(0), 0.0}; }
 
 MicrosurfaceBrdf measured(const GoniometerOptions& options) {
@@ -41,7 +41,7 @@ MicrosurfaceBrdf measured(const GoniometerOptions& options) {
 
 double reflected(double cosine) { return fresnel_reflectance({kIor}, cosine); }
 
-/// Of diffuse light, from air.
+/// Mean reflectance of the surface for diffuse light from air.
 double mean_reflected() {
   double sum = 0;
   for (int i = 0; i < 1000; ++i) sum += 2 * (i + 0.5) / 1000 * reflected((i + 0.5) / 1000) / 1000;

@@ -1,12 +1,12 @@
 // The goniometer against what is known of Gaussian surfaces. Every test has a control that must fail.
-#include "capture/goniometer.h"
+#include "capture/goniometer/goniometer.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <functional>
 
-#include "capture/microsurface_brdf.h"
+#include "capture/goniometer/microsurface_brdf.h"
 #include "support/beckmann.h"
 #include "support/statistics.h"
 

@@ -9,7 +9,7 @@
 #include <string>
 #include <thread>
 
-#include "job/job.h"
+#include "base/job.h"
 #include "support/captured.h"
 #include "support/level.h"
 
@@ -66,7 +66,7 @@ class PeakMemory {
   double before_;
 };
 
-/// Of the processor, a thread: how long a cancel takes where nothing else runs, whatever does.
+/// CPU seconds per hardware thread until a cancelled job stops. Other load on the machine does not count.
 double seconds_to_stop(Job& job) {
   const std::clock_t start = std::clock();
   job.cancel();

@@ -1,9 +1,9 @@
 // Samples over their density against quadrature of the value: the estimator that every render is made of.
 #include "support/albedo.h"
-#include "material/ggx_sampler.h"
-#include "material/parametric_material.h"
-#include "material/principled_material.h"
-#include "sphere/random.h"
+#include "brdf/eval/parametric_material.h"
+#include "material/microfacet/ggx_sampler.h"
+#include "material/principled/principled_material.h"
+#include "math/sphere/random.h"
 #include "support/parametric_models.h"
 #include "support/proof_materials.h"
 #include "support/statistics.h"

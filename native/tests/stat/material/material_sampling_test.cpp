@@ -1,7 +1,7 @@
 // Every material's sampler against the density that it claims: all angles of the view, all widths of the highlight.
-#include "material/ggx_sampler.h"
-#include "material/principled_material.h"
-#include "material/scattered_material.h"
+#include "brdf/eval/per_view_material.h"
+#include "material/microfacet/ggx_sampler.h"
+#include "material/principled/principled_material.h"
 #include "support/lobe_cells.h"
 #include "support/proof_materials.h"
 

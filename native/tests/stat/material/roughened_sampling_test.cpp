@@ -1,7 +1,7 @@
 // Models with wider lobes are sampled as exactly as any: their samples follow the density that they claim.
+#include "math/srbf/widened_lobe.h"
 #include "model/model_material.h"
 #include "model/roughened_model.h"
-#include "srbf/widened_lobe.h"
 #include "support/parametric_models.h"
 #include "support/warped_sampler.h"
 

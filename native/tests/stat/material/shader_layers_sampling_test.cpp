@@ -1,10 +1,10 @@
 // Mixed materials and the lobes of single nodes: samples against their density.
 #include "material/glossy_material.h"
 #include "material/normal_map.h"
-#include "material/principled_material.h"
+#include "material/principled/principled_material.h"
 #include "material/rough_diffuse_material.h"
 #include "material/shader_layers.h"
-#include "sphere/random.h"
+#include "math/sphere/random.h"
 #include "support/proof_materials.h"
 #include "support/statistics.h"
 #include "support/textured_materials.h"

@@ -1,7 +1,7 @@
 // What models of BTFs draw: each sampler against its density, and its samples against quadrature of the value; places,
 // levels and views of both sides.
-#include "sphere/random.h"
-#include "sphere/warp.h"
+#include "math/sphere/random.h"
+#include "math/sphere/warp.h"
 #include "support/albedo.h"
 #include "support/sided_btfs.h"
 #include "support/statistics.h"

@@ -1,9 +1,9 @@
 // The tabulated sampler against the density that it claims.
-#include "material/principled_material.h"
-#include "material/scattered_material.h"
-#include "material/table_sampler.h"
-#include "sphere/random.h"
-#include "sphere/warp.h"
+#include "brdf/eval/per_view_material.h"
+#include "brdf/eval/table_sampler.h"
+#include "material/principled/principled_material.h"
+#include "math/sphere/random.h"
+#include "math/sphere/warp.h"
 #include "support/proof_materials.h"
 #include "support/statistics.h"
 

@@ -1,6 +1,6 @@
 // Samples of materials that let light through: their density over the whole sphere, and what they bring.
-#include "sphere/quadrature.h"
-#include "sphere/random.h"
+#include "math/sphere/quadrature.h"
+#include "math/sphere/random.h"
 #include "support/proof_materials.h"
 #include "support/statistics.h"
 #include "support/through_btfs.h"
@@ -95,8 +95,8 @@ TYPED_TEST(ThroughSampling, ControlADensityFivePercentTooHighBeyondIsSeen) {
 
 /// A share that no side is left without, larger where more comes through.
 TYPED_TEST(ThroughSampling, ShareIsThatOfTheLight) {
-  EXPECT_GT(this->material().share(false), ThroughMaterial::kLeastShare);
-  EXPECT_LT(this->material().share(false), 1 - ThroughMaterial::kLeastShare);
+  EXPECT_GT(this->material().share(false), ThroughMaterial::kMinShare);
+  EXPECT_LT(this->material().share(false), 1 - ThroughMaterial::kMinShare);
   EXPECT_NEAR(this->material().share(false) + this->material().share(true), 1, 0.02);
 }
 

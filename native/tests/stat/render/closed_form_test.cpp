@@ -97,7 +97,7 @@ TEST(ClosedForm, PointLightFallsWithTheSquare) {
   EXPECT_NEAR(mean_of(rendered(scene, small_options(Strategy::uniform, 8))) / expected, 1, 1e-4);
 }
 
-TEST(ClosedForm, ManySharpLampsAreChosenWithoutBias) {
+TEST(ClosedForm, ManyDeltaLightsAreChosenWithoutBias) {
   Scene scene = plane();
   double expected = 0;
   for (int i = 0; i < 12; ++i) {
@@ -190,7 +190,7 @@ TEST(ClosedForm, ContinuingRaysCountTheSkyOnce) {
   EXPECT_NEAR(mean_of(rendered(scene, options)), 0.6, 0.006);
 }
 
-TEST(ClosedForm, WorkingSpaceTurnsMeasuredColoursOnly) {
+TEST(ClosedForm, WorkingSpaceTurnsMeasuredColorsOnly) {
   const Mat3 swap(Vec3(0, 1, 0), Vec3(0, 0, 1), Vec3(1, 0, 0));  // red to green, green to blue, blue to red
   for (bool measured : {false, true}) {
     Scene scene;

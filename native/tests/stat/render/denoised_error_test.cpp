@@ -4,10 +4,10 @@
 #include <cmath>
 #include <cstdlib>
 
+#include "base/error.h"
 #include "denoise/denoiser.h"
 #include "image/picture.h"
-#include "job/error.h"
-#include "render/denoise_film.h"
+#include "render/denoised_target.h"
 #include "support/level.h"
 #include "support/proof_scenes.h"
 #include "support/test_scene.h"

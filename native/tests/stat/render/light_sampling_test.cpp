@@ -1,7 +1,7 @@
 // What the lights' samplers draw against the density of what they can be hit at: each lamp, and all light of a scene.
-#include "render/lamp.h"
-#include "render/lighting.h"
-#include "sphere/random.h"
+#include "math/sphere/random.h"
+#include "render/lights/area_light.h"
+#include "render/lights/lighting.h"
 #include "support/sampler_proof.h"
 #include "support/test_scene.h"
 

@@ -80,11 +80,11 @@ TEST_P(ObservedPicture, ChangesWithFAsARenderDoes) {
 
 TEST(ObservedTranslucency, ChangesWithFAsARenderDoes) {
   expect_changes_as_a_render(ObservedLight::sky, test::translucent_material(), 1);
-  if (test::long_tests()) expect_changes_as_a_render(ObservedLight::sharp_lamps, test::translucent_material(), 1);
+  if (test::long_tests()) expect_changes_as_a_render(ObservedLight::delta_lights, test::translucent_material(), 1);
 }
 
 INSTANTIATE_TEST_SUITE_P(Lights, ObservedPicture,
-                         ::testing::Values(ObservedLight::sky, ObservedLight::lamps, ObservedLight::sharp_lamps));
+                         ::testing::Values(ObservedLight::sky, ObservedLight::lamps, ObservedLight::delta_lights));
 
 }  // namespace
 }  // namespace velour

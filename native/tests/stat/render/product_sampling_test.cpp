@@ -1,8 +1,7 @@
 // The products of a material's lobes with a sky: samples against the density, and the whole strategy where the answer
 // is known.
-#include "render/lights_part.h"
-#include "render/sky_proposals.h"
-#include "scene/sky_misfit.h"
+#include "light/environment_mixture.h"
+#include "render/lights/environment_proposals.h"
 #include "support/level.h"
 #include "support/lobe_cells.h"
 #include "support/proof_materials.h"
@@ -122,7 +121,7 @@ TEST(ProductSampling, ASkyOfBadFitBlursEdges) {
   EXPECT_TRUE(SkyProposals(sky, std::numeric_limits<double>::infinity()).blurs_edges());
 }
 
-// Of a diffuse material that is: a highlight blurs edges itself.
+// Light sampling takes over for diffuse materials only: a highlight blurs edges itself.
 TEST(ProductSampling, LightsTakeOverWhereTheMaterialIsBroad) {
   const auto part = [](float bandwidth, double misfit) {
     Scene scene;

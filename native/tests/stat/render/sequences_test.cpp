@@ -42,9 +42,9 @@ Scene smooth() {
   return scene;
 }
 
-/// Variance of a pixel's green over seeds, mean over the pixels; and correlation between neighbours in a row.
+/// Variance of a pixel's green over seeds, mean over the pixels; and correlation between neighbors in a row.
 struct Spread {
-  double variance, neighbours;
+  double variance, neighbors;
 };
 Spread spread(const Scene& scene, RenderOptions options) {
   constexpr uint64_t kSeeds = 40;
@@ -70,7 +70,7 @@ TEST(Sequences, SobolHasFarLessVarianceWhereTheIntegrandIsSmoothAndPixelsDoNotCo
   options.sequence = Sequence::random;
   const Spread random = spread(scene, options);
   EXPECT_LT(sobol.variance, 0.25 * random.variance);
-  EXPECT_LT(std::abs(sobol.neighbours), 4 / std::sqrt(63.0 * 40));
+  EXPECT_LT(std::abs(sobol.neighbors), 4 / std::sqrt(63.0 * 40));
 }
 
 TEST(Sequences, SobolConvergesFasterThanOneOverN) {

@@ -18,8 +18,8 @@ constexpr float kControl = 1.06f;  // factor of what the sphere reflects
 /// Every shadow ray is traced by itself where any surface is hidden from them: a speck that no ray of the picture
 /// meets.
 Scene with_speck(Scene scene) {
-  const uint32_t grey = scene.add_material({std::make_shared<test::Lambert>(0.5f), Rgb(0.0f), false});
-  scene.add_instance(scene.add_mesh(test::square(0.001f)), test::shift({0, 0, -50}), {grey}, {}, hidden::kFromShadows);
+  const uint32_t gray = scene.add_material({std::make_shared<test::Lambert>(0.5f), Rgb(0.0f), false});
+  scene.add_instance(scene.add_mesh(test::square(0.001f)), test::shift({0, 0, -50}), {gray}, {}, hidden::kFromShadows);
   scene.commit(2);
   return scene;
 }

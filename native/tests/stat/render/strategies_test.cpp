@@ -86,7 +86,7 @@ class Strategies : public ::testing::TestWithParam<ProofCase> {
     return test::independent_renders(scene, options, renders, first_seed);
   }
 
-  /// Of the unchanged scene; its tests share it.
+  /// Means of the unchanged scene, measured once and shared by its tests.
   const PictureMeans& reference(const Scene& scene) const {
     static std::map<ProofScene, PictureMeans> known;
     const auto found = known.find(GetParam().scene);

@@ -2,14 +2,14 @@
 // they look like the geometry that they were captured from.
 #include <gtest/gtest.h>
 
-#include "capture/occlusion_capture.h"
-#include "material/holed_btf_material.h"
-#include "material/measured_btf_material.h"
-#include "sphere/frame.h"
+#include "btf/eval/measured_btf_material.h"
+#include "btf/eval/sided_btf_material.h"
+#include "math/sphere/frame.h"
 #include "support/captured.h"
 #include "support/level.h"
 #include "support/strategy_agreement.h"
 #include "support/through_btfs.h"
+#include "votf/capture/votf_capture.h"
 
 namespace velour {
 namespace {

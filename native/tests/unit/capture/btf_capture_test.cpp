@@ -1,4 +1,4 @@
-#include "capture/btf_capture.h"
+#include "capture/btf/btf_capture.h"
 
 #include <gtest/gtest.h>
 
@@ -9,7 +9,7 @@
 #include <limits>
 #include <thread>
 
-#include "job/job.h"
+#include "base/job.h"
 #include "support/captured.h"
 
 namespace velour {

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "material/principled_material.h"
+#include "material/principled/principled_material.h"
 #include "support/captured.h"
 
 namespace velour {
@@ -43,7 +43,7 @@ TEST(CaptureFailures, TexelsOfATextureThatAreNoNumbersAreBlackAndAlone) {
   EXPECT_NEAR(broken.green(0, 15), 0.5f / kPi, 1e-3f);
 }
 
-TEST(CaptureFailures, WithoutTextureCoordinatesATextureHasOneColour) {
+TEST(CaptureFailures, WithoutTextureCoordinatesATextureHasOneColor) {
   const Captured captured(*tile_of(square(false), painted(Rgb(0.25f), Rgb(0.5f))), small_capture({{0, 0}}, {{30, 0}}),
                           "unmapped");
   for (size_t t = 0; t < captured.texels; ++t) EXPECT_EQ(captured.green(0, t), captured.green(0, 0));

@@ -1,16 +1,16 @@
-#include "capture/data_occlusion.h"
+#include "votf/capture/data_votf.h"
 
 #include <gtest/gtest.h>
 
 #include <filesystem>
 #include <fstream>
 
-#include "btf/direction_sets.h"
-#include "btf/load_btf.h"
-#include "capture/traced_mask.h"
+#include "btf/formats/load_btf.h"
+#include "btf/measure/pair_layout.h"
+#include "capture/tile/tile.h"
 #include "image/picture.h"
 #include "support/captured.h"
-#include "tile/tile.h"
+#include "votf/capture/votf_capture.h"
 
 namespace velour {
 namespace {
@@ -38,7 +38,7 @@ struct CapturedTile {
     btf = load_btf(folder.path());
   }
 
-  /// Share of texel centres and unseen views whose visibility the volume gets wrong.
+  /// Share of texel centers and unseen views whose visibility the volume gets wrong.
   double wrong(const OcclusionVolume& volume) const {
     const ShellField field(std::make_shared<const OcclusionVolume>(volume));
     const RepeatedTile repeated(*scene, {{0, 0}, tile.period}, 2);

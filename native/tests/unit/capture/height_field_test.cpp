@@ -1,4 +1,4 @@
-#include "capture/height_field.h"
+#include "capture/goniometer/height_field.h"
 
 #include <gtest/gtest.h>
 
@@ -76,7 +76,7 @@ TEST(HeightField, FacetSlopesHaveTheRoughnessAskedFor) {
     const double alpha_y = alpha / anisotropy;
     EXPECT_NEAR(std::sqrt(2 * x_sq / count), alpha, 0.01 * alpha);
     EXPECT_NEAR(std::sqrt(2 * y_sq / count), alpha_y, 0.01 * alpha_y);
-    // Of all facets together the roughness is exact.
+    // The roughness of all facets together, along both axes, is exact.
     EXPECT_NEAR((x_sq / (alpha * alpha) + y_sq / (alpha_y * alpha_y)) / count, 1, 1e-5);
     EXPECT_NEAR(x_fourth * count / (x_sq * x_sq), 3, 0.1);
     EXPECT_NEAR(cross / std::sqrt(x_sq * y_sq), 0, 0.02);
@@ -88,7 +88,7 @@ TEST(Patches, CoverTheirShareExactly) {
     const std::vector<uint8_t> patches = make_patches(64, 8, share, 1, 9);
     EXPECT_EQ(std::count(patches.begin(), patches.end(), 1), std::lround(share * 64 * 64));
   }
-  // Patches, not noise: a marked cell's neighbour is marked far more often than the share says.
+  // Patches, not noise: a marked cell's neighbor is marked far more often than the share says.
   const std::vector<uint8_t> patches = make_patches(64, 8, 0.5, 1, 9);
   int both = 0;
   for (size_t i = 0; i + 1 < patches.size(); ++i) both += patches[i] & patches[i + 1];

@@ -1,12 +1,12 @@
-#include "capture/light_kernels.h"
+#include "capture/btf/light_kernels.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <limits>
 
-#include "sphere/directions.h"
-#include "sphere/random.h"
+#include "math/sphere/directions.h"
+#include "math/sphere/random.h"
 #include "support/simd_targets.h"
 
 namespace velour {

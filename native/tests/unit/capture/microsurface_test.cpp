@@ -1,4 +1,4 @@
-#include "capture/microsurface.h"
+#include "capture/goniometer/microsurface.h"
 
 #include <gtest/gtest.h>
 
@@ -7,9 +7,9 @@
 #include <filesystem>
 #include <thread>
 
-#include "brdf/measurement.h"
-#include "file/file.h"
-#include "sphere/directions.h"
+#include "base/file.h"
+#include "brdf/measure/measurement.h"
+#include "math/sphere/directions.h"
 #include "support/test_data.h"
 
 namespace velour {
@@ -102,7 +102,7 @@ TEST(Microsurface, WritesATableWithBothAzimuths) {
   EXPECT_GT(f[0].r, 10 * f[1].r);
 }
 
-TEST(Microsurface, ABareBaseHasItsColourAlone) {
+TEST(Microsurface, ABareBaseHasItsColorAlone) {
   const std::string path = (test::scratch_folder() / "base.binary").string();
   MicrosurfaceOptions options = quick();
   options.base_share = 1;
@@ -113,7 +113,7 @@ TEST(Microsurface, ABareBaseHasItsColourAlone) {
   for (int c = 0; c < 3; ++c) EXPECT_NEAR(report.albedo[c], static_cast<double>(options.base_albedo[c]), 0.02);
 }
 
-TEST(Microsurface, ACoatedBaseHasItsColourBelowAGreyHighlight) {
+TEST(Microsurface, ACoatedBaseHasItsColorBelowAGrayHighlight) {
   const std::string path = (test::scratch_folder() / "plastic.binary").string();
   MicrosurfaceOptions options = quick();
   options.ior = 1.5;

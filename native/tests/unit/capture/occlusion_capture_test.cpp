@@ -1,11 +1,11 @@
-#include "capture/occlusion_capture.h"
+#include "votf/capture/votf_capture.h"
 
 #include <gtest/gtest.h>
 
+#include "capture/tile/tile.h"
 #include "support/captured.h"
 #include "support/materials.h"
-#include "tile/tile.h"
-#include "votf/shell_trace.h"
+#include "votf/eval/shell_trace.h"
 
 namespace velour {
 namespace {

@@ -1,12 +1,12 @@
-#include "capture/pair_grid.h"
+#include "capture/goniometer/pair_grid.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <numeric>
 
-#include "sphere/random.h"
-#include "sphere/warp.h"
+#include "math/sphere/random.h"
+#include "math/sphere/warp.h"
 
 namespace velour {
 namespace {

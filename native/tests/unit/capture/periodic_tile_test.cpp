@@ -1,10 +1,10 @@
-#include "capture/periodic_tile.h"
+#include "capture/goniometer/periodic_tile.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "sphere/random.h"
+#include "math/sphere/random.h"
 
 namespace velour {
 namespace {

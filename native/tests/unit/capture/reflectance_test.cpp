@@ -1,12 +1,12 @@
-#include "capture/reflectance.h"
+#include "capture/goniometer/coated_body.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <complex>
 
-#include "capture/metals.h"
-#include "job/error.h"
+#include "base/error.h"
+#include "capture/goniometer/microsurface.h"
 
 namespace velour {
 namespace {
@@ -68,7 +68,7 @@ double largest_difference(const Rgb& a, const Rgb& b) {
   return static_cast<double>(std::max({std::abs(a.r - b.r), std::abs(a.g - b.g), std::abs(a.b - b.b)}));
 }
 
-TEST(Metals, AreOfTheirPublishedColours) {
+TEST(Metals, AreOfTheirPublishedColors) {
   // [AHH18 Table 9.2], of other samples: published reflectances of one metal differ by some hundredths, those of
   // titanium and iron, whose films corrode, by a tenth.
   const struct {

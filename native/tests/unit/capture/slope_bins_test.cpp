@@ -1,10 +1,10 @@
-#include "capture/slope_bins.h"
+#include "capture/goniometer/bins.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "sphere/random.h"
+#include "math/sphere/random.h"
 
 namespace velour {
 namespace {
@@ -44,7 +44,7 @@ TEST_P(SlopeBinsOf, RecoverADensity) {
 
 INSTANTIATE_TEST_SUITE_P(Anisotropy, SlopeBinsOf, testing::Values(1.0f, 5.0f));
 
-TEST(SlopeBins, AFewFacetsAreSpreadOverNeighbours) {
+TEST(SlopeBins, AFewFacetsAreSpreadOverNeighbors) {
   const SlopeBins bins(0.2, 0.2);
   std::vector<double> counts(bins.size(), 0.0);
   for (int i = 0; i < 10; ++i) bins.deposit({0.6f, 0.0f}, counts);

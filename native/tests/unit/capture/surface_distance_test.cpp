@@ -1,11 +1,11 @@
-#include "capture/surface_distance.h"
+#include "votf/capture/surface_distance.h"
 
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
 
 #include <cmath>
 
-#include "sphere/random.h"
+#include "math/sphere/random.h"
 
 namespace velour {
 namespace {
@@ -70,7 +70,7 @@ TEST(SurfaceDistance, IsThatOfTheNearestTriangleOfAllPeriods) {
     if (expected < 0.05f) worst_near = std::max(worst_near, error);
   }
   EXPECT_LT(worst_near, 1e-5f);
-  EXPECT_LT(worst, 0.1f * grid.step.x) << "handed on from neighbour to neighbour";
+  EXPECT_LT(worst, 0.1f * grid.step.x) << "handed on from neighbor to neighbor";
 }
 
 float worst_distance(const Vec3& normal, const std::vector<float>& level, const std::vector<float>& found) {
@@ -126,7 +126,7 @@ TEST(SurfaceDistance, OfASphereIsThatOfItsTangentPlanes) {
     if (truth < 3) beyond = std::max(beyond, error);
   }
   EXPECT_LT(near, 0.06f);
-  EXPECT_LT(beyond, 0.4f) << "handed on from neighbour to neighbour";
+  EXPECT_LT(beyond, 0.4f) << "handed on from neighbor to neighbor";
 }
 
 TEST(SurfaceDistance, CanBeCancelled) {

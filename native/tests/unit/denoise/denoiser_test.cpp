@@ -7,7 +7,7 @@
 #include <cstdlib>
 #include <vector>
 
-#include "sphere/random.h"
+#include "math/sphere/random.h"
 
 namespace velour {
 namespace {

@@ -1,5 +1,5 @@
 // The error that two halves tell of a denoised picture, with a filter whose true error is known: the mean over
-// neighbours.
+// neighbors.
 #include "denoise/halves.h"
 
 #include <gtest/gtest.h>
@@ -7,7 +7,7 @@
 #include <cmath>
 #include <vector>
 
-#include "sphere/random.h"
+#include "math/sphere/random.h"
 
 namespace velour {
 namespace {

@@ -1,9 +1,9 @@
 // The choice of an OpenEXR file's channels, by their names.
-#include "image/exr_colors.h"
+#include "image/formats/exr_picture.h"
 
 #include <gtest/gtest.h>
 
-#include "job/error.h"
+#include "base/error.h"
 #include "support/inputs.h"
 
 namespace velour {
@@ -29,7 +29,7 @@ class ChosenColors : public testing::TestWithParam<Case> {};
 TEST_P(ChosenColors, GoByNames) {
   const Case& c = GetParam();
   const ExrColors found = choose_exr_colors(c.channels, c.layer, "a.exr");
-  Names chosen(found.names.begin(), c.kind == Kind::grey ? found.names.begin() + 1 : found.names.end());
+  Names chosen(found.names.begin(), c.kind == Kind::gray ? found.names.begin() + 1 : found.names.end());
   if (!found.alpha.empty()) chosen.push_back(found.alpha);
   EXPECT_EQ(found.kind, c.kind);
   EXPECT_EQ(chosen, c.chosen);
@@ -52,11 +52,11 @@ INSTANTIATE_TEST_SUITE_P(
         Case{kSky, "Sky", Kind::rgb, {"sky.red", "sky.green", "sky.blue"}},
         Case{{"A", "AO.B", "AO.G", "AO.R", "B", "G", "R", "depth.Z"}, "", Kind::rgb, {"R", "G", "B", "A"}},
         Case{{"A", "AO.B", "AO.G", "AO.R", "B", "G", "R", "depth.Z"}, "AO", Kind::rgb, {"AO.R", "AO.G", "AO.B"}},
-        Case{{"AO.R", "B", "G", "R", "depth.Z"}, "depth", Kind::grey, {"depth.Z"}},
-        Case{{"AO.R", "B", "G", "R", "depth.Z"}, "Depth.z", Kind::grey, {"depth.Z"}},
-        Case{{"Y"}, "", Kind::grey, {"Y"}}, Case{{"A", "Y"}, "", Kind::grey, {"Y", "A"}},
+        Case{{"AO.R", "B", "G", "R", "depth.Z"}, "depth", Kind::gray, {"depth.Z"}},
+        Case{{"AO.R", "B", "G", "R", "depth.Z"}, "Depth.z", Kind::gray, {"depth.Z"}},
+        Case{{"Y"}, "", Kind::gray, {"Y"}}, Case{{"A", "Y"}, "", Kind::gray, {"Y", "A"}},
         Case{{"BY", "RY", "Y"}, "", Kind::luminance_chroma, {"RY", "Y", "BY"}},
-        Case{{"X", "Y", "Z"}, "", Kind::rgb, {"X", "Y", "Z"}}, Case{{"height"}, "", Kind::grey, {"height"}},
+        Case{{"X", "Y", "Z"}, "", Kind::rgb, {"X", "Y", "Z"}}, Case{{"height"}, "", Kind::gray, {"height"}},
         Case{{"G", "R"}, "", Kind::rgb, {"R", "G", ""}},
         Case{kBlender,
              "",

@@ -1,5 +1,5 @@
 // Parts of pictures as OpenEXR files: where they lie, and what their headers say.
-#include "image/exr_part.h"
+#include "image/formats/exr_part.h"
 
 #include <gtest/gtest.h>
 
@@ -7,9 +7,9 @@
 #include <cstring>
 #include <filesystem>
 
-#include "file/file.h"
-#include "image/exr_header_check.h"
-#include "job/error.h"
+#include "base/error.h"
+#include "base/file.h"
+#include "image/formats/exr_header_check.h"
 #include "support/test_data.h"
 
 namespace velour {

@@ -1,4 +1,4 @@
-#include "image/exr_tensors.h"
+#include "image/tensors/exr_tensors.h"
 
 #include <gtest/gtest.h>
 #include <OpenEXR/ImfHeader.h>
@@ -14,8 +14,8 @@
 #include <limits>
 #include <map>
 
-#include "image/exr_scan.h"
-#include "job/error.h"
+#include "base/error.h"
+#include "image/formats/exr_scan.h"
 
 namespace velour {
 namespace {
@@ -32,7 +32,7 @@ TensorFile sample_file() {
   TensorFile file;
   file.attributes = {{"velour.kind", "test"}, {"velour.note", "Grüße"}};
   file.tensors = {{"cube", ramp({4, 5, 6})}, {"lobes.center", ramp({7, 3})},
-                  {"one", ramp({})},         {"rows.of.colour", ramp({2, 40, 9, 3})},
+                  {"one", ramp({})},         {"rows.of.color", ramp({2, 40, 9, 3})},
                   {"tall", ramp({100, 1})},  {"wide", ramp({1000})}};
   file.tensors["small"] = {{2, 2}, {1, 0.5f, -3, 1024}, Precision::halves};
   return file;
@@ -226,15 +226,15 @@ TEST(ExrTensors, TheFirstPartCoversAllOthersWhereOneDoes) {
 
 TEST(ExrTensors, OnlyPartsWithinTheFirstOneAreForViewers) {
   TensorFile file = sample_file();  // none covers all others; the first is "cube": 6 x 20 pixels
-  file.tensors["small.colour"] = ramp({5, 3});
+  file.tensors["small.color"] = ramp({5, 3});
   const auto bytes = encode_tensors(file);
   std::map<std::string, std::vector<std::string>> channels;
   for (const ExrPart& part : scan_exr(bytes, "test")) channels[part.name] = part.channels;
   using Texts = std::vector<std::string>;
   for (const char* shown : {"cube", "one", "small"}) EXPECT_EQ(channels.at(shown), Texts{"Y"}) << shown;
-  EXPECT_EQ(channels.at("small.colour"), (Texts{"B", "G", "R"}));
+  EXPECT_EQ(channels.at("small.color"), (Texts{"B", "G", "R"}));
   for (const char* hidden : {"tall", "wide"}) EXPECT_EQ(channels.at(hidden), Texts{"value"}) << hidden;
-  for (const char* hidden : {"lobes.center", "rows.of.colour"}) {
+  for (const char* hidden : {"lobes.center", "rows.of.color"}) {
     EXPECT_EQ(channels.at(hidden), (Texts{"value_x", "value_y", "value_z"})) << hidden;
   }
 }

@@ -22,9 +22,9 @@
 #include <limits>
 #include <map>
 
-#include "file/file.h"
+#include "base/error.h"
+#include "base/file.h"
 #include "image/picture.h"
-#include "job/error.h"
 #include "support/inputs.h"
 #include "support/test_data.h"
 

@@ -3,11 +3,11 @@
 
 #include <algorithm>
 
-#include "file/file.h"
-#include "image/exif_orientation.h"
+#include "base/error.h"
+#include "base/file.h"
+#include "image/orientation.h"
 #include "image/picture.h"
 #include "image/picture_format.h"
-#include "job/error.h"
 #include "support/inputs.h"
 #include "support/test_data.h"
 

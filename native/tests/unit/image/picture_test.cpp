@@ -7,8 +7,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "file/file.h"
-#include "job/error.h"
+#include "base/error.h"
+#include "base/file.h"
 #include "support/test_data.h"
 
 namespace velour {
@@ -144,7 +144,7 @@ TEST(Picture, RefusalsAreOneLine) {
   EXPECT_GT(refused, 5);
 }
 
-/// 16 x 8 grey pixels made by libjpeg: the upper half 200, the lower 40 of 255.
+/// 16 x 8 gray pixels made by libjpeg: the upper half 200, the lower 40 of 255.
 const std::vector<uint8_t> kJpeg = [] {
   const std::string_view digits =
       "ffd8ffdb0043000201010101010201010102020202020403020202020504040304060506060605060606070908060709070606080b08090a"

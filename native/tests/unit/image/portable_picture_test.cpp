@@ -12,12 +12,12 @@
 
 #include <functional>
 
-#include "file/file.h"
-#include "file/private_library.h"
+#include "base/error.h"
+#include "base/file.h"
+#include "base/private_library.h"
 #include "image/open_picture.h"
-#include "image/openimageio_module.h"
-#include "job/error.h"
-#include "sphere/random.h"
+#include "image/openimageio/openimageio_module.h"
+#include "math/sphere/random.h"
 #include "support/inputs.h"
 #include "support/test_data.h"
 
@@ -216,18 +216,18 @@ std::string written(const TiffCase& c) {
 }
 
 TEST(PortablePicture, TiffIsThatOfOpenImageIo) {
-  constexpr uint16_t kGrey = PHOTOMETRIC_MINISBLACK, kRgb = PHOTOMETRIC_RGB;
-  const TiffCase kRgb8("rgb 8", kRgb, 3, 8), kRgb16("rgb 16", kRgb, 3, 16), kGrey2("grey and more", kGrey, 2, 8);
+  constexpr uint16_t kGray = PHOTOMETRIC_MINISBLACK, kRgb = PHOTOMETRIC_RGB;
+  const TiffCase kRgb8("rgb 8", kRgb, 3, 8), kRgb16("rgb 16", kRgb, 3, 16), kGray2("gray and more", kGray, 2, 8);
   const std::vector<TiffCase> cases = {
-      {"grey 1", kGrey, 1, 1},
-      {"grey 4", kGrey, 1, 4},
-      {"grey 8", kGrey, 1, 8},
-      {"grey 12", kGrey, 1, 12},
-      {"grey 16", kGrey, 1, 16},
-      {"grey 32", kGrey, 1, 32},
-      TiffCase("grey signed 16", kGrey, 1, 16).numbers(SAMPLEFORMAT_INT),
-      kGrey2.with_extra(EXTRASAMPLE_UNASSALPHA),
-      kGrey2.with_extra(EXTRASAMPLE_UNSPECIFIED),
+      {"gray 1", kGray, 1, 1},
+      {"gray 4", kGray, 1, 4},
+      {"gray 8", kGray, 1, 8},
+      {"gray 12", kGray, 1, 12},
+      {"gray 16", kGray, 1, 16},
+      {"gray 32", kGray, 1, 32},
+      TiffCase("gray signed 16", kGray, 1, 16).numbers(SAMPLEFORMAT_INT),
+      kGray2.with_extra(EXTRASAMPLE_UNASSALPHA),
+      kGray2.with_extra(EXTRASAMPLE_UNSPECIFIED),
       {"white is zero 1", PHOTOMETRIC_MINISWHITE, 1, 1},
       {"white is zero 8", PHOTOMETRIC_MINISWHITE, 1, 8},
       {"palette 1", PHOTOMETRIC_PALETTE, 1, 1},
@@ -257,7 +257,7 @@ TEST(PortablePicture, TiffIsThatOfOpenImageIo) {
     expect_same(written(c), "tiff", std::string(c.name) + ", compression " + std::to_string(c.compression));
   }
   test::record_input("TIFF",
-                     "grey, RGB, palette, CMYK, YCbCr, Lab; 1 to 32 bits, half, float, double; strips, tiles, "
+                     "gray, RGB, palette, CMYK, YCbCr, Lab; 1 to 32 bits, half, float, double; strips, tiles, "
                      "planes; both byte orders; LZW, DEFLATE, PackBits, Zstandard, LZMA, JPEG",
                      "read, by both builds alike");
 }
@@ -333,7 +333,7 @@ std::string written(const JpegCase& c) {
 
 TEST(PortablePicture, JpegIsThatOfOpenImageIo) {
   const JpegCase kCases[] = {
-      {"grey", 1, JCS_GRAYSCALE, JCS_GRAYSCALE},
+      {"gray", 1, JCS_GRAYSCALE, JCS_GRAYSCALE},
       {"444", 3, JCS_RGB, JCS_YCbCr},
       {"420", 3, JCS_RGB, JCS_YCbCr, 2},
       {"420 progressive", 3, JCS_RGB, JCS_YCbCr, 2, true},
@@ -343,7 +343,7 @@ TEST(PortablePicture, JpegIsThatOfOpenImageIo) {
       {"ycck", 4, JCS_CMYK, JCS_YCCK, 2},
   };
   for (const JpegCase& c : kCases) expect_same(written(c), "jpeg", c.name);
-  test::record_input("JPEG", "grey, YCbCr, RGB, CMYK, YCCK; subsampled, progressive, with restarts",
+  test::record_input("JPEG", "gray, YCbCr, RGB, CMYK, YCCK; subsampled, progressive, with restarts",
                      "read, by both builds alike");
 }
 
@@ -401,7 +401,7 @@ TEST(PortablePicture, PngIsThatOfOpenImageIo) {
                 "type " + std::to_string(c.color_type) + ", " + std::to_string(c.bits) + " bits" +
                     (c.is_interlaced ? ", interlaced" : "") + (c.has_transparency ? ", tRNS" : ""));
   }
-  test::record_input("PNG", "grey, palette, RGB, with alpha or tRNS; 1 to 16 bits, interlaced",
+  test::record_input("PNG", "gray, palette, RGB, with alpha or tRNS; 1 to 16 bits, interlaced",
                      "read, by both builds alike");
 }
 

@@ -4,9 +4,9 @@
 #include <array>
 #include <cmath>
 
-#include "file/file.h"
+#include "base/error.h"
+#include "base/file.h"
 #include "image/picture.h"
-#include "job/error.h"
 #include "support/inputs.h"
 #include "support/test_data.h"
 

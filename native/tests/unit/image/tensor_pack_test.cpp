@@ -1,4 +1,4 @@
-#include "image/tensor_pack.h"
+#include "image/tensors/tensor_pack.h"
 
 #include <gtest/gtest.h>
 
@@ -8,10 +8,9 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
-#include "image/map_rest.h"
-#include "image/zlib_stream.h"
-#include "job/error.h"
-#include "sphere/random.h"
+#include "base/error.h"
+#include "image/tensors/zlib_stream.h"
+#include "math/sphere/random.h"
 
 namespace velour {
 namespace {
@@ -89,7 +88,7 @@ TEST(TensorPack, MapsOfEverySizeKeepTheirBytes) {
   }
 }
 
-TEST(TensorPack, MapsTakeWhatNeighboursDoNotTell) {
+TEST(TensorPack, MapsTakeWhatNeighborsDoNotTell) {
   const Tensor maps = maps_of_bytes(64, 64);
   const auto size = [&](size_t map, Precision precision) {
     TensorFile file;

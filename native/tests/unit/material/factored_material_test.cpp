@@ -1,4 +1,4 @@
-#include "material/factored_material.h"
+#include "btf/eval/factored_material.h"
 
 #include <gtest/gtest.h>
 
@@ -6,7 +6,7 @@
 #include <memory>
 #include <numeric>
 
-#include "sphere/directions.h"
+#include "math/sphere/directions.h"
 #include "support/example_btf.h"
 #include "support/simd_targets.h"
 

@@ -1,9 +1,9 @@
-#include "material/ggx_albedo.h"
+#include "material/microfacet/ggx_albedo.h"
 
 #include <gtest/gtest.h>
 
-#include "material/ggx.h"
-#include "material/specular_albedo.h"
+#include "material/microfacet/ggx.h"
+#include "material/microfacet/ggx_sampler.h"
 
 namespace velour {
 namespace {

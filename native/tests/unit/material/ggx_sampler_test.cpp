@@ -1,10 +1,10 @@
-#include "material/ggx_sampler.h"
+#include "material/microfacet/ggx_sampler.h"
 
 #include <gtest/gtest.h>
 
-#include "material/ggx.h"
-#include "sphere/directions.h"
-#include "sphere/warp.h"
+#include "material/microfacet/ggx.h"
+#include "math/sphere/directions.h"
+#include "math/sphere/warp.h"
 #include "support/materials.h"
 #include "support/simd_targets.h"
 

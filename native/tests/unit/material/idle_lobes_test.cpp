@@ -1,10 +1,10 @@
-#include "material/idle_lobes.h"
+#include "brdf/eval/parametric_nodes.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "srbf/warped_lobe.h"
+#include "math/srbf/warped_lobe.h"
 
 namespace velour {
 namespace {

@@ -1,14 +1,14 @@
 // What Filter Glossy and Reflective Caustics leave of materials, and which samples count as diffuse light.
-#include "material/lobe_filter.h"
+#include "material/surface_site.h"
 
 #include <gtest/gtest.h>
 
 #include "material/glossy_material.h"
 #include "material/normal_map.h"
-#include "material/principled_material.h"
+#include "material/principled/principled_material.h"
 #include "material/rough_diffuse_material.h"
 #include "material/shader_layers.h"
-#include "sphere/random.h"
+#include "math/sphere/random.h"
 #include "support/materials.h"
 
 namespace velour {

@@ -1,9 +1,9 @@
-#include "material/measured_btf_material.h"
+#include "btf/eval/measured_btf_material.h"
 
 #include <gtest/gtest.h>
 
-#include "sphere/directions.h"
-#include "sphere/warp.h"
+#include "math/sphere/directions.h"
+#include "math/sphere/warp.h"
 #include "support/striped_btf.h"
 
 namespace velour {
@@ -60,7 +60,7 @@ TEST(MeasuredBtfMaterial, IsLinearBetweenTexels) {
   expect_same(at(0, 0.5f / kHeight), {2.5f, 0, 1}, 1e-4f);  // across the border: half of the last, half of the first
 }
 
-/// Of a BTF that is 1 for one pair alone one sees the weights of its view and its light.
+/// A BTF that is 1 for one pair alone shows the weights of its view and its light.
 TEST(MeasuredBtfMaterial, IsBarycentricBetweenDirections) {
   const PairLayout layout = test::ringed_layout();
   const PairInterpolation between(layout);

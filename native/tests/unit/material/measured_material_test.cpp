@@ -1,7 +1,7 @@
 #include <gtest/gtest.h>
 
-#include "material/parametric_material.h"
-#include "material/scattered_material.h"
+#include "brdf/eval/parametric_material.h"
+#include "brdf/eval/per_view_material.h"
 #include "support/materials.h"
 #include "support/parametric_models.h"
 

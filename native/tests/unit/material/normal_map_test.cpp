@@ -3,9 +3,9 @@
 #include <gtest/gtest.h>
 
 #include "material/glossy_material.h"
-#include "material/principled_material.h"
-#include "sphere/random.h"
-#include "sphere/warp.h"
+#include "material/principled/principled_material.h"
+#include "math/sphere/random.h"
+#include "math/sphere/warp.h"
 #include "support/materials.h"
 #include "support/textured_materials.h"
 
@@ -116,7 +116,7 @@ TEST(NormalMap, ABaseIsDimmedAboutTheNormalOfTheLobe) {
   EXPECT_GT(std::abs(unturned / f_of(*base, direction(std::acos(glm::dot(turned, wv)), 0), {0, 0, 1}) - 1), 0.05f);
 }
 
-/// Of light that is low, and of a view whose mirror image would be below the ground.
+/// The light is low, and the mirror image of the view would be below the ground.
 TEST(NormalMap, CorrectionsDiffer) {
   const Vec3 normal = direction(0.9f, 0), low = direction(1.5f, 0), wv = direction(1.2f, kPi);
   ASSERT_GT(glm::dot(with_mirror_above(normal, {0, 0, 1}, wv), {0, 0, 1}), normal.z + 0.1f);

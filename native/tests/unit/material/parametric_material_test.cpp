@@ -1,8 +1,8 @@
-#include "material/parametric_material.h"
+#include "brdf/eval/parametric_material.h"
 
 #include <gtest/gtest.h>
 
-#include "job/error.h"
+#include "base/error.h"
 #include "support/materials.h"
 #include "support/mixtures.h"
 #include "support/parametric_models.h"

@@ -1,12 +1,12 @@
-#include "material/parametric_table.h"
+#include "brdf/eval/parametric_table.h"
 
 #include <gtest/gtest.h>
 
-#include "material/idle_lobes.h"
-#include "material/parametric_material.h"
-#include "sphere/directions.h"
-#include "sphere/random.h"
-#include "srbf/plain_draws.h"
+#include "brdf/eval/parametric_material.h"
+#include "brdf/eval/parametric_nodes.h"
+#include "math/sphere/directions.h"
+#include "math/sphere/random.h"
+#include "math/srbf/plain_draws.h"
 #include "support/materials.h"
 #include "support/parametric_models.h"
 #include "support/simd_targets.h"
@@ -81,7 +81,7 @@ TEST(ParametricTable, IsTheModelToAThousandth) {
   });
 }
 
-/// What f of the table lacks, as idle_lobes.h measures it.
+/// What f of the table lacks, as parametric_nodes.h measures it.
 struct Lost {
   double albedo = 0, norm = 0, value = 0;
 
@@ -138,7 +138,7 @@ TEST(ParametricTable, LeavesOutTheNormalAndAnisotropicModels) {
   EXPECT_EQ(anisotropic.table.bytes(), 0u);
 }
 
-// Of 16 lobes; half as much of 8.
+// The table has 16 lobes; one with 8 lobes takes half as much.
 TEST(ParametricTable, FitsTheSecondCache) {
   const std::vector<LobeRecipe> lobes(16, {LobeSpace::light, 3, Rgb(0.01f)});
   EXPECT_LT(Both(test::parametric_model(true, lobes)).table.bytes(), 180'000u);

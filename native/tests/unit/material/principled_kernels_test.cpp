@@ -5,9 +5,9 @@
 #include <optional>
 #include <vector>
 
-#include "material/ggx_albedo.h"
-#include "material/principled_material.h"
-#include "sphere/directions.h"
+#include "material/microfacet/ggx_albedo.h"
+#include "material/principled/principled_material.h"
+#include "math/sphere/directions.h"
 #include "support/simd_targets.h"
 
 namespace velour {

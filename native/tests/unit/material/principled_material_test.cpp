@@ -1,11 +1,11 @@
-#include "material/principled_material.h"
+#include "material/principled/principled_material.h"
 
 #include <gtest/gtest.h>
 
-#include "material/ggx.h"
-#include "material/ggx_albedo.h"
-#include "material/specular_albedo.h"
-#include "sphere/quadrature.h"
+#include "material/microfacet/ggx.h"
+#include "material/microfacet/ggx_albedo.h"
+#include "material/microfacet/ggx_sampler.h"
+#include "math/sphere/quadrature.h"
 #include "support/materials.h"
 
 namespace velour {

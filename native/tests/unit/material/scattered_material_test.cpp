@@ -1,10 +1,10 @@
-#include "material/scattered_material.h"
+#include "brdf/eval/per_view_material.h"
 
 #include <gtest/gtest.h>
 
-#include "job/error.h"
-#include "material/scattered_lobes.h"
-#include "sphere/frame.h"
+#include "base/error.h"
+#include "brdf/eval/per_view_lobes.h"
+#include "math/sphere/frame.h"
 #include "support/materials.h"
 #include "support/mixtures.h"
 
@@ -23,7 +23,7 @@ float largest_difference(const Rgb& a, const Rgb& b) {
   return std::max({d.r, d.g, d.b});
 }
 
-/// f cos of one slice of the model, in double and without any neighbours.
+/// f cos of one slice of the model, in double and without any neighbors.
 Rgb slice_value(const ScatteredBrdf& brdf, size_t view, const Vec3& wl) {
   Vec3d sum = Vec3d(brdf.diffuse[view]) * static_cast<double>(std::max(wl.z, 0.0f));
   for (uint32_t j = brdf.first_lobe[view]; j < brdf.first_lobe[view + 1]; ++j) {

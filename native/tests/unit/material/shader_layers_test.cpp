@@ -1,12 +1,12 @@
-// Materials mixed of layers: values, what passes, what glows; and the lobes of single nodes.
+// Materials mixed of layers: values, what passes, what emits; and the lobes of single nodes.
 #include "material/shader_layers.h"
 
 #include <gtest/gtest.h>
 
 #include "material/glossy_material.h"
-#include "material/principled_material.h"
+#include "material/principled/principled_material.h"
 #include "material/rough_diffuse_material.h"
-#include "sphere/random.h"
+#include "math/sphere/random.h"
 #include "support/albedo.h"
 #include "support/materials.h"
 #include "support/textured_materials.h"
@@ -75,7 +75,7 @@ TEST(ShaderLayers, SharesMakeUpForTheProbabilityOfMeeting) {
     ShaderLayers layers;
     layers.reflecting = {{matte({1, 0.5f, 0}), by(Kind::share, amount)}, {matte({0, 0, 1}), by(Kind::gain, 2)}};
     layers.transparent = {{{0.9f, 0.3f, 0.1f}, {}, by(Kind::rest, amount)}, {{0, 0.2f, 0}}};
-    layers.glowing = {{{3, 2, 1}, {}, by(Kind::share, 0.5f)}};
+    layers.emissive = {{{3, 2, 1}, {}, by(Kind::share, 0.5f)}};
     const auto material = make_layered_material(layers);
     const float alpha = material->alpha({}), rest = 1 - amount;
     EXPECT_GT(alpha, 0);
@@ -149,10 +149,10 @@ TEST(GlossyMaterial, SamplesBringItsAlbedo) {
 TEST(GlossyMaterial, FacetsKeepTheLightThatTheySendToEachOther) {
   for (const float roughness : {0.6f, 1.0f}) {
     const auto of = [&](float color) { return make_glossy_material({.color = Rgb(color), .roughness = roughness}); };
-    const double white = albedo(*of(1), 0.8f), grey = albedo(*of(0.5f), 0.8f);
+    const double white = albedo(*of(1), 0.8f), gray = albedo(*of(0.5f), 0.8f);
     EXPECT_NEAR(white, 1, 5e-3) << roughness;
-    EXPECT_LT(grey, 0.49);  // what has met two facets is darker
-    EXPECT_GT(grey, albedo(*make_glossy_material({Rgb(0.5f), roughness, GgxLobe::single}), 0.8f) + 0.005);
+    EXPECT_LT(gray, 0.49);  // what has met two facets is darker
+    EXPECT_GT(gray, albedo(*make_glossy_material({Rgb(0.5f), roughness, GgxLobe::single}), 0.8f) + 0.005);
   }
 }
 
@@ -165,8 +165,8 @@ TEST(RoughDiffuseMaterial, IsLambertWithoutRoughnessAndDarkerWithIt) {
   EXPECT_GT(albedo_of(1, 1.4f), albedo_of(1, 0.2f) + 0.01);  // flat: bright at its rim
 }
 
-/// A furnace: with light that its facets send to each other, white keeps all of it at every angle, and colours what a
-/// series of colour per reflection leaves.
+/// A furnace: with light that its facets send to each other, white keeps all of it at every angle, and colors what a
+/// series of color per reflection leaves.
 TEST(RoughDiffuseMaterial, KeepsItsEnergyByInterreflection) {
   const auto albedo_of = [](float color, bool interreflection, float theta_v) {
     return albedo(*make_rough_diffuse_material({Rgb(color), 1, interreflection}), theta_v);

@@ -3,8 +3,8 @@
 
 #include <memory>
 
-#include "sphere/directions.h"
-#include "sphere/random.h"
+#include "math/sphere/directions.h"
+#include "math/sphere/random.h"
 #include "support/sided_btfs.h"
 #include "support/simd_targets.h"
 

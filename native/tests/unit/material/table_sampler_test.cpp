@@ -1,9 +1,9 @@
-#include "material/table_sampler.h"
+#include "brdf/eval/table_sampler.h"
 
 #include <gtest/gtest.h>
 
-#include "material/principled_material.h"
-#include "material/scattered_material.h"
+#include "brdf/eval/per_view_material.h"
+#include "material/principled/principled_material.h"
 #include "support/materials.h"
 
 namespace velour {
@@ -35,7 +35,7 @@ TEST(TableSampler, SurvivesABlackMaterial) {
   }
 }
 
-// Where the table is fine enough its density is the normalised f cos.
+// Where the table is fine enough its density is the normalized f cos.
 TEST(TableSampler, ResolvesASharpHighlight) {
   const auto material = make_principled_material({Rgb(1), 1, 0.1f, 0.5f});  // highlight of about half a degree
   const TableSampler table(*material);

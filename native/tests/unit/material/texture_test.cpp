@@ -4,8 +4,8 @@
 
 #include <limits>
 
-#include "job/error.h"
-#include "sphere/random.h"
+#include "base/error.h"
+#include "math/sphere/random.h"
 
 namespace velour {
 namespace {
@@ -27,7 +27,7 @@ Texture<float> checker(int side, int square) {
   return {side, side, texels, {}};
 }
 
-/// Of the exact picture: a texel's value all over it.
+/// Mean over the footprint of the exact picture, in which each texel has one value all over.
 double exact_mean(const Texture<float>& closest, const Vec2& uv, const Mat2& footprint) {
   constexpr int kSteps = 64;
   double sum = 0;
@@ -39,7 +39,7 @@ double exact_mean(const Texture<float>& closest, const Vec2& uv, const Mat2& foo
   return sum / (kSteps * kSteps);
 }
 
-TEST(Texture, IsItsTexelsAtTheirCentresAndLinearBetween) {
+TEST(Texture, IsItsTexelsAtTheirCentersAndLinearBetween) {
   const Texture<Rgb> texture(2, 2, {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {1, 1, 1}}, {.wrap = TextureWrap::extend});
   EXPECT_EQ(texture.look_up({0.25f, 0.25f}, kPoint), Rgb(1, 0, 0));
   EXPECT_EQ(texture.look_up({0.75f, 0.25f}, kPoint), Rgb(0, 1, 0));

@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 
-#include "material/principled_material.h"
+#include "material/principled/principled_material.h"
 #include "support/materials.h"
 #include "support/textured_materials.h"
 

@@ -2,9 +2,9 @@
 
 #include <gtest/gtest.h>
 
-#include "material/measured_btf_material.h"
+#include "btf/eval/measured_btf_material.h"
+#include "math/sphere/frame.h"
 #include "model/model_material.h"
-#include "sphere/mirrored.h"
 #include "support/striped_btf.h"
 #include "support/through_btfs.h"
 
@@ -19,7 +19,7 @@ std::shared_ptr<const ThroughMaterial> striped() {
                                                  make_measured_btf_material(table, BtfLight::other_side));
 }
 
-/// Of the viewer's frame, where the surface is seen from behind or not.
+/// Converts a direction from the viewer's frame to the tile's. `back`: the viewer sees the surface from behind.
 Vec3 of_tile(const Vec3& w, bool back) { return back ? mirrored(w) : w; }
 
 /// At texels, and pairs that the BTF has, all four pairs of sides are what it is.

@@ -1,10 +1,10 @@
-#include "material/view_neighbors.h"
+#include "brdf/eval/view_neighbors.h"
 
 #include <gtest/gtest.h>
 
 #include <map>
 
-#include "sphere/directions.h"
+#include "math/sphere/directions.h"
 
 namespace velour {
 namespace {

@@ -1,9 +1,9 @@
-#include "material/view_nodes.h"
+#include "brdf/eval/view_nodes.h"
 
 #include <gtest/gtest.h>
 
-#include "sphere/directions.h"
-#include "sphere/view_spline.h"
+#include "math/sphere/directions.h"
+#include "math/sphere/view_spline.h"
 
 namespace velour {
 namespace {

@@ -3,9 +3,9 @@
 
 #include <cmath>
 
-#include "image/exr_tensors.h"
+#include "image/tensors/exr_tensors.h"
+#include "math/sphere/directions.h"
 #include "model/model.h"
-#include "sphere/directions.h"
 #include "support/example_btf.h"
 #include "support/example_srbf.h"
 #include "support/example_tensor.h"

@@ -2,8 +2,8 @@
 
 #include <limits>
 
-#include "image/exr_tensors.h"
-#include "job/error.h"
+#include "base/error.h"
+#include "image/tensors/exr_tensors.h"
 #include "model/model_file.h"
 #include "unit/model/example_model.h"
 #include "unit/model/refusals.h"

@@ -1,10 +1,10 @@
 // Files that lie, end early, or were damaged.
 #include <gtest/gtest.h>
 
-#include "btf/component_ranges.h"
+#include "btf/model/factored_btf.h"
 #include "example_model.h"
+#include "math/sphere/random.h"
 #include "model/model_material.h"
-#include "sphere/random.h"
 #include "unit/model/refusals.h"
 
 namespace velour {
@@ -59,7 +59,7 @@ TEST(HostileModel, ViewsMustLieOnTheMeridianInOrder) {
                "views.direction[2]");
 }
 
-TEST(HostileModel, NearlyUnitCentresAreMadeUnit) {
+TEST(HostileModel, NearlyUnitCentersAreMadeUnit) {
   TensorFile file = decode_tensors(encode_model(test::example_model()), "example");
   for (float& x : file.tensors["lobes.center"].data) x *= 1.0005f;
   const Model model = decode_model(encode_tensors(file), "metal.velour");

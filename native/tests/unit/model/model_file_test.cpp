@@ -4,10 +4,10 @@
 
 #include <limits>
 
-#include "brdf/scattered_brdf.h"
+#include "base/error.h"
+#include "base/file.h"
+#include "brdf/model/per_view_brdf.h"
 #include "example_model.h"
-#include "file/file.h"
-#include "job/error.h"
 #include "model/model_material.h"
 #include "support/test_data.h"
 
@@ -82,7 +82,7 @@ TEST(ModelFile, RoundTripKeepsEveryBit) {
 
 TEST(ModelFile, RoundTripKeepsEveryBitOfParametricModels) {
   for (const bool isotropic : {true, false}) {
-    for (const int lobes : {1, 3, 8, ParametricBrdf::kMaxLobes}) {  // 3 would be colours to a viewer
+    for (const int lobes : {1, 3, 8, ParametricBrdf::kMaxLobes}) {  // 3 would be colors to a viewer
       expect_round_trip<ParametricBrdf>(example_parametric(isotropic, lobes, 4));
     }
   }

@@ -6,8 +6,8 @@
 #include <functional>
 #include <string>
 
-#include "image/exr_tensors.h"
-#include "job/error.h"
+#include "base/error.h"
+#include "image/tensors/exr_tensors.h"
 #include "model/model_file.h"
 
 namespace velour::test {

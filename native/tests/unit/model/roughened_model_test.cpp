@@ -5,7 +5,7 @@
 
 #include <limits>
 
-#include "job/error.h"
+#include "base/error.h"
 #include "model/model_file.h"
 #include "model/model_material.h"
 #include "support/albedo.h"

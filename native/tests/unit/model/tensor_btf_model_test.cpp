@@ -2,7 +2,7 @@
 
 #include <limits>
 
-#include "btf/tensor_bytes.h"
+#include "btf/model/tensor_btf.h"
 #include "unit/model/example_model.h"
 #include "unit/model/refusals.h"
 

@@ -1,9 +1,9 @@
-#include "plot/fit_plots.h"
+#include "plot/model_plots.h"
 
 #include <gtest/gtest.h>
 
-#include "job/error.h"
-#include "plot/plot_csv.h"
+#include "base/error.h"
+#include "plot/plot.h"
 
 namespace velour {
 namespace {

@@ -1,8 +1,8 @@
-#include "plot/plot_layout.h"
+#include "plot/pen.h"
 
 #include <gtest/gtest.h>
 
-#include "job/error.h"
+#include "base/error.h"
 #include "plot/axes.h"
 #include "plot/font.h"
 #include "plot/raster.h"

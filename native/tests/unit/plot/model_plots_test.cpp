@@ -6,8 +6,8 @@
 #include <stdexcept>
 #include <string_view>
 
-#include "fit/evaluate.h"
-#include "job/error.h"
+#include "base/error.h"
+#include "brdf/fit/error/evaluate.h"
 #include "model/model_material.h"
 #include "support/analytic_measurement.h"
 #include "support/example_srbf.h"
@@ -135,7 +135,7 @@ TEST(LobesPlot, OfScatteredSamplesShowsThoseNearViewAndPlane) {
   EXPECT_NEAR(points[1].y, luminance(Rgb(0.5f, 0.4f, 0.3f)) / kPiD * std::cos(radians_from(50.0)), 1e-5);
 }
 
-TEST(AlbedoPlot, OfALambertianSurfaceIsItsColour) {
+TEST(AlbedoPlot, OfALambertianSurfaceIsItsColor) {
   // f = 0.25 / pi, as nearly constant as a lobe can be.
   const auto model = model_of(parametric_model(true, {{LobeSpace::light, 1e-4f, Rgb(0.25f, 0.5f, 0.75f) / kPi}}));
   const AnalyticMeasurement measurement(lambert);

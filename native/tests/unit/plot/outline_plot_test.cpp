@@ -1,10 +1,10 @@
-#include "plot/outline_plot.h"
+#include "plot/model_plots.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "job/error.h"
+#include "base/error.h"
 #include "support/example_shell.h"
 
 namespace velour {
@@ -21,7 +21,7 @@ Plot plotted(const Model& model) {
   return outline_plot(model, unwatched);
 }
 
-/// Of wires along y: their width as a view sees it, over the period.
+/// Width of wires along y as a view sees it, as a share of the period.
 double covered_by_wires(double radius, double theta, double phi) {
   return std::min(1.0, 2 * radius * std::hypot(1.0, std::tan(theta) * std::cos(phi)));
 }

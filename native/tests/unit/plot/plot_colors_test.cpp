@@ -1,4 +1,4 @@
-#include "plot/plot_colors.h"
+#include "plot/axes.h"
 
 #include <gtest/gtest.h>
 
@@ -12,14 +12,14 @@ TEST(PlotColors, ContrastIsThatOfTheGuidelines) {
 }
 
 TEST(PlotColors, EverythingIsReadableOnAnyBackground) {
-  for (float grey = 0; grey <= 1; grey += 0.05f) {
+  for (float gray = 0; gray <= 1; gray += 0.05f) {
     PlotColors theme;
-    theme.background = {grey, 0.9f * grey, 0.5f + 0.5f * grey};
+    theme.background = {gray, 0.9f * gray, 0.5f + 0.5f * gray};
     theme.text = Rgb(0.5f);
     const PlotColors out = readable(theme);
-    EXPECT_GE(contrast(out.text, out.background), 4.5f) << grey;
+    EXPECT_GE(contrast(out.text, out.background), 4.5f) << gray;
     for (const Rgb& mark : {out.model, out.measured, out.red, out.green, out.blue}) {
-      EXPECT_GE(contrast(mark, out.background), 3) << grey;
+      EXPECT_GE(contrast(mark, out.background), 3) << gray;
     }
   }
 }

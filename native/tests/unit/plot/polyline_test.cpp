@@ -1,4 +1,4 @@
-#include "plot/polyline.h"
+#include "plot/pen.h"
 
 #include <gtest/gtest.h>
 

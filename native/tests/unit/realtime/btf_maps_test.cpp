@@ -2,14 +2,14 @@
 
 #include <gtest/gtest.h>
 
-#include "btf/relief.h"
-#include "job/error.h"
+#include "base/error.h"
+#include "btf/measure/relief.h"
 #include "support/example_srbf.h"
 
 namespace velour {
 namespace {
 
-/// f at the centre of a texel, by what stands in the maps.
+/// f at the center of a texel, by what stands in the maps.
 Rgb value_in(const BtfMaps& maps, const BtfMaps::Level& level, uint32_t x, uint32_t y, const DirectionPair& pair) {
   const uint32_t rows = maps.maps.height / maps.layers;
   const auto pixel = [&](uint32_t layer) { return maps.maps.at(level.x + x, layer * rows + 1 + y); };
@@ -25,7 +25,7 @@ Rgb value_in(const BtfMaps& maps, const BtfMaps::Level& level, uint32_t x, uint3
   return {expanded(Companding::root, sum.x), expanded(Companding::root, sum.y), expanded(Companding::root, sum.z)};
 }
 
-/// Of one side at the centres of all texels.
+/// Expects the maps to have the values of one side of the model at the centers of all texels.
 void expect_values(const BtfMaps& maps, const SrbfBtf& btf, const SrbfSide& side) {
   ASSERT_EQ(maps.levels.size(), side.levels.size());
   ASSERT_EQ(maps.terms.size(), side.coefficients());

@@ -2,8 +2,8 @@
 
 #include <gtest/gtest.h>
 
-#include "sphere/directions.h"
-#include "srbf/kernel.h"
+#include "math/sphere/directions.h"
+#include "math/srbf/kernel.h"
 #include "support/sky_lobes.h"
 #include "support/table_shader.h"
 

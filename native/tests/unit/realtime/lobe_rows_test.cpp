@@ -4,11 +4,11 @@
 
 #include <random>
 
-#include "job/error.h"
-#include "material/principled_material.h"
+#include "base/error.h"
+#include "material/principled/principled_material.h"
+#include "math/sphere/directions.h"
 #include "model/model_material.h"
 #include "realtime/light_map.h"
-#include "sphere/directions.h"
 #include "support/example_srbf.h"
 #include "support/parametric_models.h"
 #include "support/sky_lobes.h"

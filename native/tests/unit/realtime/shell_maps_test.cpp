@@ -1,15 +1,15 @@
-#include "realtime/shell_maps.h"
+#include "realtime/votf_maps.h"
 
 #include <gtest/gtest.h>
 
-#include "job/error.h"
+#include "base/error.h"
 #include "support/example_shell.h"
-#include "votf/shell_field.h"
+#include "votf/eval/shell_field.h"
 
 namespace velour {
 namespace {
 
-/// Of a point of the volume, or of the border about it.
+/// Pixel of a point of the volume, or of the border around it.
 const float* pixel(const TablePixels& maps, const OcclusionVolume& volume, uint32_t x, uint32_t y, uint32_t z) {
   return maps.at(x + 1, z * (volume.height + 2) + y + 1);
 }

@@ -5,9 +5,9 @@
 #include <cmath>
 #include <optional>
 
-#include "material/ggx_sampler.h"
+#include "material/microfacet/ggx_sampler.h"
+#include "math/sphere/directions.h"
 #include "render/vertex.h"
-#include "sphere/directions.h"
 #include "support/textured_scenes.h"
 
 namespace velour {
@@ -43,7 +43,7 @@ std::optional<Vertex> seen(const Scene& scene, const Ray& ray) {
   return Vertex(scene, scene.surface(hit), ray, hit, {}, nullptr);
 }
 
-/// Of the camera's rays; nothing where they miss.
+/// Vertices where the camera's rays meet the scene; empty where they miss it.
 std::vector<std::optional<Vertex>> vertices(const Scene& scene) {
   std::vector<std::optional<Vertex>> all;
   for (int i = 0; i < kPixels * kPixels; ++i) {

@@ -1,15 +1,15 @@
-// Materials that look at the colours of a mesh's corners.
+// Materials that look at the colors of a mesh's corners.
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
-#include "job/error.h"
-#include "material/principled_material.h"
+#include "base/error.h"
+#include "material/principled/principled_material.h"
 #include "material/shader_layers.h"
 #include "render/footprint.h"
-#include "render/glow_group.h"
+#include "render/lights/emissive_group.h"
 #include "support/textured_scenes.h"
 
 namespace velour {
@@ -19,7 +19,7 @@ const std::vector<Vec3> kPositions = {{-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1
 const std::vector<glm::uvec3> kTriangles = {{0, 1, 2}, {0, 2, 3}};
 const Rgb kColor(0.7f, 0.2f, 0.4f);
 
-/// A square with these colours of its six corners, one set after the other.
+/// A square with these colors of its six corners, one set after the other.
 Mesh square_with(const std::vector<Rgb>& colors) {
   return Mesh({.positions = kPositions, .triangles = kTriangles, .corner_colors = colors});
 }
@@ -136,25 +136,25 @@ TEST(CornerColors, NeedNoTextureCoordinates) {
 }
 
 /// Rays are drawn to triangles as bright as their corners make them, and to none that are black.
-TEST(CornerColors, TellHowMuchTrianglesGlow) {
+TEST(CornerColors, TellHowMuchTrianglesEmit) {
   ShaderLayers layers;
-  layers.glowing.push_back({Rgb(1), TextureSlot<Rgb>::colors_of_corners(0)});
-  const SurfaceMaterial glowing{
+  layers.emissive.push_back({Rgb(1), TextureSlot<Rgb>::colors_of_corners(0)});
+  const SurfaceMaterial emissive{
       .material = make_layered_material(layers), .rec709_colors = false, .uv_sets = 0, .color_sets = 1};
   const auto group_of = [&](const std::vector<Rgb>& colors) {
     Scene scene;
-    scene.add_instance(scene.add_mesh(square_with(colors)), Affine{}, {scene.add_material(glowing)});
+    scene.add_instance(scene.add_mesh(square_with(colors)), Affine{}, {scene.add_material(emissive)});
     scene.commit(1);
-    return GlowGroup(scene, scene.instances()[0], Progress());
+    return EmissiveGroup(scene, scene.instances()[0], Progress());
   };
-  const GlowGroup half = group_of({Rgb(3), Rgb(3), Rgb(3), Rgb(0), Rgb(0), Rgb(0)});
-  EXPECT_NE(half.light(0), GlowGroup::kNone);
-  EXPECT_EQ(half.light(1), GlowGroup::kNone);
-  const GlowGroup both = group_of({Rgb(4), Rgb(4), Rgb(4), Rgb(0), Rgb(0), Rgb(3)});
+  const EmissiveGroup half = group_of({Rgb(3), Rgb(3), Rgb(3), Rgb(0), Rgb(0), Rgb(0)});
+  EXPECT_NE(half.light(0), EmissiveGroup::kNone);
+  EXPECT_EQ(half.light(1), EmissiveGroup::kNone);
+  const EmissiveGroup both = group_of({Rgb(4), Rgb(4), Rgb(4), Rgb(0), Rgb(0), Rgb(3)});
   EXPECT_FLOAT_EQ(both.tree().intensity(both.light(0)), 2 * 4);  // area times luminance
   EXPECT_FLOAT_EQ(both.tree().intensity(both.light(1)), 2 * 1);
-  const GlowGroup below = group_of({Rgb(-9), Rgb(1), Rgb(1), Rgb(1), Rgb(1), Rgb(1)});
-  EXPECT_NE(below.light(0), GlowGroup::kNone);  // its mean is below zero, two of its corners shine
+  const EmissiveGroup below = group_of({Rgb(-9), Rgb(1), Rgb(1), Rgb(1), Rgb(1), Rgb(1)});
+  EXPECT_NE(below.light(0), EmissiveGroup::kNone);  // its mean is below zero, two of its corners shine
 }
 
 }  // namespace

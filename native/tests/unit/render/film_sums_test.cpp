@@ -1,5 +1,5 @@
 // Sums that runs hand on: whoever goes on has the bits of one run, and sums of several add up to it.
-#include "render/film_sums.h"
+#include "render/film/film.h"
 
 #include <gtest/gtest.h>
 
@@ -7,8 +7,8 @@
 #include <limits>
 #include <string>
 
-#include "job/error.h"
-#include "render/cryptomatte_id.h"
+#include "base/error.h"
+#include "render/film/cryptomatte.h"
 #include "render/render.h"
 #include "unit/render/busy_scene.h"
 

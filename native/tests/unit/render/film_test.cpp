@@ -1,12 +1,12 @@
 // Film, vertex and lattice: the small parts of a render.
-#include "render/film.h"
+#include "render/film/film.h"
 
 #include <gtest/gtest.h>
 
-#include "job/error.h"
-#include "render/lattice.h"
+#include "base/error.h"
+#include "math/sphere/random.h"
+#include "render/path_numbers.h"
 #include "render/vertex.h"
-#include "sphere/random.h"
 
 namespace velour {
 namespace {
@@ -77,7 +77,7 @@ TEST(Vertex, ShadingNormalBendsContinuouslyToTheViewer) {
   for (int i = 0; i <= 1000; ++i) {
     const float angle = kPi / 2 * static_cast<float>(i) / 1001.0f;
     const Vertex vertex(tilted_point(normal), {std::sin(angle), 0, std::cos(angle)});
-    EXPECT_GE(vertex.wv.z, 0.999f * Vertex::kLeastCosine / 1.02f);
+    EXPECT_GE(vertex.wv.z, 0.999f * Vertex::kMinCosine / 1.02f);
     EXPECT_NEAR(glm::length(vertex.frame.z), 1, 1e-5f);
     EXPECT_NEAR(glm::dot(vertex.frame.x, vertex.frame.z), 0, 1e-5f);
     if (i > 0) {

@@ -1,5 +1,5 @@
 // How coarse the first picture of a change is.
-#include "render/first_level.h"
+#include "render/film/film.h"
 
 #include <gtest/gtest.h>
 

@@ -10,7 +10,7 @@
 namespace velour {
 namespace {
 
-constexpr int kSide = 4096;  // pixels: neighbours mostly meet one triangle
+constexpr int kSide = 4096;  // pixels: neighbors mostly meet one triangle
 
 Scene one_object(Mesh mesh, const Affine& place, const Camera& camera, bool varies = true) {
   Scene scene;
@@ -83,11 +83,11 @@ Affine crooked() { return {{-1.1f, 0.4f, 0, 0.1f, 0.2f, 0.7f, 0.3f, -0.2f, 0.1f,
 
 const Mat2 kSkewed(3.0f, 0.5f, -0.8f, 2.0f);
 
-TEST(Footprint, IsWhatNeighbouringPixelsMeetOnAPlane) {
+TEST(Footprint, IsWhatNeighboringPixelsMeetOnAPlane) {
   EXPECT_GT(compare_with_differences(one_object(test::textured_square(3, kSkewed), {}, tilted_camera()), 2e-3f), 300);
 }
 
-TEST(Footprint, IsWhatNeighbouringPixelsMeetOnASphere) {
+TEST(Footprint, IsWhatNeighboringPixelsMeetOnASphere) {
   EXPECT_GT(compare_with_differences(one_object(test::textured_sphere(6), {}, tilted_camera()), 5e-3f), 100);
 }
 
@@ -116,7 +116,7 @@ TEST(Footprint, GrowsTowardsGrazingAnglesAndStaysFinite) {
   EXPECT_NEAR(length_at(1), pixel, 1e-3f * pixel);
   EXPECT_NEAR(length_at(0.1f), 10 * pixel, 0.01f * pixel);
   EXPECT_NEAR(length_at(0.01f), 100 * pixel, 0.5f * pixel);
-  EXPECT_NEAR(length_at(1e-4f), 1000 * pixel, 10 * pixel);  // kLeastSlope; the true one is ten times as long
+  EXPECT_NEAR(length_at(1e-4f), 1000 * pixel, 10 * pixel);  // kMinSlope; the true one is ten times as long
 }
 
 TEST(Footprint, ShrinksWithTheCameraRaysOfAPixel) {

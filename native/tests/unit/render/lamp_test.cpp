@@ -1,13 +1,13 @@
 // Lamps: what they sample is what they measure, and their light is what physics says.
-#include "render/lamp.h"
+#include "render/lights/area_light.h"
 
 #include <gtest/gtest.h>
 
 #include <array>
 
-#include "render/lighting.h"
-#include "sphere/random.h"
-#include "sphere/warp.h"
+#include "math/sphere/random.h"
+#include "math/sphere/warp.h"
+#include "render/lights/lighting.h"
 #include "support/test_scene.h"
 
 namespace velour {
@@ -261,7 +261,7 @@ TEST(Lamp, DarkSideInsideAndDegenerate) {
 }
 
 /// Points side by side above the plane, one below it, and a sun.
-TEST(Lighting, SharpLampsAreChosenByTheirIrradiance) {
+TEST(Lighting, DeltaLightsAreChosenByTheirIrradiance) {
   Scene scene;
   Light light;
   light.type = Light::Type::point;

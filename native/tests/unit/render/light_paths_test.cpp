@@ -1,9 +1,9 @@
 // Clamping, Filter Glossy and Reflective Caustics.
-#include "render/light_paths.h"
+#include "render/options.h"
 
 #include <gtest/gtest.h>
 
-#include "job/error.h"
+#include "base/error.h"
 #include "material/glossy_material.h"
 #include "support/test_scene.h"
 

@@ -1,12 +1,12 @@
 // The choice among many lights.
-#include "render/light_tree.h"
+#include "render/lights/light_tree.h"
 
 #include <gtest/gtest.h>
 
 #include <chrono>
 #include <thread>
 
-#include "sphere/random.h"
+#include "math/sphere/random.h"
 
 namespace velour {
 namespace {
@@ -140,7 +140,7 @@ TEST(LightTree, IsNotBuiltAfterACancel) {
   EXPECT_THROW(LightTree(scattered(1), cancelled), Error);
 }
 
-/// Of many lights it takes seconds: a cancel in between ends it long before.
+/// Building a tree of many lights takes seconds; a cancel during the build ends it early.
 TEST(LightTree, EndsSoonAfterACancel) {
   const auto lights = scattered(300000);
   const auto seconds_of_build = [&](Progress& progress) {

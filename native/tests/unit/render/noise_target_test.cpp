@@ -6,7 +6,7 @@
 
 #include <algorithm>
 
-#include "render/combination.h"
+#include "render/direction_sampling.h"
 #include "render/path_numbers.h"
 #include "support/test_scene.h"
 

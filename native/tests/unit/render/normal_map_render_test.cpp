@@ -2,8 +2,8 @@
 #include <gtest/gtest.h>
 
 #include "material/normal_map.h"
-#include "material/principled_material.h"
-#include "sphere/random.h"
+#include "material/principled/principled_material.h"
+#include "math/sphere/random.h"
 #include "support/textured_scenes.h"
 
 namespace velour {

@@ -14,7 +14,7 @@ namespace {
 
 constexpr int kWidth = 37, kHeight = 21, kChannels = 4;
 
-/// Of which some camera rays meet nothing.
+/// A scene that some camera rays miss.
 Scene uneven_scene() {
   Scene scene = test::busy_scene();
   scene.set_camera(test::camera_above(4));

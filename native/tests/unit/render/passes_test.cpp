@@ -5,10 +5,9 @@
 #include <cmath>
 #include <memory>
 
-#include "job/error.h"
-#include "material/principled_material.h"
-#include "render/cryptomatte_id.h"
-#include "render/id_slots.h"
+#include "base/error.h"
+#include "material/principled/principled_material.h"
+#include "render/film/cryptomatte.h"
 #include "support/textured_scenes.h"
 #include "unit/render/busy_scene.h"
 
@@ -101,11 +100,11 @@ TEST(Passes, NothingIsAllMistAndNothingElse) {
   }
 }
 
-/// Of a square of albedo 0.6 and `alpha` that glows with 2, over nothing, before a sky of 1.
+/// The pass of a square of albedo 0.6 and `alpha` that emits 2, with nothing behind it but an environment of 1.
 std::vector<float> denoising_albedo(float alpha, bool transparent) {
-  SurfaceMaterial glowing = matte(0.6f, alpha);
-  glowing.emission = Rgb(2.0f);
-  const Scene scene = two_squares(std::move(glowing), test::shift({0, 0, 1}, {0.1f, 10, 1}), 0.001f);
+  SurfaceMaterial emissive = matte(0.6f, alpha);
+  emissive.emission = Rgb(2.0f);
+  const Scene scene = two_squares(std::move(emissive), test::shift({0, 0, 1}, {0.1f, 10, 1}), 0.001f);
   RenderOptions options = options_of(64);
   options.transparent = transparent;
   return read(*rendered(scene, options), "Denoising Albedo");
@@ -201,7 +200,7 @@ TEST(Passes, AreRefusedWhereTheyWereNotAskedFor) {
   EXPECT_THROW(film.read_pass("Position", three), Error);
   EXPECT_THROW(film.read_pass("Mist", three), Error);
   EXPECT_THROW(Film::channels("CryptoObject0"), Error);
-  passes.cryptomatte_ranks = PassOptions::kMostRanks + 1;
+  passes.cryptomatte_ranks = PassOptions::kMaxRanks + 1;
   EXPECT_THROW(Film({0, 0, 1, 1}, passes), Error);
   passes.cryptomatte_ranks = 6;
   passes.asked = pass::kAll + 1;

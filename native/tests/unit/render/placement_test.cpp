@@ -5,9 +5,9 @@
 #include <limits>
 #include <optional>
 
-#include "job/error.h"
-#include "material/factored_material.h"
-#include "material/principled_material.h"
+#include "base/error.h"
+#include "btf/eval/factored_material.h"
+#include "material/principled/principled_material.h"
 #include "render/vertex.h"
 #include "support/example_btf.h"
 #include "support/textured_scenes.h"

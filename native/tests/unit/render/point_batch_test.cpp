@@ -4,7 +4,7 @@
 
 #include <vector>
 
-#include "srbf/simd_target.h"
+#include "base/simd.h"
 
 namespace velour {
 namespace {

@@ -4,7 +4,7 @@
 #include <functional>
 #include <limits>
 
-#include "job/error.h"
+#include "base/error.h"
 #include "render/scene_samplers.h"
 #include "support/example_shell.h"
 #include "support/test_scene.h"
@@ -16,11 +16,11 @@ using test::rendered;
 using test::shift;
 using test::small_options;
 
-std::shared_ptr<const Material> grey(float albedo) { return std::make_shared<test::Lambert>(albedo); }
+std::shared_ptr<const Material> gray(float albedo) { return std::make_shared<test::Lambert>(albedo); }
 
 void begin(Scene& scene) {
-  scene.add_material({grey(0.5f), Rgb(0.0f), false});
-  scene.add_material({grey(0.2f), Rgb(0.0f), false});
+  scene.add_material({gray(0.5f), Rgb(0.0f), false});
+  scene.add_material({gray(0.2f), Rgb(0.0f), false});
   scene.set_environment(Environment::constant(Rgb(1.0f)));
   scene.set_camera(test::camera_above(2));
 }
@@ -84,7 +84,7 @@ TEST(SceneChanges, AMeshGivesWayToAnother) {
 TEST(SceneChanges, AMaterialGainsLight) {
   expect_same([](Scene& s) { s.set_gain(0, Rgb(0.5f)); },
               [](Scene& s) {
-                s.set_material(0, {grey(0.25f), Rgb(0.0f), false});
+                s.set_material(0, {gray(0.25f), Rgb(0.0f), false});
                 add_ground_and_ball(s, {0, 0, 1});
               });
 }
@@ -98,7 +98,7 @@ TEST(SceneChanges, AGainIsOfEachChannelAndStays) {
   const std::vector<float> before = rendered(scene, options);
   const Rgb gain(2, 1, 0.25f);
   scene.set_gain(0, gain);
-  scene.set_material(0, {grey(0.5f), Rgb(0.0f), false});
+  scene.set_material(0, {gray(0.5f), Rgb(0.0f), false});
   const std::vector<float> after = rendered(scene, options);
   ASSERT_EQ(after.size() % 4, 0u);
   for (size_t i = 0; i < after.size(); ++i) {
@@ -145,12 +145,12 @@ TEST(SceneChanges, LightsAndWorld) {
 TEST(SceneChanges, MaterialsAreReplaced) {
   expect_same(
       [](Scene& s) {
-        s.add_material({grey(0.8f), Rgb(0.0f), false});
+        s.add_material({gray(0.8f), Rgb(0.0f), false});
         s.replace_material(1);
         EXPECT_EQ(s.materials().size(), 2u);
       },
       [](Scene& s) {
-        s.add_material({grey(0.8f), Rgb(0.0f), false});
+        s.add_material({gray(0.8f), Rgb(0.0f), false});
         const uint32_t ground = s.add_mesh(test::square(3)), ball = s.add_mesh(test::sphere(12));
         s.add_instance(ground, {}, {0});
         s.add_instance(ball, shift({0, 0, 1}), {2});
@@ -200,7 +200,7 @@ void add_wires(Scene& scene, float wide) {
   for (const glm::uvec3& corner : t) {
     for (int k = 0; k < 3; ++k) uv.push_back(wide * Vec2(p[corner[k]]));
   }
-  const uint32_t wires = scene.add_material({.material = grey(0.8f),
+  const uint32_t wires = scene.add_material({.material = gray(0.8f),
                                              .rec709_colors = false,
                                              .shell = std::make_shared<const ShellField>(test::wires(64, 0.1f)),
                                              .shell_shaded = true});
@@ -260,7 +260,7 @@ TEST(SceneChanges, AShellGivesWayToNone) {
   Scene changed, fresh;
   begin_with_wires(changed, {0, 0, 1}, 1);
   changed.commit(2);
-  const SurfaceMaterial plain{.material = grey(0.8f), .rec709_colors = false};
+  const SurfaceMaterial plain{.material = gray(0.8f), .rec709_colors = false};
   changed.set_material(2, plain);
   changed.commit(2);
   begin_with_wires(fresh, {0, 0, 1}, 1);
@@ -294,7 +294,7 @@ TEST(SceneChanges, SamplersAreSharedUntilAnythingButTheCameraChanges) {
   EXPECT_EQ(table_samplers(scene, progress), tables);
   EXPECT_EQ(ggx_samplers(scene, 2, progress), lobes);
   EXPECT_EQ(sky_sampler(scene, "", progress), sky);
-  scene.set_material(0, {grey(0.9f), Rgb(0.0f), false});
+  scene.set_material(0, {gray(0.9f), Rgb(0.0f), false});
   EXPECT_NE(table_samplers(scene, progress), tables);
   EXPECT_NE(ggx_samplers(scene, 2, progress), lobes);
   EXPECT_NE(sky_sampler(scene, "", progress), sky);
@@ -311,7 +311,7 @@ TEST(SceneChanges, SamplersOfAnEarlierRenderAreNotUsedAgain) {
     (void)rendered(changed, options);
     for (Scene* scene : {&changed, &fresh}) {
       scene->set_material(0, {std::make_shared<test::ThinLambert>(0.3f, 0.5f), Rgb(0.0f), false});
-      scene->add_material({grey(0.7f), Rgb(0.0f), false});
+      scene->add_material({gray(0.7f), Rgb(0.0f), false});
       scene->set_environment(Environment::constant(Rgb(0.5f)));
       scene->commit(2);
     }

@@ -1,14 +1,14 @@
 // Observations of small scenes: what they hold, and that they are the same whatever the threads.
-#include "render/scene_observer.h"
+#include "usage/observe/scene_observer.h"
 
 #include <gtest/gtest.h>
 
 #include <numeric>
 
-#include "domain/observation_hash.h"
 #include "material/shader_layers.h"
-#include "render/draw_by_weight.h"
+#include "render/continuation.h"
 #include "support/observed_scenes.h"
+#include "usage/observation_hash.h"
 
 namespace velour {
 namespace {
@@ -57,7 +57,7 @@ TEST(SceneObserver, ThreadsDoNotChangeABit) {
 }
 
 /// Largest difference of two channels of what arrives from a ball of a lamp, of the brightest.
-float colour_of_lamp(float pane_height) {
+float color_of_lamp(float pane_height) {
   Scene scene;
   scene.add_instance(scene.add_mesh(test::square(100)), {},
                      {scene.add_material({std::make_shared<test::Lambert>(0.6f), Rgb(0.0f), false})});
@@ -80,9 +80,9 @@ float colour_of_lamp(float pane_height) {
   return largest;
 }
 
-TEST(SceneObserver, ALampTakesNoColourFromWhatLiesBehindIt) {
-  EXPECT_EQ(colour_of_lamp(2), 0);
-  EXPECT_NEAR(colour_of_lamp(0.5f), 0.8, 1e-5);
+TEST(SceneObserver, ALampTakesNoColorFromWhatLiesBehindIt) {
+  EXPECT_EQ(color_of_lamp(2), 0);
+  EXPECT_NEAR(color_of_lamp(0.5f), 0.8, 1e-5);
 }
 
 TEST(SceneObserver, HoldsWhatItPromises) {

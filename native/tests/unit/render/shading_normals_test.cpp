@@ -1,7 +1,7 @@
 // Interpolated normals on coarse meshes: light stays on the side of the surface that it comes from.
 #include <gtest/gtest.h>
 
-#include "material/principled_material.h"
+#include "material/principled/principled_material.h"
 #include "render/vertex.h"
 #include "support/test_scene.h"
 

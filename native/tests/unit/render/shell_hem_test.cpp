@@ -4,10 +4,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "math/sphere/directions.h"
+#include "math/sphere/random.h"
+#include "render/shadow_queue.h"
 #include "render/vertex.h"
-#include "render/visible_rays.h"
-#include "sphere/directions.h"
-#include "sphere/random.h"
 #include "support/example_shell.h"
 #include "support/test_scene.h"
 

@@ -1,14 +1,14 @@
 // Shells in pictures: what is seen, what is seen through, what throws a shadow.
 #include <gtest/gtest.h>
 
-#include "btf/bilinear_texels.h"
-#include "material/holed_btf_material.h"
+#include "btf/eval/sided_btf_material.h"
+#include "btf/measure/bilinear_texels.h"
+#include "math/sphere/directions.h"
+#include "math/sphere/frame.h"
+#include "math/sphere/random.h"
+#include "render/shadow_queue.h"
 #include "render/shell_crossing.h"
 #include "render/vertex.h"
-#include "render/visible_rays.h"
-#include "sphere/directions.h"
-#include "sphere/frame.h"
-#include "sphere/random.h"
 #include "support/example_shell.h"
 #include "support/test_scene.h"
 
@@ -62,7 +62,7 @@ struct Shot {
     scene.add_instance(scene.add_mesh(std::move(mesh)), place, {0});
     scene.set_environment(Environment::constant(Rgb(1.0f)));
   }
-  /// Of the middle `half` metres, seen from above.
+  /// Mean alpha up to about `half` meters from the center, seen from above.
   double alpha(float half, int side = 64) { return test::mean_of(picture(half, side), 3); }
   std::vector<float> picture(float half, int side = 64) {
     scene.set_camera(test::camera_above(half));

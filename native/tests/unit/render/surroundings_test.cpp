@@ -1,5 +1,5 @@
 // Cameras that stand inside of things.
-#include "render/surroundings.h"
+#include "usage/observe/scene_observer.h"
 
 #include <gtest/gtest.h>
 

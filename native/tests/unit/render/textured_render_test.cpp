@@ -1,8 +1,8 @@
 // Pictures of textured planes, whose pixels are known.
 #include <gtest/gtest.h>
 
-#include "material/principled_material.h"
-#include "sphere/random.h"
+#include "material/principled/principled_material.h"
+#include "math/sphere/random.h"
 #include "support/textured_scenes.h"
 
 namespace velour {
@@ -37,7 +37,7 @@ std::shared_ptr<const Material> matte(int width, int height, std::vector<Rgb> te
   return make_principled_material({.specular = 0}, {.base_color = {texture, {}}}, 1);
 }
 
-std::vector<Rgb> colours() {
+std::vector<Rgb> colors() {
   std::vector<Rgb> texels;
   for (int i = 0; i < kPixels * kPixels; ++i) {
     texels.emplace_back(static_cast<float>(i) / 64, static_cast<float>(i % 8) / 8, 0.5f);
@@ -47,7 +47,7 @@ std::vector<Rgb> colours() {
 
 /// One texel a pixel, row 0 of both at the bottom.
 TEST(TexturedRender, PixelsAreTheirTexels) {
-  const auto texels = colours();
+  const auto texels = colors();
   const auto pixels = picture(matte(kPixels, kPixels, texels, {.filter = TextureFilter::closest}),
                               test::repeating_square(1, 1), orthographic_above(1));
   for (size_t i = 0; i < texels.size(); ++i) {
@@ -57,7 +57,7 @@ TEST(TexturedRender, PixelsAreTheirTexels) {
 
 /// Linear between texels: a pixel's mean over nine of them has weights 1/8, 3/4, 1/8 each way.
 TEST(TexturedRender, PixelsAreTheMeansOfTheInterpolant) {
-  const auto texels = colours();
+  const auto texels = colors();
   const auto pixels =
       picture(matte(kPixels, kPixels, texels), test::repeating_square(1, 1), orthographic_above(1), 4096);
   const float weight[] = {0.125f, 0.75f, 0.125f};
@@ -81,7 +81,7 @@ std::vector<Rgb> checker(int side) {
 }
 
 /// A camera ray or two a pixel, and 32 texels: only the levels can know the mean.
-TEST(TexturedRender, AMinifiedCheckerIsGrey) {
+TEST(TexturedRender, AMinifiedCheckerIsGray) {
   const auto pixels = picture(matte(64, 64, checker(64)), test::repeating_square(1, 4), test::camera_above(1), 8);
   for (size_t i = 0; i < pixels.size(); i += 4) EXPECT_NEAR(pixels[i], 0.5f, 0.01f);
 }
@@ -123,7 +123,7 @@ class Sided : public test::Varying {
   bool varies_;
 };
 
-/// Of a plane whose second texture coordinate grows to +y or -y, under a sun in the +y half.
+/// Radiance of a plane whose second texture coordinate grows to +y or -y, under a sun in the +y half.
 double lit_from_y(bool varies, float v_sign) {
   Scene scene;
   const Mat2 map(1, 0, 0, v_sign);

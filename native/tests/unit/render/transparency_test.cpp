@@ -1,7 +1,7 @@
 // Surfaces that are there in part: means of camera, shadow and bounce rays that are known.
 #include <gtest/gtest.h>
 
-#include "material/principled_material.h"
+#include "material/principled/principled_material.h"
 #include "material/shader_layers.h"
 #include "support/textured_scenes.h"
 
@@ -94,15 +94,15 @@ TEST(Hidden, RaysPassBacksThatAreHiddenFromTheirKind) {
   EXPECT_NEAR(seen_with_hidden_backs(down, kSeen | hidden::kFromShadows), 0.4, 5e-3);
 }
 
-/// A square of 0.4 beneath one that glows; whether rays are drawn to it or find it, its hidden back sheds no light.
+/// A square of 0.4 beneath one that emits; whether rays are drawn to it or find it, its hidden back sheds no light.
 TEST(Hidden, BacksThatAreHiddenShedNoLight) {
   const auto below = [](uint8_t hidden_backs, bool turned, Strategy strategy) {
     Scene scene;
     Affine place = test::shift({0, 0, 1});
     if (turned) place.m[5] = place.m[10] = -1;
-    SurfaceMaterial glowing = matte(0, {1});
-    glowing.emission = Rgb(1);
-    scene.add_instance(scene.add_mesh(test::square(1)), place, {scene.add_material(glowing)}, {}, hidden::kFromCamera);
+    SurfaceMaterial emissive = matte(0, {1});
+    emissive.emission = Rgb(1);
+    scene.add_instance(scene.add_mesh(test::square(1)), place, {scene.add_material(emissive)}, {}, hidden::kFromCamera);
     scene.set_hidden_backs(0, hidden_backs);
     scene.add_instance(scene.add_mesh(test::square(8)), {}, {scene.add_material(matte(0.4f, {1}))});
     scene.set_camera(test::camera_above(1));
@@ -223,8 +223,8 @@ SurfaceMaterial pane(const Rgb& color) {
           .rec709_colors = false};
 }
 
-/// Of a coloured pane before a sky of 1, by a camera, a shadow or a bounce ray.
-TEST(Transparency, ColoursMultiplyForEveryKindOfRay) {
+/// Camera rays, and rays that light a surface, pass colored panes in front of an environment of 1.
+TEST(Transparency, ColorsMultiplyForEveryKindOfRay) {
   const Rgb color(0.8f, 0.4f, 0.1f);
   Scene seen, shaded;
   for (const float z : {0.0f, 0.5f}) add(seen, test::square(5), test::shift({0, 0, -z}), pane(color));
@@ -254,7 +254,7 @@ TEST(Transparency, ColoursMultiplyForEveryKindOfRay) {
   EXPECT_EQ(test::mean_of(filled, 3), 1);
 }
 
-TEST(Transparency, BouncesTakeTheColourOfWhatTheyPass) {
+TEST(Transparency, BouncesTakeTheColorOfWhatTheyPass) {
   Scene scene;
   add(scene, test::square(50), test::shift({0, 0, -1}), {std::make_shared<test::Lambert>(0.0f), Rgb(1.0f), false});
   add(scene, test::square(50), test::shift({0, 0, -0.5f}), pane({1, 0.5f, 0.2f}));

@@ -4,9 +4,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "job/error.h"
+#include "base/error.h"
 #include "material/normal_map.h"
-#include "material/principled_material.h"
+#include "material/principled/principled_material.h"
 #include "support/textured_scenes.h"
 
 namespace velour {

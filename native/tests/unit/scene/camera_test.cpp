@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "sphere/random.h"
+#include "math/sphere/random.h"
 
 namespace velour {
 namespace {
@@ -71,7 +71,7 @@ TEST(Aperture, IsUniformOverItsShape) {
 }
 
 TEST(Aperture, CornersOfThePolygonFollowItsRotation) {
-  // Of a triangle that points up, the top is within, the bottom not.
+  // A triangle that points up reaches the unit circle at the top, and half as far at the bottom.
   const Aperture triangle{.radius = 1, .blades = 3, .rotation = 0.5f * kPi + kPi / 3};
   float top = 0, bottom = 0;
   RandomStream random(4, 5, 6);

@@ -1,4 +1,4 @@
-#include "scene/corner_tangents.h"
+#include "scene/mesh_arrays.h"
 
 #include <gtest/gtest.h>
 

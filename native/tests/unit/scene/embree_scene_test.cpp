@@ -8,9 +8,9 @@
 #include <thread>
 #include <vector>
 
-#include "job/error.h"
-#include "sphere/random.h"
-#include "sphere/warp.h"
+#include "base/error.h"
+#include "math/sphere/random.h"
+#include "math/sphere/warp.h"
 
 namespace velour {
 namespace {

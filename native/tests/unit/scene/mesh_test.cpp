@@ -5,9 +5,9 @@
 
 #include <limits>
 
-#include "job/error.h"
+#include "base/error.h"
+#include "math/sphere/random.h"
 #include "scene/scene.h"
-#include "sphere/random.h"
 #include "support/test_data.h"
 #include "support/test_scene.h"
 

@@ -6,8 +6,7 @@
 #include <cmath>
 #include <fstream>
 
-#include "job/error.h"
-#include "scene/polygon_triangles.h"
+#include "base/error.h"
 #include "support/inputs.h"
 #include "support/test_data.h"
 

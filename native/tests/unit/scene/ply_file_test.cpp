@@ -8,7 +8,7 @@
 #include <filesystem>
 #include <fstream>
 
-#include "job/error.h"
+#include "base/error.h"
 #include "scene/mesh_file.h"
 #include "support/inputs.h"
 #include "support/test_data.h"

@@ -3,9 +3,9 @@
 
 #include <gtest/gtest.h>
 
-#include "sphere/frame.h"
-#include "sphere/warp.h"
-#include "srbf/kernel.h"
+#include "math/sphere/frame.h"
+#include "math/sphere/warp.h"
+#include "math/srbf/kernel.h"
 #include "support/artifacts_fixture.h"
 #include "support/statistics.h"
 
@@ -137,7 +137,7 @@ TEST_F(ChiSquareEvidence, IsWrittenByAFailureAndNamed) {
   EXPECT_EQ(path.filename(), "ChiSquareEvidence.IsWrittenByAFailureAndNamed.a_lobe___of_200.cells.csv");
   const auto lines = lines_of(path);
   ASSERT_EQ(lines.size(), 1 + 51u * 40u);
-  EXPECT_EQ(lines[0], "d0,d1,phi0,phi1,observed,expected,normalised_difference");
+  EXPECT_EQ(lines[0], "d0,d1,phi0,phi1,observed,expected,normalized_difference");
 }
 
 TEST_F(ChiSquareEvidence, IsNotWrittenBySuccess) {

@@ -1,7 +1,7 @@
 #include "support/picture_means.h"
 
 #include "image/picture.h"
-#include "sphere/random.h"
+#include "math/sphere/random.h"
 #include "support/artifacts_fixture.h"
 
 namespace velour::test {

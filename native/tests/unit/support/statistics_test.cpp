@@ -1,8 +1,8 @@
 // The harness that compares means is itself judged here: it must accept what is equal and reject what is not.
 #include "support/statistics.h"
 
-#include "sphere/random.h"
-#include "srbf/kernel.h"
+#include "math/sphere/random.h"
+#include "math/srbf/kernel.h"
 #include "support/artifacts_fixture.h"
 #include "support/significance.h"
 

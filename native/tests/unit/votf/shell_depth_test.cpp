@@ -1,18 +1,18 @@
-#include "votf/shell_depth.h"
+#include "votf/eval/shell_depth.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <limits>
 
-#include "sphere/directions.h"
-#include "sphere/random.h"
+#include "math/sphere/directions.h"
+#include "math/sphere/random.h"
 #include "support/example_shell.h"
 
 namespace velour {
 namespace {
 
-/// Of the line through x = `place` of the plane z = 0: how far it is from the nearest wire's axis, signed.
+/// Signed distance from the nearest wire's axis to the line along `w` through x = `place` of the plane z = 0.
 float from_axis(float place, const Vec3& w) {
   const float cosine = w.z / std::hypot(w.x, w.z);
   return (place - 0.5f) * cosine;

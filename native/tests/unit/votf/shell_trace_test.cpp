@@ -1,4 +1,4 @@
-#include "votf/shell_trace.h"
+#include "votf/eval/shell_trace.h"
 
 #include <gtest/gtest.h>
 
@@ -6,8 +6,8 @@
 #include <limits>
 #include <vector>
 
-#include "sphere/directions.h"
-#include "sphere/random.h"
+#include "math/sphere/directions.h"
+#include "math/sphere/random.h"
 #include "support/example_shell.h"
 
 namespace velour {

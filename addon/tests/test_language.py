@@ -1,0 +1,65 @@
+"""scripts/check_language finds what it looks for."""
+
+from __future__ import annotations
+
+import importlib.machinery
+import importlib.util
+import re
+import subprocess
+
+import pytest
+from conftest import ROOT
+
+
+def _module():
+    loader = importlib.machinery.SourceFileLoader("check_language", str(ROOT / "scripts/check_language"))
+    module = importlib.util.module_from_spec(importlib.util.spec_from_loader("check_language", loader))
+    loader.exec_module(module)
+    return module
+
+
+check = _module()
+
+
+@pytest.mark.parametrize("rule", check.RULES, ids=lambda rule: rule.pattern)
+def test_a_rule_knows_good_from_bad(rule):
+    assert not re.search(rule.pattern, rule.good)
+    assert re.search(rule.pattern, rule.bad)
+
+
+@pytest.fixture
+def tree(tmp_path):
+    subprocess.run(["git", "init", "-q", tmp_path], check=True)
+
+    def violations(name, text):
+        path = tmp_path / name
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_text(text)
+        return list(check.violations(tmp_path))
+
+    return violations
+
+
+def test_a_violation_is_named_with_its_place_and_remedy(tree):
+    assert tree("native/src/a.h", "int color;\nint colour;\n") == [
+        "native/src/a.h:2: 'colour'; write color",
+    ]
+
+
+def test_rules_apply_to_the_files_that_they_name(tree):
+    assert tree("docs/a.md", "kMostLobes was renamed.\n") == []
+
+
+@pytest.mark.parametrize(
+    ("text", "reported"),
+    [
+        ("word " * 24 + "\n", False),
+        ("longer " * 24 + "\n", True),
+        ("| " + "longer " * 24 + "|\n", False),
+        ("```\n" + "longer " * 24 + "\n```\n", False),
+        ("word word\n" * 700, False),
+        ("word word\n" * 800, True),
+    ],
+)
+def test_pages_keep_their_measure(tree, text, reported):
+    assert bool(tree("docs/guide/page.md", text)) == reported

@@ -1,0 +1,53 @@
+// Fits a parametric model to the slices of a measurement: growth, refinement, rounding.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "base/progress.h"
+#include "brdf/fit/slice_sampling.h"
+#include "brdf/model/parametric_brdf.h"
+#include "model/records.h"
+
+namespace velour {
+
+struct TrackedFitOptions {
+  bool isotropic = true;
+  int cells = 10;
+  ViewRange views;
+  int max_lobes = 12;
+  double tolerance = 0.02;  // relative L2 of every view up to 75 degrees; twice that beyond
+  bool seen_evenly = true;  // sample weights are solid angles alone (brdf/fit/parametric/problem.h)
+  int threads = 0;
+};
+
+struct TrackedFit {
+  ParametricBrdf brdf;  // control values are half floats
+  std::vector<Vec3d> views;
+  std::vector<double> error;  // relative L2 of each view, channels weighted as in luminance
+  OrderCurve order;           // the growth, then the final model
+};
+
+/// Fits with increasing numbers of lobes that share their growth. Each equals fit_tracked() with that maximum.
+class TrackedGrowth {
+ public:
+  /// options.max_lobes only scales the progress.
+  TrackedGrowth(const std::vector<MeasuredSlice>& slices, const TrackedFitOptions& options, Progress& progress);
+  ~TrackedGrowth();
+
+  /// Fit with at most `most` lobes, which must not decrease from call to call.
+  TrackedFit fit(int most);
+
+ private:
+  class Growth;
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+TrackedFit fit_tracked(const std::vector<MeasuredSlice>& slices, const TrackedFitOptions& options, Progress& progress);
+
+/// Recomputes the errors of `fit` after a change of its model.
+void judge_again(const std::vector<MeasuredSlice>& slices, TrackedFitOptions options, TrackedFit& fit,
+                 const Progress& progress);
+
+}  // namespace velour

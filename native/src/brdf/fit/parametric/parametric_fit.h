@@ -1,0 +1,27 @@
+// Fits the parametric model to a measurement.
+#pragma once
+
+#include "base/progress.h"
+#include "brdf/fit/options.h"
+#include "brdf/fit/parametric/growth.h"
+#include "brdf/fit/slice_sampling.h"
+
+namespace velour {
+
+/// Fits a few lobes to all views together, each in light or half space and varying with the view
+/// (brdf/model/parametric_brdf.h). Adds lobes until every view is within the tolerance, a bound is reached, or another
+/// lobe gains next to nothing. Isotropic measurements are fitted by a model that is symmetric about the plane of
+/// incidence. Deterministic for any thread count. `share`: the fit's share of the task's progress.
+Model fit_parametric(const Measurement& measurement, const FitOptions& options, Progress& progress, double share = 1);
+
+// The steps of fit_parametric(), for fits to a part of the views.
+
+/// The slices that a parametric fit reads.
+MeasuredSlices parametric_slices(const Measurement& measurement, const FitOptions& options, Progress& progress);
+/// Options of the fit to all views.
+TrackedFitOptions tracked_options(const Measurement& measurement, const FitOptions& options);
+/// The model of `fit` with its record, except for the time and the warnings about slices.
+Model parametric_model(const Measurement& measurement, const TrackedFit& fit, const FitOptions& options,
+                       Progress& progress);
+
+}  // namespace velour

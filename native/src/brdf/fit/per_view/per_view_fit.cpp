@@ -1,0 +1,142 @@
+#include "brdf/fit/per_view/per_view_fit.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include "base/parallel.h"
+#include "brdf/eval/per_view_material.h"
+#include "brdf/fit/fit_input.h"
+#include "brdf/fit/fit_report.h"
+#include "brdf/fit/per_view/fitted_slices.h"
+#include "math/srbf/lobe_mixture.h"
+
+namespace velour {
+
+namespace {
+
+// Slices are fitted more tightly than required, to leave room for the interpolation error between them.
+constexpr double kSliceGoalShare = 0.8;
+constexpr SliceGrid kGrid{96, 64};
+
+std::vector<ViewPath> fit_slices(const std::vector<MeasuredSlice>& slices, const FitOptions& options,
+                                 Progress& progress) {
+  std::vector<ViewPath> paths(slices.size());
+  parallel_for_each(slices.size(), options.threads, progress, [&](size_t i) {
+    const double theta_v = std::acos(std::min(slices[i].wv.z, 1.0f));
+    const SliceSamples samples(slices[i].samples);
+    const double goal = std::hypot(kSliceGoalShare * tolerance_at(options.tolerance, theta_v), samples.gamut_error());
+    paths[i] = {fit_slice(samples, {options.kernel, options.max_lobes, goal}, progress), slices[i].wv.z};
+  });
+  return paths;
+}
+
+/// The model of `fitted`, which is `all` or a part of it, with its record: errors, albedo, order, warnings.
+Model reported(const Measurement& measurement, const FittedSlices& all, const FittedSlices& fitted,
+               const FitOptions& options, Progress& progress) {
+  const auto brdf = assemble(fitted, measurement.isotropic(), options);
+  std::vector<FittedView> views;
+  for (size_t i = 0; i < fitted.slices.size(); ++i) {
+    views.push_back({fitted.slices[i].wv, fitted.paths[i].path.back().relative_l2});
+  }
+  Model model;
+  model.fit = report_fit(measurement, *make_scattered_material(brdf, 0), options, views, {}, progress);
+  model.fit.order = order_of_slices(all, fitted, options.tolerance);
+  model.body = *brdf;
+  model.source = {measurement.provenance().name, measurement.provenance().format, measurement.provenance().sha256};
+  return model;
+}
+
+uint64_t size_of_scattered(const Model& model, const FitOptions& options) {
+  return options.size_of ? options.size_of(model) : std::get<ScatteredBrdf>(model.body).parameter_bytes();
+}
+
+/// Best model of `all` within options.max_bytes, in a few tries: its size is known only once it is encoded.
+Model bounded_model(const Measurement& measurement, const FittedSlices& all, const FitOptions& options,
+                    Progress& progress) {
+  const uint64_t whole = parameter_bytes(all);
+  for (uint64_t budget = std::max(ScatteredBrdf::kViewBytes, std::min(options.max_bytes, whole));;) {
+    progress.check();
+    const FittedSlices fitted = within(budget, all, measurement.isotropic(), options);
+    Model model = reported(measurement, all, fitted, options, progress);
+    if (budget < whole) {
+      model.fit.warnings.push_back("the bound of " + std::to_string(options.max_bytes) + " bytes leaves " +
+                                   std::to_string(fitted.slices.size()) + " views and " +
+                                   std::to_string(std::get<ScatteredBrdf>(model.body).lobe_count()) + " lobes");
+    }
+    const uint64_t size = size_of_scattered(model, options);
+    if (size <= options.max_bytes) return model;
+    if (budget == ScatteredBrdf::kViewBytes) {
+      throw Error(Status::invalid_argument, "The fit's max_bytes is " + std::to_string(options.max_bytes) +
+                                                ", but the smallest model of this measurement takes " +
+                                                std::to_string(size) + " bytes. Raise the maximum size.");
+    }
+    const uint64_t excess = size - options.max_bytes + ScatteredBrdf::kLobeBytes;
+    budget = budget > excess + ScatteredBrdf::kViewBytes ? budget - excess : ScatteredBrdf::kViewBytes;
+  }
+}
+
+}  // namespace
+
+Model fit_scattered(const Measurement& measurement, const FitOptions& options, Progress& progress) {
+  const auto start = std::chrono::steady_clock::now();
+  check_options(options, LobeMixture::kCapacity / ScatteredBrdf::usual_neighbors(measurement.isotropic()));
+  progress.stage("sampling", 0.0, 0.1);
+  MeasuredSlices measured = read_slices(measurement, kGrid, options, progress);
+  std::vector<std::string> warnings;
+  warn_of_slices(measured, warnings);
+  progress.stage("fitting", 0.1, 0.95);
+  auto paths = fit_slices(measured.slices, options, progress);
+  const FittedSlices fitted{std::move(measured.slices), std::move(paths)};
+
+  progress.stage("checking the model", 0.95, 1.0);
+  Model model = options.max_bytes > 0 ? bounded_model(measurement, fitted, options, progress)
+                                      : reported(measurement, fitted, fitted, options, progress);
+  model.fit.warnings.insert(model.fit.warnings.end(), warnings.begin(), warnings.end());
+  progress.check();
+  progress.update(1.0);
+  model.fit.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  return model;
+}
+
+namespace {
+
+size_t most_lobes(const FittedSlices& fitted) {
+  size_t most = 0;
+  for (const ViewPath& p : fitted.paths) most = std::max(most, p.path.size() - 1);
+  return most;
+}
+
+/// The point of `fitted` with at most `lobes` lobes per view.
+OrderPoint point_at(const FittedSlices& fitted, size_t lobes, double tolerance) {
+  OrderPoint point{static_cast<int>(lobes), 0, 0, 0};
+  double sum = 0, weights = 0;
+  for (size_t i = 0; i < fitted.paths.size(); ++i) {
+    const ViewPath& view = fitted.paths[i];
+    const size_t kept = std::min(lobes, view.path.size() - 1);
+    const double error = view.path[kept].relative_l2;
+    const double theta_v = std::acos(std::min(fitted.slices[i].wv.z, 1.0f));
+    point.parameter_bytes += ScatteredBrdf::kViewBytes + kept * ScatteredBrdf::kLobeBytes;
+    point.worst = std::max(point.worst, error / tolerance_at(tolerance, theta_v));
+    sum += view.importance * error;
+    weights += view.importance;
+  }
+  if (weights > 0) point.relative_l2 = sum / weights;
+  return point;
+}
+
+}  // namespace
+
+OrderCurve order_of_slices(const FittedSlices& all, const FittedSlices& chosen, double tolerance) {
+  OrderCurve order;
+  const size_t most = most_lobes(all);
+  for (size_t lobes = 1; lobes < most; lobes *= 2) order.points.push_back(point_at(all, lobes, tolerance));
+  order.points.push_back(point_at(all, most, tolerance));
+  const OrderPoint model = point_at(chosen, most_lobes(chosen), tolerance);
+  const auto smaller = [](const OrderPoint& a, const OrderPoint& b) { return a.parameter_bytes < b.parameter_bytes; };
+  auto at = std::lower_bound(order.points.begin(), order.points.end(), model, smaller);
+  if (at == order.points.end() || *at != model) at = order.points.insert(at, model);
+  order.chosen = static_cast<size_t>(at - order.points.begin());
+  return order;
+}
+
+}  // namespace velour

@@ -1,0 +1,124 @@
+#include "brdf/formats/bsdf_xml.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "base/error.h"
+
+namespace velour {
+namespace {
+
+constexpr uint32_t kMaxPatches = 4096;  // per basis; Klems Full has 145
+constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
+
+std::string text_of(const pugi::xml_node& node) {
+  const std::string_view all = node.text().get();
+  const size_t first = all.find_first_not_of(" \t\r\n"), last = all.find_last_not_of(" \t\r\n");
+  return first == std::string_view::npos ? "" : std::string(all.substr(first, last - first + 1));
+}
+
+}  // namespace
+
+BsdfXml::BsdfXml(std::span<const uint8_t> bytes, const std::string& path) : path_(path) {
+  const pugi::xml_parse_result parsed = xml_.load_buffer(bytes.data(), bytes.size());
+  if (!parsed) {
+    fail("is not a valid XML document: " + std::string(parsed.description()) + " at byte " +
+         std::to_string(parsed.offset) + "; it may be truncated. Download or export it again.");
+  }
+  layer_ = xml_.child("WindowElement").child("Optical").child("Layer");
+  if (!layer_) fail("has no WindowElement/Optical/Layer element; it is not a BSDF file.");
+  read_structure();
+  read_bases();
+}
+
+std::string BsdfXml::name() const { return text_of(layer_.child("Material").child("Name")); }
+
+pugi::xml_node BsdfXml::block(std::string_view wavelength, std::string_view side) const {
+  for (const pugi::xml_node data : layer_.children("WavelengthData")) {
+    if (text_of(data.child("Wavelength")) != wavelength) continue;
+    for (const pugi::xml_node block : data.children("WavelengthDataBlock")) {
+      if (text_of(block.child("WavelengthDataDirection")) == side) return block;
+    }
+  }
+  return {};
+}
+
+const KlemsBasis& BsdfXml::basis(const pugi::xml_node& block, const char* field) const {
+  const std::string name = text_of(block.child(field));
+  const auto own = bases_.find(name);
+  if (own != bases_.end()) return own->second;
+  const KlemsBasis* known = KlemsBasis::standard(name);
+  if (known == nullptr)
+    fail(std::string(field) + " '" + name + "' is neither defined in the file nor a standard basis of LBNL.");
+  return *known;
+}
+
+std::vector<float> BsdfXml::numbers(const pugi::xml_node& block, size_t count) const {
+  std::string_view rest = block.child("ScatteringData").text().get();
+  std::vector<float> values;
+  values.reserve(std::min(count, rest.size() / 2 + 1));
+  while (const auto value = next_number(rest)) values.push_back(*value);
+  if (!rest.empty()) {
+    fail("ScatteringData has '" + std::string(rest.substr(0, 12)) + "' where a number is expected.");
+  }
+  if (values.size() != count) {
+    fail("ScatteringData has " + std::to_string(values.size()) + " values, but its angle bases require " +
+         std::to_string(count) + ".");
+  }
+  return values;
+}
+
+std::string_view BsdfXml::tree(const pugi::xml_node& block) const {
+  const std::string basis = text_of(block.child("AngleBasis"));
+  if (basis != "LBNL/Shirley-Chiu") {
+    throw Error(Status::unsupported,
+                path_ + ": AngleBasis '" + basis + "' of a tensor tree is not supported; use LBNL/Shirley-Chiu.");
+  }
+  return block.child("ScatteringData").text().get();
+}
+
+void BsdfXml::fail(const std::string& what) const { throw Error(Status::bad_data, path_ + ": " + what); }
+
+void BsdfXml::read_structure() {
+  const std::string name = text_of(definition().child("IncidentDataStructure"));
+  const std::pair<const char*, Structure> known[] = {{"Columns", Structure::columns},
+                                                     {"Rows", Structure::rows},
+                                                     {"TensorTree3", Structure::tree3},
+                                                     {"TensorTree4", Structure::tree4}};
+  const auto found = std::ranges::find(known, name, [](const auto& one) { return one.first; });
+  if (found == std::end(known)) {
+    fail("IncidentDataStructure is '" + name + "'; it must be Columns, Rows, TensorTree3 or TensorTree4.");
+  }
+  structure_ = found->second;
+}
+
+void BsdfXml::read_bases() {
+  for (const pugi::xml_node basis : definition().children("AngleBasis")) {
+    std::vector<KlemsBasis::Ring> rings;
+    uint64_t patches = 0;
+    for (const pugi::xml_node block : basis.children("AngleBasisBlock")) {
+      const pugi::xml_node bounds = block.child("ThetaBounds");
+      const double least = bounds.child("LowerTheta").text().as_double(kMissing);
+      const double most = bounds.child("UpperTheta").text().as_double(kMissing);
+      const uint32_t count = block.child("nPhis").text().as_uint();
+      const double expected = rings.empty() ? 0 : rings.back().most_theta;
+      if (!(std::abs(least - expected) < 1e-3 && most > least && most < 90.001) || count == 0 ||
+          (patches += count) > kMaxPatches) {
+        fail("AngleBasis '" + text_of(basis.child("AngleBasisName")) + "': ring " + std::to_string(rings.size() + 1) +
+             " spans " + std::to_string(least) + " to " + std::to_string(most) + " degrees with " +
+             std::to_string(count) +
+             " patches; rings must follow each other up to 90 degrees and have at most 4096 patches in all.");
+      }
+      rings.push_back({expected, most, count});
+    }
+    if (rings.empty()) continue;  // a standard basis
+    if (rings.back().most_theta < 89.999) {
+      fail("AngleBasis '" + text_of(basis.child("AngleBasisName")) + "' ends at " +
+           std::to_string(rings.back().most_theta) + " degrees; its rings must reach 90 degrees.");
+    }
+    bases_.emplace(text_of(basis.child("AngleBasisName")), KlemsBasis(rings));
+  }
+}
+
+}  // namespace velour

@@ -1,0 +1,17 @@
+// Irregular isotropic spectral samples as text: the .brdf files of Cornell's goniometer and of pbrt-v2.
+#pragma once
+
+#include <memory>
+#include <span>
+
+#include "brdf/measure/measurement.h"
+
+namespace velour {
+
+/// True for text whose first numbers are a count and a plausible wavelength (nm). '#' begins a comment.
+bool looks_like_cornell(std::span<const uint8_t> head);
+
+/// `provenance` has path, name, sha256 and size already.
+std::shared_ptr<const Measurement> read_cornell(std::span<const uint8_t> bytes, Provenance provenance);
+
+}  // namespace velour

@@ -1,0 +1,151 @@
+#include "brdf/measure/irregular_samples.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <Eigen/Dense>
+#include <nanoflann.hpp>
+
+#include "base/error.h"
+#include "base/parallel.h"
+#include "brdf/measure/half_diff.h"
+
+namespace velour {
+namespace {
+
+constexpr int kCount = ScatteredInterpolant::kNeighbors;
+constexpr double kHalfPower = 0.7;  // exponent of theta_h
+constexpr double kAzimuthWeight = 0.3;
+constexpr double kLinearBelow = 0.01;  // 1/sr: asinh turns from linear to logarithmic here
+constexpr double kFalloff = 3.0;       // weight of the furthest neighbor: exp(-3)
+constexpr double kRidge = 1e-3;        // on the slopes, relative to the data's own weight
+
+using Point = std::array<double, 3>;
+
+/// Coordinates of the regression and of the reach test.
+struct Place {
+  Point regression, reach;
+};
+
+Place place_of(const Vec3& wl, const Vec3& wv) {
+  const HalfDiff angle = half_diff(wl, wv);
+  const double theta_h = angle.theta_h, theta_d = angle.theta_d, cos_phi = std::cos(double{angle.phi_d});
+  const double tilt = std::sin(theta_h) * std::sin(theta_d);
+  return {{std::pow(theta_h, kHalfPower), theta_d, kAzimuthWeight * tilt * (2.0 * cos_phi * cos_phi - 1.0)},
+          {theta_h, theta_d, tilt * std::abs(cos_phi)}};
+}
+
+struct Nearest {
+  std::array<uint32_t, kCount> sample{};
+  std::array<double, kCount> distance_sq{};  // increasing
+};
+
+double distance_sq(const Point& a, const Point& b) {
+  double sum = 0.0;
+  for (size_t i = 0; i < 3; ++i) sum += (a[i] - b[i]) * (a[i] - b[i]);
+  return sum;
+}
+
+double compress(float f) { return std::asinh(double{f} / kLinearBelow); }
+float expand(double g) { return static_cast<float>(kLinearBelow * std::sinh(g)); }
+
+}  // namespace
+
+/// The samples as a nanoflann data set, and a tree over them.
+struct ScatteredInterpolant::Index {
+  explicit Index(std::span<const ScatteredSample> samples);
+
+  size_t kdtree_get_point_count() const { return regression.size(); }
+  double kdtree_get_pt(size_t i, size_t axis) const { return regression[i][axis]; }
+  template <class Box>
+  bool kdtree_get_bbox(Box&) const {
+    return false;
+  }
+
+  Rgb regress(const Point& here, const Nearest& nearest) const;
+
+  std::vector<Point> regression, reach;       // Place
+  std::vector<std::array<double, 3>> values;  // compressed
+  using Tree = nanoflann::KDTreeSingleIndexAdaptor<nanoflann::L2_Simple_Adaptor<double, Index>, Index, 3>;
+  std::unique_ptr<Tree> tree;
+};
+
+ScatteredInterpolant::Index::Index(std::span<const ScatteredSample> samples) {
+  for (const ScatteredSample& sample : samples) {
+    const Place place = place_of(sample.wl, sample.wv);
+    regression.push_back(place.regression);
+    reach.push_back(place.reach);
+    values.push_back({compress(sample.f.r), compress(sample.f.g), compress(sample.f.b)});
+  }
+  tree = std::make_unique<Tree>(3, *this);
+  tree->buildIndex();
+}
+
+ScatteredInterpolant::ScatteredInterpolant(std::span<const ScatteredSample> samples) {
+  if (samples.size() < kNeighbors)
+    throw Error(Status::invalid_argument, std::to_string(samples.size()) +
+                                              " valid samples are too few to interpolate; at least " +
+                                              std::to_string(kNeighbors) + " are needed.");
+  index_ = std::make_unique<const Index>(samples);
+}
+
+ScatteredInterpolant::~ScatteredInterpolant() = default;
+
+std::optional<Rgb> ScatteredInterpolant::f(const Vec3& wl, const Vec3& wv) const {
+  const Place here = place_of(wl, wv);
+  Nearest nearest;
+  (void)index_->tree->knnSearch(here.regression.data(), kCount, nearest.sample.data(), nearest.distance_sq.data());
+  const bool in_reach = std::any_of(nearest.sample.begin(), nearest.sample.end(), [&](uint32_t n) {
+    return distance_sq(here.reach, index_->reach[n]) <= kReach * kReach;
+  });
+  if (!in_reach) return std::nullopt;
+  return index_->regress(here.regression, nearest);
+}
+
+Rgb ScatteredInterpolant::Index::regress(const Point& here, const Nearest& nearest) const {
+  const double width = std::max(nearest.distance_sq.back(), 1e-12);
+  Eigen::Matrix<double, kCount, 4> terms;
+  Eigen::Matrix<double, kCount, 3> data;
+  Eigen::Matrix<double, kCount, 1> weights;
+  for (int i = 0; i < kCount; ++i) {
+    const auto n = static_cast<size_t>(i);
+    const Point& there = regression[nearest.sample[n]];
+    const auto& value = values[nearest.sample[n]];
+    terms.row(i) << 1.0, there[0] - here[0], there[1] - here[1], there[2] - here[2];
+    data.row(i) << value[0], value[1], value[2];
+    weights(i) = std::exp(-kFalloff * nearest.distance_sq[n] / width);
+  }
+  Eigen::Matrix4d normal = terms.transpose() * weights.asDiagonal() * terms;
+  normal.diagonal().tail<3>().array() += kRidge * weights.sum() * width;
+  const Eigen::Matrix<double, 4, 3> moment = terms.transpose() * weights.asDiagonal() * data;
+  const Eigen::Matrix<double, 4, 3> solution = normal.ldlt().solve(moment);
+  Rgb f;
+  for (int c = 0; c < 3; ++c) {
+    const double low = data.col(c).minCoeff(), high = data.col(c).maxCoeff();
+    f[c] = expand(std::clamp(solution(0, c), low, high + (high - low)));
+  }
+  return f;
+}
+
+std::vector<TableNode> resample_scattered(const ScatteredInterpolant& interpolant, const BrdfTableLayout& layout,
+                                          const Progress& progress) {
+  const HorizonTest horizon(layout);
+  std::vector<TableNode> nodes(layout.size());
+  parallel_fill(static_cast<size_t>(layout.theta_h), [&](size_t row) {
+    progress.check();
+    const int i = static_cast<int>(row);
+    for (int k = 0; k < layout.theta_d; ++k)
+      for (int l = 0; l <= layout.phi_d / 2; ++l) {
+        if (!horizon.above(i, k, l)) continue;
+        const DirectionPair pair = layout.pair(i, 0, k, l);
+        const auto f = interpolant.f(pair.wl, pair.wv);
+        if (!f) continue;
+        // f is the same at phi_d and pi - phi_d: mirror in the plane of incidence, then exchange the directions.
+        const int mirror = (layout.phi_d - l) % layout.phi_d;
+        nodes[layout.index(i, 0, k, l)] = nodes[layout.index(i, 0, k, mirror)] = {{f->r, f->g, f->b, 1.0f}};
+      }
+  });
+  return nodes;
+}
+
+}  // namespace velour

@@ -1,0 +1,45 @@
+// Interpolates isotropic BRDF samples at irregular directions.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "brdf/measure/brdf_table.h"
+#include "brdf/measure/measurement.h"
+
+namespace velour {
+
+/// Local linear regression over the nearest samples. f is assumed isotropic, reciprocal and mirror-symmetric, so a pair
+/// is a point (theta_h^0.7, theta_d, 0.3 sin theta_h sin theta_d cos 2 phi_d). f varies fastest with theta_h, whose
+/// power spreads a highlight over several samples. Each channel is fitted as asinh(f / 0.01 sr^-1), nearly logarithmic
+/// for highlights and linear about 0, with Gaussian weights over the 16 nearest samples and a light ridge on the
+/// slopes. The result never falls below those samples; it may rise above them by their range, because a highlight's top
+/// mostly lies between samples. docs/reference/measurement_formats.md compares the alternatives.
+class ScatteredInterpolant {
+ public:
+  /// Copies what it needs. Throws Error(invalid_argument) for fewer than kNeighbors samples.
+  explicit ScatteredInterpolant(std::span<const ScatteredSample> samples);
+  ~ScatteredInterpolant();
+  ScatteredInterpolant(const ScatteredInterpolant&) = delete;
+  ScatteredInterpolant& operator=(const ScatteredInterpolant&) = delete;
+
+  /// Nothing if no sample is within kReach. Both directions must be above the horizon. Thread-safe.
+  std::optional<Rgb> f(const Vec3& wl, const Vec3& wv) const;
+
+  static constexpr int kNeighbors = 16;
+  /// Distance in (theta_h, theta_d, sin theta_h sin theta_d |cos phi_d|), radians: the gaps of Cornell's sets are below
+  /// 8 degrees.
+  static constexpr double kReach = 10.0 * kPiD / 180.0;
+
+ private:
+  struct Index;
+  std::unique_ptr<const Index> index_;
+};
+
+/// The interpolant at the nodes of `layout` (phi_h 1, phi_d even), so that a look-up costs as little as MERL's.
+std::vector<TableNode> resample_scattered(const ScatteredInterpolant& interpolant, const BrdfTableLayout& layout,
+                                          const Progress& progress);
+
+}  // namespace velour

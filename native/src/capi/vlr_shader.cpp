@@ -1,0 +1,142 @@
+#include <algorithm>
+#include <cmath>
+
+#include "capi/conversions.h"
+#include "material/glossy_material.h"
+#include "material/normal_map.h"
+#include "material/rough_diffuse_material.h"
+
+using namespace velour;
+using namespace velour::capi;
+
+namespace {
+
+Rgb base_color(const vlr_principled_desc& d) { return {d.base_color[0], d.base_color[1], d.base_color[2]}; }
+
+TextureSlot<Rgb> normal_slot(const vlr_layer_desc& layer) {
+  return color_slot(layer.normal, layer.normal_map, layer.normal_set, "vlr_layer_desc.normal");
+}
+
+std::shared_ptr<const Material> with_normals(std::shared_ptr<const Material> material, const vlr_layer_desc& layer,
+                                             ReliefPart part) {
+  if (layer.normal == nullptr) return material;
+  return make_normal_mapped(std::move(material),
+                            {normal_slot(layer), std::max(layer.normal_strength, 0.0f),
+                             static_cast<ReliefCorrection>(layer.normal_correction)},
+                            part);
+}
+
+/// Steep normals affect base and lobes differently, so each is a layer of its own, as is the coat, which stays flat.
+std::shared_ptr<const Material> principled(const vlr_layer_desc& layer, const vlr_principled_desc& desc,
+                                           PrincipledTextures textures) {
+  PrincipledParameters parameters = parameters_of(desc);
+  textures.alpha = {};
+  if (layer.normal == nullptr) return make_principled_material(parameters, textures);
+  ShaderLayers parts;
+  const auto part = [&](PrincipledPart which) {
+    parameters.part = which;
+    return make_principled_material(parameters, textures);
+  };
+  const PrincipledParameters coated = parameters;
+  if (coated.coat > 0) parts.reflecting.push_back({part(PrincipledPart::coat)});
+  parameters.coat = 0;
+  parts.reflecting.push_back({with_normals(part(PrincipledPart::base), layer, ReliefPart::base), {}, coated});
+  parts.reflecting.push_back({with_normals(part(PrincipledPart::specular), layer, ReliefPart::lobe), {}, coated});
+  return make_layered_material(std::move(parts));
+}
+
+std::shared_ptr<const Material> reflecting(const vlr_layer_desc& layer, const vlr_principled_desc& desc,
+                                           const PrincipledTextures& textures) {
+  if (layer.kind == VLR_LAYER_GLOSSY) {
+    const GlossyParameters glossy{base_color(desc), desc.roughness, lobe_of(desc), textures.base_color,
+                                  textures.roughness};
+    return with_normals(make_glossy_material(glossy), layer, ReliefPart::lobe);
+  }
+  if (layer.kind == VLR_LAYER_DIFFUSE) {
+    const RoughDiffuseParameters diffuse{base_color(desc), desc.roughness, layer.interreflection != 0,
+                                         textures.base_color, textures.roughness};
+    return with_normals(make_rough_diffuse_material(diffuse), layer, ReliefPart::diffuse);
+  }
+  return principled(layer, desc, textures);
+}
+
+PrincipledTextures textures_of(const vlr_layer_desc& layer) {
+  return converted_textures(read_options(layer.textures, vlr_principled_textures_init, "vlr_principled_textures"));
+}
+
+LayerWeight& add_layer(ShaderLayers& layers, MeshSets& sets, const vlr_layer_desc& layer) {
+  const auto desc = read_options(layer.surface, vlr_principled_desc_init, "vlr_principled_desc");
+  const PrincipledTextures textures = textures_of(layer);
+  sets.add(sets_of(textures));
+  sets.add(normal_slot(layer));
+  if (layer.kind == VLR_LAYER_TRANSPARENT || layer.kind == VLR_LAYER_EMISSION) {
+    auto& to = layer.kind == VLR_LAYER_EMISSION ? layers.emissive : layers.transparent;
+    to.push_back({base_color(desc), textures.base_color});
+    return to.back().weight;
+  }
+  layers.reflecting.push_back({reflecting(layer, desc, textures)});
+  return layers.reflecting.back().weight;
+}
+
+}  // namespace
+
+void vlr_layer_desc_init(vlr_layer_desc* desc) {
+  *desc = {};
+  desc->struct_size = sizeof(vlr_layer_desc);
+  desc->normal_map[0] = desc->normal_map[4] = desc->normal_strength = 1.0f;
+}
+
+void vlr_factor_desc_init(vlr_factor_desc* desc) {
+  *desc = {};
+  desc->struct_size = sizeof(vlr_factor_desc);
+  desc->value = desc->map[0] = desc->map[4] = 1.0f;
+}
+
+vlr_status vlr_shader_create(vlr_shader** out) {
+  return guard([&] {
+    require(out, "out");
+    *out = new vlr_shader;
+  });
+}
+
+void vlr_shader_free(vlr_shader* shader) { delete shader; }
+
+vlr_status vlr_shader_add_layer(vlr_shader* shader, const vlr_layer_desc* desc) {
+  return guard([&] {
+    require(shader, "shader");
+    const auto layer = read_options(desc, vlr_layer_desc_init, "vlr_layer_desc");
+    require_choice(layer.kind, VLR_LAYER_EMISSION, "vlr_layer_desc.kind");
+    require_choice(layer.normal_correction, VLR_RELIEF_AS_IT_IS, "vlr_layer_desc.normal_correction");
+    shader->last = &add_layer(shader->layers, shader->sets, layer);
+    shader->relief |= layer.normal != nullptr;
+  });
+}
+
+vlr_status vlr_shader_weigh_layer(vlr_shader* shader, const vlr_factor_desc* desc) {
+  return guard([&] {
+    require(shader, "shader");
+    const auto factor = read_options(desc, vlr_factor_desc_init, "vlr_factor_desc");
+    require_choice(factor.kind, VLR_FACTOR_GAIN, "vlr_factor_desc.kind");
+    if (!std::isfinite(factor.value)) throw Error(Status::invalid_argument, "vlr_factor_desc.value is not finite.");
+    if (shader->last == nullptr) {
+      throw Error(Status::invalid_state,
+                  "The shader has no layer that the factor could weight; add a layer before its factors.");
+    }
+    const auto texture = number_slot(factor.texture, factor.map, factor.set, "vlr_factor_desc.texture");
+    shader->last->factors.push_back({static_cast<LayerFactor::Kind>(factor.kind), factor.value, texture});
+    shader->sets.add(texture);
+  });
+}
+
+vlr_status vlr_scene_add_shader_material(vlr_scene* scene, const vlr_shader* shader, uint32_t* material) {
+  return guard([&] {
+    require(scene, "scene");
+    require(shader, "shader");
+    require(material, "material");
+    *material = scene->scene->add_material({.material = make_layered_material(shader->layers),
+                                            .rec709_colors = false,
+                                            .relief = shader->relief,
+                                            .uv_sets = shader->sets.uvs,
+                                            .color_sets = shader->sets.colors});
+  });
+}

@@ -1,0 +1,36 @@
+// Checks of a tile: whether it is open and periodic, and its hash.
+#pragma once
+
+#include <optional>
+#include <string>
+#include "base/progress.h"
+#include "capture/btf/repeated_tile.h"
+
+namespace velour {
+
+/// Whether any of 4096 evenly distributed vertical rays through the tile hits nothing.
+bool is_open(const RepeatedTile& tile);
+
+/// Warning with numbers if the surface seen from above jumps across the cell's border and hardly anywhere else: the
+/// geometry is not periodic, or the period is wrong.
+std::optional<std::string> seam_warning(const RepeatedTile& tile);
+
+/// SHA-256 of everything the values of the tile depend on: vertices, triangles, transforms, and f of its materials for
+/// a few pairs of directions.
+std::string tile_hash(const Scene& scene, const Progress& progress);
+
+// The height of the reference plane.
+
+/// The height (scene's z) at which texels look most alike from all sides: of kReferenceHeights heights, evenly spaced
+/// from bottom to top, the one whose texel values vary least over views. Views: the normal and six each at 30 and 60
+/// degrees; lights: the normal and three at 45 degrees, each compared with itself alone; `two_sided` adds the mirror
+/// images below. Values are luminance x |cos(theta_l)| of the first hit, averaged over texels. They vary because
+/// features off the plane move across texels from view to view. A flat tile has only one height.
+///
+/// Runs in the calling task arena. The result depends on the tile alone, so that all captures of it show the same
+/// texels.
+float least_variance_height(const RepeatedTile& tile, bool two_sided, Progress& progress);
+
+inline constexpr int kReferenceHeights = 33;
+
+}  // namespace velour

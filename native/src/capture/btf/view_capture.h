@@ -1,0 +1,152 @@
+// Captures all texels of one view.
+#pragma once
+
+#include <tbb/enumerable_thread_specific.h>
+#include <array>
+#include <optional>
+#include <span>
+#include <vector>
+#include "btf/formats/btf_folder.h"
+#include "capture/btf/light_kernels.h"
+#include "capture/btf/path_vertices.h"
+#include "capture/btf/view_store.h"
+#include "material/material.h"
+#include "render/ray_log.h"
+
+namespace velour {
+
+// Which lights reach which vertices.
+
+/// One mask per vertex; bit l is set if light l of the group reaches it. One per thread.
+class ShadowMasks {
+ public:
+  explicit ShadowMasks(const RepeatedTile& tile) : cutouts_(tile) {}
+
+  using Mask = std::array<uint64_t, kLightsTogether / 64>;
+
+  /// Traces light by light, because rays of one direction are traced in packets. Lights below a vertex's shading or
+  /// geometric horizon need no ray.
+  void trace(const PathVertices& paths, const LightGroup& group, TileRays& rays, RayLog* log, const Progress& progress);
+
+  const Mask& of(uint32_t vertex) const { return masks_[vertex]; }
+
+ private:
+  void read(const PathVertices& paths);
+  void try_light(const PathVertices& paths, const CaptureLight& light, uint32_t bit, TileRays& rays, RayLog* log);
+  void trace_some(const PathVertices& paths, const CaptureLight& light, TileRays& rays, RayLog* log);
+  void note_reached(uint32_t bit);
+  void trace_through_cutouts(const PathVertices& paths, const CaptureLight& light, TileRays& rays, RayLog* log);
+
+  // Data of the vertices, read for every light.
+  PlaceNormals normals_;
+  std::vector<Vec3> origins_;
+  Cutouts cutouts_;
+  std::vector<Mask> masks_;
+  std::vector<uint32_t> facing_;   // vertices that face the light
+  std::span<const uint32_t> ids_;  // the part of facing_ whose rays are being traced
+  std::vector<Ray> rays_;
+  std::vector<uint8_t> blocked_;
+  // Used only if surfaces let rays through.
+  std::vector<Hit> hits_;
+  std::vector<uint64_t> keys_;
+};
+
+// Computes a texel's values from the vertices of its paths and the lights that reach them.
+
+/// Sums over the samples of a texel for each light of a group.
+struct TexelValues {
+  PathSums sums;  // working space
+  uint32_t samples;
+  uint32_t broken;  // values that were not finite and count as 0
+
+  Rgb mean(uint32_t light) const;  // working space
+  /// Standard error of the mean's luminance, from the spread of the samples. An upper bound, because the samples are
+  /// stratified. 0 for a single sample.
+  float standard_error(uint32_t light) const;
+};
+
+/// One per thread.
+class TexelShader {
+ public:
+  TexelShader(const Scene& scene, const TexelSampling& sampling);
+
+  /// Computes the values of texel number `texel` of the block. `masks` must be those of `group`.
+  void shade(const PathVertices& paths, uint32_t texel, const LightGroup& group, const ShadowMasks& masks,
+             TexelValues& values);
+
+ private:
+  void shade_path(const PathVertices& paths, uint32_t path, const LightGroup& group, const ShadowMasks& masks);
+  void shade_vertex(const PathVertex& at, const LightGroup& group, const ShadowMasks::Mask& mask);
+  void add_lit(const PathVertex& at);
+
+  const TexelSampling sampling_;
+  const std::optional<Mat3>& rec709_to_working_;
+  Vec3 luminance_weights_;  // for colors in the working space
+  PreparedBrdf prepared_;
+  LitLights lit_;  // of one vertex
+  RgbBatch f_;
+  ScalarBatch pdf_;
+  alignas(64) float path_[3][kLightsTogether];  // contribution of each light along one path
+};
+
+/// Destination of a view's images; layouts as in BtfView and ViewStructure.
+struct ViewImages {
+  std::span<HalfBits> values;
+  std::span<HalfBits> errors;        // empty: not requested
+  ViewStructure structure;           // of the grid's size
+  const ViewStore* store = nullptr;  // holds `values` and `errors` if they may lie in a file
+};
+
+struct CaptureCounts {
+  uint64_t rays = 0;    // traced
+  uint64_t lost = 0;    // rays that never left the shell; they count as misses
+  uint64_t broken = 0;  // values that were not finite; they count as 0
+};
+
+/// Captures views one after the other, block by block on all threads of the calling task arena. The result depends
+/// neither on the number of threads nor on the order of the views.
+class ViewCapture {
+ public:
+  /// `tile` must outlive this. `reference_height`: height of the reference plane (scene's z).
+  ViewCapture(const RepeatedTile& tile, const TexelGrid& grid, float reference_height, const TexelSampling& sampling)
+      : tile_(tile), grid_(grid), sampling_(sampling), blocks_(grid, sampling), workers_([this, reference_height] {
+          return Worker(tile_, grid_, reference_height, sampling_);
+        }) {
+    if (const auto& to_working = tile.scene().rec709_to_working()) to_rec709_ = glm::inverse(*to_working);
+  }
+
+  /// Traces `view` into `images`. `begin`, `end`: its range of the progress stage. `share` may be null.
+  void run(const ViewSetup& view, ViewImages& images, double begin, double end, RayShare* share, Progress& progress);
+
+  CaptureCounts counts() const;
+
+ private:
+  struct Worker {
+    PathVertices paths;
+    TileRays rays;
+    ShadowMasks masks;
+    TexelShader shader;
+    TexelValues values;
+    uint64_t broken = 0;
+    std::vector<float> mean, error;  // of a group of lights
+    std::vector<HalfBits> mean_bits, error_bits;
+
+    Worker(const RepeatedTile& tile, const TexelGrid& grid, float height, const TexelSampling& sampling)
+        : paths(tile, grid, height, sampling), rays(tile), masks(tile), shader(tile.scene(), sampling) {}
+  };
+  void run_block(const ViewSetup& view, const TexelBlock& block, ViewImages& images, RayLog* log,
+                 const Progress& progress);
+  void shade_block(const LightGroup& group, uint32_t first_light, const TexelBlock& block, Worker& worker,
+                   ViewImages& images, const Progress& progress);
+  void store(uint64_t texel, uint32_t first_light, uint32_t lights, Worker& worker, ViewImages& images) const;
+  void store_structure(const TexelBlock& block, const PathVertices& paths, ViewStructure& structure) const;
+
+  const RepeatedTile& tile_;
+  const TexelGrid grid_;
+  const TexelSampling sampling_;
+  const TexelBlocks blocks_;
+  Mat3 to_rec709_{1.0f};  // from the scene's working space
+  tbb::enumerable_thread_specific<Worker> workers_;
+};
+
+}  // namespace velour

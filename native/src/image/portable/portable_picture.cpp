@@ -1,0 +1,46 @@
+#include "image/portable/portable_picture.h"
+
+#include "base/error.h"
+#include "image/orientation.h"
+
+namespace velour {
+namespace {
+
+/// Adds the orientation, which the libraries do not report.
+class WithOrientation : public OpenPicture {
+ public:
+  WithOrientation(std::unique_ptr<OpenPicture> picture, Orientation orientation)
+      : picture_(std::move(picture)), header_(picture_->header()) {
+    header_.orientation = orientation;
+  }
+  const PictureHeader& header() const override { return header_; }
+  std::optional<std::string> text(const std::string& name) const override { return picture_->text(name); }
+  void read(std::span<float> values) override { picture_->read(values); }
+
+ private:
+  std::unique_ptr<OpenPicture> picture_;
+  PictureHeader header_;
+};
+
+std::unique_ptr<OpenPicture> open_format(const std::string& path, PictureFormat format) {
+  switch (format) {
+    case PictureFormat::png:
+    case PictureFormat::bmp:
+      return open_by_stb(path, format);
+    case PictureFormat::jpeg:
+      return open_jpeg(path);
+    case PictureFormat::tiff:
+    case PictureFormat::exr:
+    case PictureFormat::radiance:
+      break;
+  }
+  throw Error(Status::invalid_argument, path + ": is not an integer image.");
+}
+
+}  // namespace
+
+std::unique_ptr<OpenPicture> open_integers(const std::string& path, PictureFormat format) {
+  return std::make_unique<WithOrientation>(open_format(path, format), exif_orientation(format, path));
+}
+
+}  // namespace velour

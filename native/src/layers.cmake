@@ -1,0 +1,40 @@
+# The layers of native/src, lowest first. CMake builds each as a static library; scripts/check_layers reads the same list.
+#
+# layer(FOLDER [BELOW layer...] [LIBRARIES library...] [BATCH n]): FOLDER includes only itself, the layers named after BELOW
+# and what those may include. A folder inside that is not named here belongs to it. LIBRARIES: what it uses from outside.
+# BATCH: how many sources are compiled as one (join_sources); fewer where sources take long to compile.
+layer(math/sphere LIBRARIES glm::glm velour_highway)
+layer(base LIBRARIES Threads::Threads TBB::tbb ${CMAKE_DL_LIBS} PRIVATE velour_highway OpenSSL::Crypto nlohmann_json::nlohmann_json)
+layer(math/srbf BELOW base math/sphere LIBRARIES velour_highway)
+layer(math/tensor BELOW base math/sphere LIBRARIES Eigen3::Eigen TBB::tbb velour_highway BATCH 3)
+layer(math/optimize BELOW base LIBRARIES Eigen3::Eigen)
+layer(image BELOW base LIBRARIES PRIVATE glm::glm OpenEXR::OpenEXR TIFF::TIFF ZLIB::ZLIB)
+layer(votf/eval BELOW math/srbf)
+
+layer(brdf/measure BELOW image math/sphere LIBRARIES PRIVATE Eigen3::Eigen)
+layer(brdf/formats BELOW brdf/measure LIBRARIES PRIVATE velour_highway pugixml::pugixml)
+layer(brdf/model BELOW math/srbf)
+layer(usage BELOW brdf/measure brdf/model LIBRARIES PRIVATE Eigen3::Eigen)
+layer(btf/measure BELOW brdf/measure LIBRARIES PRIVATE velour_highway)
+layer(btf/formats BELOW btf/measure LIBRARIES PRIVATE TBB::tbb nlohmann_json::nlohmann_json)
+layer(btf/model BELOW btf/measure math/srbf)
+layer(material BELOW btf/model)
+layer(brdf/eval BELOW brdf/model material)
+layer(btf/eval BELOW material)
+layer(model BELOW votf/eval usage btf/formats brdf/eval btf/eval LIBRARIES nlohmann_json::nlohmann_json)
+layer(brdf/fit BELOW math/tensor math/optimize model BATCH 6)
+layer(btf/fit BELOW math/tensor math/optimize model BATCH 5)
+
+layer(light BELOW math/srbf image)
+layer(scene BELOW votf/eval material light)
+layer(usage/btf BELOW btf/fit)
+layer(denoise BELOW base)
+layer(render BELOW brdf/fit scene denoise)
+layer(usage/observe BELOW render)
+layer(realtime BELOW model light LIBRARIES Eigen3::Eigen)
+layer(capture/btf BELOW render LIBRARIES PRIVATE nlohmann_json::nlohmann_json)
+layer(capture/goniometer BELOW brdf/formats scene LIBRARIES PRIVATE Eigen3::Eigen)
+layer(capture/tile BELOW material)
+layer(votf/capture BELOW capture/btf)
+layer(plot BELOW brdf/fit)
+layer(capi BELOW usage/btf usage/observe realtime capture/goniometer capture/tile votf/capture plot)

@@ -1,0 +1,13 @@
+// The per-view model's parts and attributes in the model file (docs/reference/model_file.md, "Model file").
+#pragma once
+
+#include "brdf/model/per_view_brdf.h"
+#include "model/model_fields.h"
+
+namespace velour {
+
+void write_scattered(const ScatteredBrdf& brdf, TensorFile& file);
+/// Checks every shape and range.
+ScatteredBrdf read_scattered(const ModelFields& fields);
+
+}  // namespace velour

@@ -1,0 +1,192 @@
+#include "model/record_json.h"
+
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <limits>
+#include <nlohmann/json.hpp>
+#include "base/error.h"
+#include "base/json_fields.h"
+
+namespace velour {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json number_json(const std::optional<double>& number) { return number ? Json(*number) : Json(nullptr); }
+
+Json errors_json(const ErrorByViewAngle& errors) {
+  Json json = Json::object();
+  for (const auto& [angle, error] : errors) json[angle] = number_json(error);
+  return json;
+}
+
+/// Reads keys of one object and reports what is wrong with them.
+class FitRecordReader {
+ public:
+  FitRecordReader(const Json& json, std::string where) : json_(json), where_(std::move(where)) {}
+
+  void number(const char* key, double& out) const {
+    if (const Json* v = find(key)) out = number_of(*v, key);
+  }
+  void number_or_null(const char* key, std::optional<double>& out) const {
+    const Json* v = find(key);
+    if (v && !v->is_null()) out = number_of(*v, key);
+  }
+  void integer(const char* key, uint64_t& out) const {
+    const Json* v = find(key);
+    if (v && !v->is_number_unsigned()) fail(key, "a non-negative integer");
+    if (v) out = v->get<uint64_t>();
+  }
+  void boolean(const char* key, bool& out) const {
+    const Json* v = find(key);
+    if (v && !v->is_boolean()) fail(key, "true or false");
+    if (v) out = v->get<bool>();
+  }
+  void errors(const char* key, ErrorByViewAngle& out) const {
+    const Json* v = find(key);
+    if (v && !v->is_object()) fail(key, "an object");
+    if (!v) return;
+    for (const auto& [angle, error] : v->items()) {
+      out[angle] = error.is_null() ? std::nullopt : std::optional(number_of(error, key));
+    }
+  }
+  void sentences(const char* key, std::vector<std::string>& out) const {
+    const Json* v = find(key);
+    if (v && !v->is_array()) fail(key, "a list of sentences");
+    if (!v) return;
+    for (const Json& sentence : *v) {
+      if (!sentence.is_string()) fail(key, "a list of sentences");
+      out.push_back(sentence.get<std::string>());
+    }
+  }
+  void order(const char* key, OrderCurve& out) const {
+    if (const Json* v = find(key)) out = parse_order(*v, where_ + ": '" + key + "'");
+  }
+
+ private:
+  const Json* find(const char* key) const {
+    const auto found = json_.find(key);
+    return found == json_.end() ? nullptr : &*found;
+  }
+  double number_of(const Json& v, const char* key) const {
+    if (!v.is_number() || !std::isfinite(v.get<double>()) || v.get<double>() < 0) fail(key, "a number of at least 0");
+    return v.get<double>();
+  }
+  [[noreturn]] void fail(const char* key, const char* wanted) const {
+    throw Error(Status::bad_data, where_ + ": '" + key + "' must be " + wanted + "; the model file is damaged.");
+  }
+
+  const Json& json_;
+  std::string where_;
+};
+
+}  // namespace
+
+std::string fit_record_json(const FitRecord& record) {
+  Json json = {{"relative_l2", record.relative_l2},
+               {"by_view_angle", errors_json(record.by_view_angle)},
+               {"albedo_by_view_angle", errors_json(record.albedo_by_view_angle)},
+               {"albedo_max", record.albedo_max},
+               {"reciprocity", record.reciprocity},
+               {"measured_reciprocity", number_json(record.measured_reciprocity)},
+               {"tolerance", record.tolerance},
+               {"seconds", record.seconds},
+               {"seed", record.seed},
+               {"all_data", record.all_data},
+               {"warnings", record.warnings}};
+  if (!record.order.points.empty()) json["order"] = order_json(record.order);
+  return json.dump(-1, ' ', false, Json::error_handler_t::replace);
+}
+
+FitRecord parse_fit_record(const std::string& text, const std::string& where) {
+  const Json json = parse_json(text);
+  if (!json.is_object()) throw Error(Status::bad_data, where + " is not a JSON object; the model file is damaged.");
+  const FitRecordReader reader(json, where);
+  FitRecord record;
+  reader.number("relative_l2", record.relative_l2);
+  reader.errors("by_view_angle", record.by_view_angle);
+  reader.errors("albedo_by_view_angle", record.albedo_by_view_angle);
+  reader.number("albedo_max", record.albedo_max);
+  reader.number("reciprocity", record.reciprocity);
+  reader.number_or_null("measured_reciprocity", record.measured_reciprocity);
+  reader.number("tolerance", record.tolerance);
+  reader.number("seconds", record.seconds);
+  reader.integer("seed", record.seed);
+  reader.boolean("all_data", record.all_data);
+  reader.sentences("warnings", record.warnings);
+  reader.order("order", record.order);
+  return record;
+}
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr size_t kMaxPoints = 1000;
+constexpr double kMaxWhole = 1e15;  // exact as a double
+
+std::vector<double> column(const Json& json, const char* key, double most, const std::string& where) {
+  const auto found = json.find(key);
+  const auto fail = [&](const std::string& wanted) {
+    throw Error(Status::bad_data, where + ": '" + key + "' must be " + wanted + "; the model file is damaged.");
+  };
+  if (found == json.end() || !found->is_array() || found->size() > kMaxPoints) fail("a list of at most 1000 numbers");
+  std::vector<double> out;
+  for (const Json& entry : *found) {
+    const double value = entry.is_number() ? entry.get<double>() : -1;
+    if (!(value >= 0 && value <= most)) fail("a list of numbers from 0 to " + std::to_string(most));
+    out.push_back(value);
+  }
+  return out;
+}
+
+}  // namespace
+
+double four_digits(double value) {
+  std::array<char, 32> text;
+  const auto written = std::to_chars(text.begin(), text.end(), value, std::chars_format::scientific, 3);
+  double rounded = value;
+  std::from_chars(text.begin(), written.ptr, rounded);
+  return rounded;
+}
+
+Json order_json(const OrderCurve& order) {
+  Json json = {{"lobes", Json::array()},
+               {"parameter_bytes", Json::array()},
+               {"worst", Json::array()},
+               {"relative_l2", Json::array()},
+               {"chosen", order.chosen ? Json(*order.chosen) : Json(nullptr)}};
+  for (const OrderPoint& p : order.points) {
+    json["lobes"].push_back(p.lobes);
+    json["parameter_bytes"].push_back(p.parameter_bytes);
+    json["worst"].push_back(four_digits(p.worst));
+    json["relative_l2"].push_back(four_digits(p.relative_l2));
+  }
+  return json;
+}
+
+OrderCurve parse_order(const Json& json, const std::string& where) {
+  if (!json.is_object()) throw Error(Status::bad_data, where + " is not an object; the model file is damaged.");
+  const auto lobes = column(json, "lobes", std::numeric_limits<int>::max(), where);
+  const auto bytes = column(json, "parameter_bytes", kMaxWhole, where);
+  const auto worst = column(json, "worst", std::numeric_limits<double>::max(), where);
+  const auto relative_l2 = column(json, "relative_l2", std::numeric_limits<double>::max(), where);
+  if (bytes.size() != lobes.size() || worst.size() != lobes.size() || relative_l2.size() != lobes.size()) {
+    throw Error(Status::bad_data, where + ": its lists differ in length; the model file is damaged.");
+  }
+  OrderCurve order;
+  for (size_t i = 0; i < lobes.size(); ++i) {
+    order.points.push_back({static_cast<int>(lobes[i]), static_cast<uint64_t>(bytes[i]), worst[i], relative_l2[i]});
+  }
+  const auto chosen = json.find("chosen");
+  if (chosen == json.end() || chosen->is_null()) return order;
+  if (!chosen->is_number_unsigned() || chosen->get<uint64_t>() >= lobes.size()) {
+    throw Error(Status::bad_data, where + ": 'chosen' must be the index of a point; the model file is damaged.");
+  }
+  order.chosen = chosen->get<size_t>();
+  return order;
+}
+
+}  // namespace velour

@@ -1,0 +1,175 @@
+#include "brdf/fit/error/compare.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "brdf/measure/held_out.h"
+#include "support/hostile_measurements.h"
+
+namespace velour {
+namespace {
+
+using test::AnalyticMeasurement;
+
+/// A material that is a formula; only eval matters to compare().
+class FormulaMaterial : public Material {
+ public:
+  explicit FormulaMaterial(AnalyticMeasurement::Formula f) : f_(std::move(f)) {}
+  void prepare(const Vec3& wv, const SurfaceSite& /*site*/, PreparedBrdf& point) const override { point.wv = wv; }
+  void eval(const PreparedBrdf& point, const DirectionBatch& wl, RgbBatch& f, ScalarBatch& pdf) const override {
+    for (int i = 0; i < wl.count; ++i) f.set(i, f_({wl.get(i), point.wv})), pdf.v[i] = 0;
+  }
+  void sample(const PreparedBrdf&, std::span<const Vec2> u, DirectionBatch& wl) const override {
+    wl.fill(u, [](const Vec2&) { return Vec3(0, 0, 1); });
+  }
+  bool isotropic() const override { return true; }
+
+ private:
+  AnalyticMeasurement::Formula f_;
+};
+
+/// A scattered measurement whose samples are given.
+class Samples : public AnalyticMeasurement {
+ public:
+  explicit Samples(std::vector<ScatteredSample> samples)
+      : AnalyticMeasurement(test::lambert), samples_(std::move(samples)) {}
+  std::span<const ScatteredSample> samples() const override { return samples_; }
+
+ private:
+  std::vector<ScatteredSample> samples_;
+};
+
+AnalyticMeasurement::Formula scaled(float by) {
+  return [by](const DirectionPair& p) { return by * test::lambert(p); };
+}
+
+TEST(Compare, AModelThatIsTheMeasurementHasNoError) {
+  Progress progress;
+  const Comparison c = compare(AnalyticMeasurement(test::lambert), FormulaMaterial(test::lambert), progress);
+  EXPECT_EQ(c.relative_l2, 0);
+  EXPECT_EQ(c.log_rms, 0);
+  EXPECT_EQ(c.samples, 5u * 4096u);
+  for (const auto& [view, error] : c.by_view_angle) EXPECT_EQ(error, 0.0) << view;
+  for (const auto& [view, noise] : c.noise_by_view_angle) EXPECT_NEAR(noise.value_or(1), 0, 1e-6) << view;
+}
+
+TEST(Compare, AModelTenPercentTooBrightIsTenPercentOff) {
+  Progress progress;
+  const Comparison c = compare(AnalyticMeasurement(test::lambert), FormulaMaterial(scaled(1.1f)), progress);
+  EXPECT_NEAR(c.relative_l2, 0.1, 1e-5);
+  EXPECT_EQ(c.by_view_angle.size(), kHeldOutViews.size());
+  EXPECT_GT(c.log_rms, 0.05);
+}
+
+/// The model's error grows towards grazing views.
+TEST(Compare, TheMeanWeighsViewsByTheirCosines) {
+  Progress progress;
+  const auto off = [](const DirectionPair& p) { return (2 - p.wv.z) * test::lambert(p); };
+  const Comparison c = compare(AnalyticMeasurement(test::lambert), FormulaMaterial(off), progress);
+  double sum = 0, weights = 0;
+  for (const auto& [view, error] : c.by_view_angle) {
+    const double weight = std::cos(radians_from(std::stod(view)));
+    EXPECT_NEAR(error.value(), 1 - weight, 1e-3) << view;
+    sum += weight * *error;
+    weights += weight;
+  }
+  EXPECT_NEAR(c.relative_l2, sum / weights, 1e-9);
+}
+
+TEST(Compare, UncoveredViewsAreNullAndDoNotCount) {
+  AnalyticMeasurement half(test::lambert);
+  half.set_coverage([](const DirectionPair& p) { return p.wv.z > std::cos(radians_from(70.0f)); });
+  Progress progress;
+  const Comparison c = compare(half, FormulaMaterial(scaled(1.1f)), progress);
+  EXPECT_TRUE(c.by_view_angle.at("60").has_value());
+  EXPECT_FALSE(c.by_view_angle.at("75").has_value());
+  EXPECT_FALSE(c.noise_by_view_angle.at("75").has_value());
+  EXPECT_EQ(c.samples, 3u * 4096u);
+}
+
+TEST(Compare, UncoveredLightsAreLeftOutNotTakenForBlack) {
+  AnalyticMeasurement part(test::lambert);
+  part.set_coverage([](const DirectionPair& p) { return p.wl.x > 0; });
+  Progress progress;
+  EXPECT_EQ(compare(part, FormulaMaterial(test::lambert), progress).relative_l2, 0);
+}
+
+TEST(Compare, ANarrowHighlightIsLookedAtClosely) {
+  const AnalyticMeasurement mirror(test::near_mirror(1e6));
+  Progress progress;
+  const Comparison without_it = compare(mirror, FormulaMaterial(scaled(0.02f)), progress);
+  EXPECT_EQ(without_it.narrow_views.size(), kHeldOutViews.size());
+  EXPECT_LT(without_it.narrow_views.at(30), 1e-3);
+  EXPECT_GT(without_it.relative_l2, 0.99);
+  EXPECT_LT(compare(mirror, FormulaMaterial(test::near_mirror(1e6)), progress).relative_l2, 1e-6);
+  EXPECT_TRUE(
+      compare(AnalyticMeasurement(test::lambert), FormulaMaterial(test::lambert), progress).narrow_views.empty());
+}
+
+TEST(Compare, AHandfulOfDirectionsIsNoView) {
+  AnalyticMeasurement part(test::lambert);
+  part.set_coverage([](const DirectionPair& p) { return p.wl.z > 0.99f; });
+  Progress progress;
+  const Comparison c = compare(part, FormulaMaterial(test::lambert), progress);
+  EXPECT_NEAR(c.covered_share.at(30), 0.01, 0.001);
+  EXPECT_EQ(c.by_view_angle.at("30"), std::nullopt);
+  EXPECT_EQ(c.relative_l2, 1) << "nothing good is claimed of what is not known";
+}
+
+TEST(Compare, BlackIsExactOrWrong) {
+  const auto black = [](const DirectionPair&) { return Rgb(0); };
+  Progress progress;
+  EXPECT_EQ(compare(AnalyticMeasurement(black), FormulaMaterial(black), progress).relative_l2, 0);
+  EXPECT_EQ(compare(AnalyticMeasurement(black), FormulaMaterial(test::lambert), progress).relative_l2, 1);
+}
+
+TEST(Compare, NoiseOfASkewedMeasurementIsSeen) {
+  // 10 % more on one side of the plane of incidence: paired values 1.1 and 0.9 lie 0.2 apart.
+  const auto skewed = [](const DirectionPair& p) { return test::lambert(p) * (p.wl.y > 0 ? 1.1f : 0.9f); };
+  Progress progress;
+  const Comparison c = compare(AnalyticMeasurement(skewed), FormulaMaterial(test::lambert), progress);
+  const double expected = 0.2 / std::sqrt(2.0) / std::sqrt(0.5 * (1.1 * 1.1 + 0.9 * 0.9));
+  EXPECT_NEAR(c.noise_by_view_angle.at("30").value(), expected, 0.01);
+}
+
+TEST(Compare, ScatteredSamplesCountOnlyWhenHeldOut) {
+  std::vector<ScatteredSample> samples;
+  const Vec3 wv = direction(radians_from(32.0f), 0);
+  for (uint64_t i = 0; i < 800; ++i) {
+    // The others are wrong on purpose: they must not be looked at.
+    const float value = held_out_sample(i) ? 1.0f : 100.0f;
+    samples.push_back(
+        {direction(0.01f * static_cast<float>(i % 100), static_cast<float>(i)), wv, value * test::lambert({})});
+  }
+  Progress progress;
+  const Comparison c = compare(Samples(samples), FormulaMaterial(scaled(0.9f)), progress);
+  EXPECT_NEAR(c.by_view_angle.at("30").value(), 0.1, 1e-5);
+  EXPECT_FALSE(c.by_view_angle.at("5").has_value());
+  EXPECT_NEAR(c.relative_l2, 0.1, 1e-5);
+  EXPECT_LT(c.samples, 150u);
+}
+
+TEST(Compare, CancelStopsIt) {
+  Progress progress;
+  progress.cancel();
+  EXPECT_THROW(compare(AnalyticMeasurement(test::lambert), FormulaMaterial(test::lambert), progress), Error);
+}
+
+TEST(ViewError, IsTheWeightedRatioOfNorms) {
+  ViewError e;
+  e.add(2, Rgb(1), Rgb(1.5f), 1);
+  e.add(1, Rgb(2), Rgb(2), 0.5);
+  EXPECT_NEAR(e.relative_l2(), std::sqrt(2 * 0.25 / (2 + 1)), 1e-6);
+}
+
+TEST(ViewError, KnowsHowManyDirectionsCarryTheEnergy) {
+  ViewError e;
+  for (int i = 0; i < 10; ++i) e.add(0.1, Rgb(2), Rgb(0), 0.5);
+  EXPECT_NEAR(e.carriers(), 10, 1e-6);
+  e.add(0.1, Rgb(200), Rgb(0), 0.5);
+  EXPECT_NEAR(e.carriers(), 1, 0.01);
+}
+
+}  // namespace
+}  // namespace velour

@@ -1,0 +1,95 @@
+#include <gtest/gtest.h>
+
+#include "base/file.h"
+#include "brdf/measure/measurement.h"
+#include "measurement_support.h"
+#include "support/inputs.h"
+#include "support/test_data.h"
+
+namespace velour {
+namespace {
+
+std::vector<uint8_t> bytes_of(const std::string& text) { return {text.begin(), text.end()}; }
+
+TEST(Load, RecognisesByContentNotByName) {
+  const auto folder = test::scratch_folder();
+  const auto rgl = test::small_rgl({0.0f}, [](size_t, size_t, size_t, size_t) { return Rgb(1.0f); }).bytes();
+  write_file(folder / "a.binary", rgl);
+  EXPECT_TRUE(is_measurement_file(folder / "a.binary"));
+  const auto measurement = load_measurement(folder / "a.binary");
+  EXPECT_EQ(measurement->provenance().format, "rgl");
+  EXPECT_EQ(measurement->provenance().name, "a");
+  EXPECT_EQ(measurement->provenance().path, (folder / "a.binary").string());
+  EXPECT_EQ(measurement->provenance().file_bytes, rgl.size());
+  EXPECT_EQ(measurement->provenance().sha256, sha256_hex(rgl));
+  EXPECT_FALSE(measurement->details().empty());
+}
+
+TEST(Load, UnknownContentIsUnsupported) {
+  const std::string path = test::scratch_folder() / "a.bsdf";
+  for (const std::string content : {"", "hello", "v 0 0 0\n", "tensor_fil"}) {
+    write_file(path, bytes_of(content));
+    EXPECT_FALSE(is_measurement_file(path));
+    try {
+      load_measurement(path);
+      FAIL() << content;
+    } catch (const Error& error) {
+      EXPECT_EQ(error.status(), Status::unsupported);
+      EXPECT_NE(std::string(error.what()).find("a.bsdf"), std::string::npos);
+    }
+  }
+}
+
+TEST(Load, MissingFileIsAnIoError) {
+  try {
+    load_measurement("/nowhere/at/all.binary");
+    FAIL();
+  } catch (const Error& error) {
+    EXPECT_EQ(error.status(), Status::io);
+  }
+}
+
+std::string text_of_cornell(const std::string& comment, const std::string& end) {
+  std::string text = comment + "1 550" + end;
+  for (int i = 0; i < 60; ++i)
+    text += "0." + std::to_string(100 + 7 * i) + " 0 0." + std::to_string(120 + 11 * i) + " " + std::to_string(i % 3) +
+            " 0.25" + end;
+  return text;
+}
+
+TEST(Load, CornellBehindCommentsOfAnyLength) {
+  test::record_input("Cornell .brdf", "comments of any length, UTF-8 mark, LF, CRLF, CR", "read");
+  const std::string path = test::scratch_folder() / "a.brdf";
+  const std::string protocol = [] {
+    std::string lines;
+    for (int i = 0; i < 3000; ++i) lines += "# line " + std::to_string(i) + " of the laboratory's protocol\n";
+    return lines;
+  }();
+  for (const std::string& begin : {std::string(), protocol, "\xef\xbb\xbf" + protocol, std::string("\xef\xbb\xbf")}) {
+    for (const char* end : {"\n", "\r\n", "\r"}) {
+      std::string text;
+      for (const char c : text_of_cornell(begin, "\n")) text += c == '\n' ? end : std::string(1, c);
+      write_file(path, std::vector<uint8_t>(text.begin(), text.end()));
+      EXPECT_TRUE(is_measurement_file(path));
+      EXPECT_EQ(load_measurement(path)->samples().size(), 60u) << begin.size() << ' ' << int{end[0]};
+    }
+  }
+}
+
+TEST(Load, NamesOtherFormatsAndWhatToDo) {
+  const std::pair<std::string, const char*> others[] = {
+      {"\x89HDF\r\n\x1a\n....", "AxF"},       {"7z\xbc\xaf\x27\x1c....", ".sbsar"},
+      {"PK\x03\x04....", ".vrscan"},          {"<?xml version='1.0'?>\n<materialx version='1.38'>", "MaterialX"},
+      {"# ASTM E1392\nVARS theta_i", "ASTM"}, {"nothing that is known", "not a measurement"}};
+  const std::string path = test::scratch_folder() / "a.bin";
+  for (const auto& [head, words] : others) {
+    if (std::string(words) != "not a measurement") test::record_input(words, "any", "refused by name, with what to do");
+    write_file(path, std::vector<uint8_t>(head.begin(), head.end()));
+    EXPECT_NE(test::refusal([&] { load_measurement(path); }).find(words), std::string::npos)
+        << test::refusal([&] { load_measurement(path); });
+    EXPECT_FALSE(is_measurement_file(path));
+  }
+}
+
+}  // namespace
+}  // namespace velour
