@@ -90,7 +90,7 @@ def gray(folder):
 
 
 def edits(folder):
-    """What is moved, colored or lit anew is drawn anew."""
+    """Moving, recoloring and relighting objects updates the real-time viewport."""
     scenes.set_world((0.5, 0.7, 1.0), 0.5)
     cube = bpy.data.objects["Cube"]
     cube.active_material = bpy.data.materials["Material"]

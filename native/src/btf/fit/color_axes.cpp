@@ -11,7 +11,7 @@ constexpr char kAxes[] = "colors.axes", kEnergy[] = "colors.energy", kNotFinite[
 std::optional<ColorAxes> kept(const FitCheckpoint& checkpoint, const PairLayout& layout) {
   const auto axes = checkpoint.matrix(kAxes, 3, 3);
   auto energy = checkpoint.numbers(kEnergy, layout.pairs());
-  const auto not_finite = checkpoint.wholes(kNotFinite, 1, size_t{1} << 53);
+  const auto not_finite = checkpoint.integers(kNotFinite, 1, size_t{1} << 53);
   if (!axes || !energy || energy->size() != layout.pairs() || !not_finite || not_finite->size() != 1) return {};
   const auto negative = [](double e) { return e < 0; };
   if (axes->cwiseAbs().maxCoeff() > 1.001f || std::any_of(energy->begin(), energy->end(), negative)) return {};
@@ -27,7 +27,7 @@ void keep(const ColorAxes& found, FitCheckpoint& checkpoint) {
   for (int i = 0; i < 9; ++i) axes(i / 3, i % 3) = found.axes[i / 3][i % 3];
   checkpoint.keep(kAxes, axes);
   checkpoint.keep_numbers(kEnergy, found.energy);
-  checkpoint.keep_wholes(kNotFinite, {found.not_finite});
+  checkpoint.keep_integers(kNotFinite, {found.not_finite});
   checkpoint.write();
 }
 

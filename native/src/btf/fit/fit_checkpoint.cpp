@@ -80,15 +80,16 @@ std::optional<std::vector<double>> FitCheckpoint::numbers(const std::string& sta
   return numbers;
 }
 
-std::optional<std::vector<size_t>> FitCheckpoint::wholes(const std::string& stage, size_t most, size_t largest) const {
+std::optional<std::vector<size_t>> FitCheckpoint::integers(const std::string& stage, size_t most,
+                                                           size_t largest) const {
   const auto numbers = this->numbers(stage, most);
   if (!numbers) return std::nullopt;
-  std::vector<size_t> wholes;
+  std::vector<size_t> integers;
   for (const double n : *numbers) {
     if (!(n >= 0 && n <= static_cast<double>(largest) && n == std::floor(n))) return std::nullopt;
-    wholes.push_back(static_cast<size_t>(n));
+    integers.push_back(static_cast<size_t>(n));
   }
-  return wholes;
+  return integers;
 }
 
 void FitCheckpoint::keep(const std::string& stage, const RowMatrix& matrix) {
@@ -103,8 +104,8 @@ void FitCheckpoint::keep_numbers(const std::string& stage, std::span<const doubl
   for (const double n : numbers) append_words(n, tensor.data);
 }
 
-void FitCheckpoint::keep_wholes(const std::string& stage, const std::vector<size_t>& wholes) {
-  keep_numbers(stage, std::vector<double>(wholes.begin(), wholes.end()));
+void FitCheckpoint::keep_integers(const std::string& stage, const std::vector<size_t>& integers) {
+  keep_numbers(stage, std::vector<double>(integers.begin(), integers.end()));
 }
 
 void FitCheckpoint::forget(const std::string& prefix) {

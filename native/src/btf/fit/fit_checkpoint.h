@@ -32,11 +32,11 @@ class FitCheckpoint {
   /// Up to `most` finite numbers.
   std::optional<std::vector<double>> numbers(const std::string& stage, size_t most) const;
   /// Up to `most` integers from 0 to `largest`.
-  std::optional<std::vector<size_t>> wholes(const std::string& stage, size_t most, size_t largest) const;
+  std::optional<std::vector<size_t>> integers(const std::string& stage, size_t most, size_t largest) const;
 
   void keep(const std::string& stage, const RowMatrix& matrix);
   void keep_numbers(const std::string& stage, std::span<const double> numbers);
-  void keep_wholes(const std::string& stage, const std::vector<size_t>& wholes);
+  void keep_integers(const std::string& stage, const std::vector<size_t>& integers);
   /// Removes all stages whose names start with `prefix`; the file is updated by the next write().
   void forget(const std::string& prefix);
   /// Writes all stages atomically. If the file cannot be written, warns once; the fit continues.

@@ -163,7 +163,7 @@ void multiply_vector_simd(const StridedMatrix<const float>& a, const float* x, f
   for (; top + 4 * lanes <= a.rows; top += 4 * lanes) multiply_rows<4>(a, top, x, product);
   for (; top + lanes <= a.rows; top += lanes) multiply_rows<1>(a, top, x, product);
   if (top == a.rows) return;
-  // What is left lies in a vector that begins before it, if there is room for one.
+  // The remaining rows are the end of a vector that begins before them, if the matrix has that many rows.
   if (a.rows >= lanes) return multiply_rows<1>(a, a.rows - lanes, x, product);
   for (; top < a.rows; ++top) {
     product[top] = 0;

@@ -35,23 +35,23 @@ bool is_sound(const LobeOrder& order) {
 
 std::optional<LobeOrder> kept_order(const FitCheckpoint& checkpoint, const std::string& stage) {
   LobeOrder order;
-  const auto axis = checkpoint.wholes(stage + ".axis", kMaxCandidates, 2);
+  const auto axis = checkpoint.integers(stage + ".axis", kMaxCandidates, 2);
   const auto left = checkpoint.numbers(stage + ".left", kMaxCandidates);
   if (!axis || !left) return std::nullopt;
   for (const size_t a : *axis) order.axis.push_back(static_cast<uint8_t>(a));
   order.left = *left;
   for (size_t a = 0; a < 3; ++a) {
     // Nothing is stored for an axis without candidates.
-    order.candidate[a] = checkpoint.wholes(of_axis(stage + ".candidate", a), kMaxCandidates, kLobeCandidates - 1)
+    order.candidate[a] = checkpoint.integers(of_axis(stage + ".candidate", a), kMaxCandidates, kLobeCandidates - 1)
                              .value_or(std::vector<size_t>());
   }
   return is_sound(order) ? std::optional(std::move(order)) : std::nullopt;
 }
 
 void keep_order(FitCheckpoint& checkpoint, const std::string& stage, const LobeOrder& order) {
-  checkpoint.keep_wholes(stage + ".axis", {order.axis.begin(), order.axis.end()});
+  checkpoint.keep_integers(stage + ".axis", {order.axis.begin(), order.axis.end()});
   checkpoint.keep_numbers(stage + ".left", order.left);
-  for (size_t a = 0; a < 3; ++a) checkpoint.keep_wholes(of_axis(stage + ".candidate", a), order.candidate[a]);
+  for (size_t a = 0; a < 3; ++a) checkpoint.keep_integers(of_axis(stage + ".candidate", a), order.candidate[a]);
   checkpoint.write();
 }
 
@@ -67,7 +67,7 @@ bool take_kept_lobes(const FitCheckpoint& checkpoint, const std::string& stage, 
     }
   }
   for (size_t a = 1; a < 3; ++a) {
-    const auto numbers = checkpoint.wholes(of_axis(stage + ".axis", a), count, count - 1);
+    const auto numbers = checkpoint.integers(of_axis(stage + ".axis", a), count, count - 1);
     lobes.lobe[a].clear();
     for (const size_t n : numbers.value_or(std::vector<size_t>())) lobes.lobe[a].push_back(static_cast<uint16_t>(n));
   }
@@ -83,7 +83,7 @@ void keep_lobes(FitCheckpoint& checkpoint, const std::string& stage, const Share
   }
   checkpoint.keep(stage + ".vectors", vectors);
   for (size_t a = 1; a < 3; ++a) {
-    checkpoint.keep_wholes(of_axis(stage + ".axis", a), {lobes.lobe[a].begin(), lobes.lobe[a].end()});
+    checkpoint.keep_integers(of_axis(stage + ".axis", a), {lobes.lobe[a].begin(), lobes.lobe[a].end()});
   }
   checkpoint.write();
 }

@@ -26,7 +26,7 @@ class Checkpoint : public testing::Test {
     FitCheckpoint checkpoint = made(false);
     checkpoint.keep("matrix", matrix_);
     checkpoint.keep_numbers("numbers", std::vector<double>{0.1, -1e-300});
-    checkpoint.keep_wholes("wholes", {3, 0, 7});
+    checkpoint.keep_integers("integers", {3, 0, 7});
     checkpoint.write();
   }
   const std::string path_ =
@@ -39,7 +39,7 @@ TEST_F(Checkpoint, GivesBackTheBitsThatItWasGiven) {
   const FitCheckpoint checkpoint = made(true);
   EXPECT_EQ(checkpoint.matrix("matrix", 5, 4), matrix_);
   EXPECT_EQ(checkpoint.numbers("numbers", 2), (std::vector<double>{0.1, -1e-300}));
-  EXPECT_EQ(checkpoint.wholes("wholes", 3, 7), (std::vector<size_t>{3, 0, 7}));
+  EXPECT_EQ(checkpoint.integers("integers", 3, 7), (std::vector<size_t>{3, 0, 7}));
   EXPECT_TRUE(checkpoint.warnings().empty());
 }
 
@@ -50,8 +50,8 @@ TEST_F(Checkpoint, GivesNothingThatIsNotAsAskedFor) {
   EXPECT_FALSE(checkpoint.matrix("another", 5, 4));
   EXPECT_FALSE(checkpoint.numbers("numbers", 1));
   EXPECT_FALSE(checkpoint.numbers("matrix", 100));
-  EXPECT_FALSE(checkpoint.wholes("wholes", 3, 6));
-  EXPECT_FALSE(checkpoint.wholes("numbers", 3, 6));
+  EXPECT_FALSE(checkpoint.integers("integers", 3, 6));
+  EXPECT_FALSE(checkpoint.integers("numbers", 3, 6));
 }
 
 TEST_F(Checkpoint, OfAnotherFitIsIgnoredWithASentence) {
