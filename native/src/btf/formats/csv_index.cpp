@@ -80,6 +80,10 @@ class CsvIndex {
              "'; it must contain file, theta_l, phi_l, theta_v and phi_v, separated by commas");
       }
     }
+    for (const std::string& name : columns_) {
+      if (std::ranges::count(columns_, name) > 1)
+        fail("the first line names the column '" + name + "' more than once; remove all but one");
+    }
     numbered_ = column("view") < columns_.size();
     if (numbered_ != (column("light") < columns_.size())) fail("the columns 'view' and 'light' must be given together");
   }
@@ -117,8 +121,8 @@ class CsvIndex {
                   row,
                   row};
     if (numbered_) {
-      p.view_number = static_cast<uint64_t>(number(fields, "view"));
-      p.light_number = static_cast<uint64_t>(number(fields, "light"));
+      p.view_number = integer(fields, "view");
+      p.light_number = integer(fields, "light");
     }
     return p;
   }
@@ -133,6 +137,13 @@ class CsvIndex {
     const bool signs = std::string_view(name).starts_with("phi");
     if (value < 0 && !signs) fail(std::string("'") + name + "' is negative; it must be at least 0");
     return value;
+  }
+
+  uint64_t integer(const Fields& fields, const char* name) const {
+    const double value = number(fields, name);
+    if (value != std::floor(value))
+      fail(std::string("'") + name + "' is '" + fields[column(name)] + "'; it must be an integer");
+    return static_cast<uint64_t>(value);
   }
 
   [[noreturn]] void fail(const std::string& what) const {
@@ -181,7 +192,7 @@ bool is_csv_index(const std::string& path) {
   std::string line;
   if (!lines.next(line)) return false;
   const Fields columns = split(line);
-  return std::ranges::all_of(kNeeded, [&](const char* name) { return std::ranges::count(columns, name) == 1; });
+  return std::ranges::all_of(kNeeded, [&](const char* name) { return std::ranges::count(columns, name) > 0; });
 }
 
 }  // namespace velour

@@ -72,6 +72,11 @@ TEST_F(CsvIndexTest, WhatIsWrongIsOneSentenceWithItsLine) {
   EXPECT_EQ(refusal(head + ",1,2,3,4\n"), ": line 2: 'file' is empty.");
   EXPECT_EQ(refusal(head + "a.png,1,2,3,4\nb.png,1,2,3,4\n"),
             ": line 3: an earlier line has the same angles; remove one of the two.");
+  EXPECT_EQ(refusal("file," + head),
+            ": line 1: the first line names the column 'file' more than once; remove all but one.");
+  EXPECT_TRUE(is_csv_index(path_));
+  EXPECT_EQ(refusal("file,theta_l,phi_l,theta_v,phi_v,view,light\na.png,1,0,2,0,1.5,0\n"),
+            ": line 2: 'view' is '1.5'; it must be an integer.");
   EXPECT_EQ(refusal("view," + head), ": line 1: the columns 'view' and 'light' must be given together.");
 }
 
