@@ -73,7 +73,7 @@ int main(int argc, char** argv) try {
   for (int i = 2; i < argc; ++i) {
     const auto model = std::make_shared<const Model>(load_model(argv[i]));
     const auto material = make_material(model, 0);
-    const bool scattered = std::holds_alternative<ScatteredBrdf>(model->body);
+    const bool scattered = std::holds_alternative<PerViewBrdf>(model->body);
     for (const Measurement* f :
          {static_cast<const Measurement*>(measurement.get()), static_cast<const Measurement*>(nullptr)}) {
       report(argv[i], f, *material, Draws::own);

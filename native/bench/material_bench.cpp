@@ -10,8 +10,8 @@
 namespace velour {
 namespace {
 
-ScatteredBrdf make_brdf(bool isotropic, int lobes = 16) {
-  ScatteredBrdf brdf;
+PerViewBrdf make_brdf(bool isotropic, int lobes = 16) {
+  PerViewBrdf brdf;
   brdf.isotropic = isotropic;
   brdf.default_neighbors = isotropic ? 2 : 4;
   if (isotropic) {
@@ -48,7 +48,7 @@ std::shared_ptr<const Material> make(int64_t choice) {
   if (choice == kTextured) {
     return make_principled_material({}, {noise<Rgb>(), noise<float>(), noise<float>(), {}}, 1);
   }
-  return make_scattered_material(std::make_shared<ScatteredBrdf>(make_brdf(choice == kMeridian)), 0);
+  return make_per_view_material(std::make_shared<PerViewBrdf>(make_brdf(choice == kMeridian)), 0);
 }
 
 void label(benchmark::State& state) {
@@ -77,7 +77,7 @@ void prepare_material(benchmark::State& state) {
 // Four neighboring views found, turned and put together. Argument: lobes a view.
 void prepare_neighbors(benchmark::State& state) {
   const int lobes = static_cast<int>(state.range(0));
-  const auto material = make_scattered_material(std::make_shared<ScatteredBrdf>(make_brdf(false, lobes)), 4);
+  const auto material = make_per_view_material(std::make_shared<PerViewBrdf>(make_brdf(false, lobes)), 4);
   PreparedBrdf point;
   size_t i = 0;
   for (auto _ : state) {

@@ -101,7 +101,7 @@ ClusteredLevels in_bytes(const ClusteredTensor& tensor, size_t views) {
 
 class OfShell : public OcclusionCandidate {
  public:
-  OfShell(std::shared_ptr<const OcclusionVolume> volume, const TileTexels& texels, const std::vector<Vec3>& views)
+  OfShell(std::shared_ptr<const VotfVolume> volume, const TileTexels& texels, const std::vector<Vec3>& views)
       : field_(std::move(volume)), texels_(texels), views_(views) {}
 
   bool covered(size_t texel, uint32_t view) const override { return covered(texel, views_[view]); }
@@ -167,8 +167,8 @@ std::unique_ptr<OcclusionCandidate> clustered(const LevelTable& table, const Clu
   return candidate;
 }
 
-std::unique_ptr<OcclusionCandidate> shell_distances(std::shared_ptr<const OcclusionVolume> volume,
-                                                    const TileTexels& texels, const std::vector<Vec3>& views) {
+std::unique_ptr<OcclusionCandidate> shell_distances(std::shared_ptr<const VotfVolume> volume, const TileTexels& texels,
+                                                    const std::vector<Vec3>& views) {
   auto candidate = std::make_unique<OfShell>(volume, texels, views);
   candidate->stored = volume->distance;
   return candidate;

@@ -53,7 +53,7 @@ std::unique_ptr<OcclusionCandidate> clustered(const LevelTable& table, const Clu
 std::unique_ptr<OcclusionCandidate> texel_lobes(const LevelTable& table, int lobes);
 
 /// The shell's distances, on a grid as fine as the texels or another.
-std::unique_ptr<OcclusionCandidate> shell_distances(std::shared_ptr<const OcclusionVolume> volume,
-                                                    const TileTexels& texels, const std::vector<Vec3>& views);
+std::unique_ptr<OcclusionCandidate> shell_distances(std::shared_ptr<const VotfVolume> volume, const TileTexels& texels,
+                                                    const std::vector<Vec3>& views);
 
 }  // namespace velour

@@ -240,22 +240,22 @@ class Comparison {
   }
 
   void of_shell(uint32_t texels) {
-    OcclusionCaptureOptions options;
+    VotfCaptureOptions options;
     options.place = place_;
     options.texels = texels;
     options.reference_height = 0;
     options.check_views = 0;
     Progress progress;
-    OcclusionCapture capture;
+    VotfCapture capture;
     const auto shell = [&] {
-      capture = capture_occlusion(*scene_, options, progress);
-      return shell_distances(std::make_shared<OcclusionVolume>(capture.volume), task_.texels, task_.views);
+      capture = capture_votf(*scene_, options, progress);
+      return shell_distances(std::make_shared<VotfVolume>(capture.volume), task_.texels, task_.views);
     };
     add("distances in the shell, " + std::to_string(texels) + " a tile", shell);
     options.check_views = static_cast<uint32_t>(task_.views.size());
     options.measure_ray_share = true;
     const auto start = std::chrono::steady_clock::now();
-    const OcclusionCapture checked = capture_occlusion(*scene_, options, progress);
+    const VotfCapture checked = capture_votf(*scene_, options, progress);
     auto& row = json_["candidates"].back();
     const auto& v = capture.volume;
     row["points"] = {v.width, v.height, v.depth};

@@ -125,9 +125,9 @@ Moments moments(const std::vector<Place>& places, const double (&share)[kDensiti
   return {integral, second};
 }
 
-SkyProposals proposals(const Environment& environment, const Progress& progress) {
-  const SkyMixture sky = sky_mixture(environment, {}, "", progress);
-  return SkyProposals(sky, sky_misfit(environment, sky));
+EnvironmentProposals proposals(const Environment& environment, const Progress& progress) {
+  const EnvironmentMixture sky = mixture_of_environment(environment, {}, "", progress);
+  return EnvironmentProposals(sky, misfit_of_environment(environment, sky));
 }
 
 class Study {
@@ -207,7 +207,7 @@ class Study {
   Scene scene_;
   const Lighting lighting_;
   RandomStream random_;
-  const SkyProposals sky_;
+  const EnvironmentProposals sky_;
   const std::vector<float> lights_part_;
   PreparedBrdf prepared_;
   LobeProducts scratch_;

@@ -101,7 +101,7 @@ class Directions {
   DirectionBatch drawn_, local_, world_;
 };
 
-double sky_luminance(const Scene& scene, const Vec3& direction) {
+double environment_luminance(const Scene& scene, const Vec3& direction) {
   DirectionBatch world;
   RgbBatch radiance;
   ScalarBatch pdf;
@@ -153,7 +153,7 @@ class Study {
       Hit hit;
       scene_.rays().intersect(ray, hit);
       if (hit.instance == kNoHit) {
-        moments.add(sky_luminance(scene_, ray.direction), 1);
+        moments.add(environment_luminance(scene_, ray.direction), 1);
         continue;
       }
       const SurfacePoint point = scene_.surface(hit);

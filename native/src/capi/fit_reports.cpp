@@ -70,7 +70,7 @@ std::string peer_json(const PeerFit& fit) {
 
 namespace {
 
-Json count_json(const ScatteredBrdf& brdf) { return {{"lobes", brdf.lobe_count()}}; }
+Json count_json(const PerViewBrdf& brdf) { return {{"lobes", brdf.lobe_count()}}; }
 Json count_json(const ParametricBrdf& brdf) { return {{"lobes", brdf.lobe_count()}}; }
 Json count_json(const FactoredBtf& btf) { return {{"components", btf.components()}}; }
 
@@ -94,7 +94,7 @@ Json count_json(const TensorBtf& btf) {
 }
 
 /// Keys of one kind of model only.
-Json own_json(const ScatteredBrdf& brdf) {
+Json own_json(const PerViewBrdf& brdf) {
   return {{"kernel", kernel_name(brdf.kernel)},
           {"isotropic", brdf.isotropic},
           {"views", brdf.views.size()},
@@ -208,8 +208,8 @@ Json record_json(const BtfRecord& btf) {
 }
 
 Json shell_json(const ModelShell& shell) {
-  const OcclusionVolume& v = *shell.volume;
-  const auto of_errors = [&](double OcclusionErrors::*value) {
+  const VotfVolume& v = *shell.volume;
+  const auto of_errors = [&](double VotfErrors::*value) {
     return shell.errors ? Json((*shell.errors).*value) : Json();
   };
   return {{"source", shell.source},
@@ -218,8 +218,8 @@ Json shell_json(const ModelShell& shell) {
           {"heights", {v.bottom, v.top}},
           {"tile_width", v.tile_width > 0 ? Json(v.tile_width) : Json()},
           {"closed", v.closed},
-          {"coverage", of_errors(&OcclusionErrors::coverage)},
-          {"wrong", of_errors(&OcclusionErrors::wrong)}};
+          {"coverage", of_errors(&VotfErrors::coverage)},
+          {"wrong", of_errors(&VotfErrors::wrong)}};
 }
 
 }  // namespace

@@ -22,7 +22,7 @@ std::shared_ptr<const Model> coarse_proposal(const Measurement& measurement) {
   options.tolerance = 0.05;
   options.all_data = true;
   Progress unwatched;
-  return std::make_shared<const Model>(fit_scattered(measurement, options, unwatched));
+  return std::make_shared<const Model>(fit_per_view(measurement, options, unwatched));
 }
 
 SurfaceMaterial brushed_if_anisotropic(SurfaceMaterial surface) {

@@ -14,7 +14,7 @@ using namespace velour::capi;
 
 namespace {
 
-std::string mixture_json(const SkyMixture& sky) {
+std::string mixture_json(const EnvironmentMixture& sky) {
   Json lobes = Json::array();
   for (size_t k = 0; k < sky.size(); ++k) {
     const Vec3& c = sky.center[k];
@@ -89,7 +89,7 @@ vlr_status vlr_light_map_create_job(const vlr_scene* scene, const char* cache_fo
     *out = new vlr_job(output, [output, environment = scene->scene->environment(), count = static_cast<int>(threads),
                                 folder = std::string(cache_folder ? cache_folder : "")](Progress& progress) {
       in_one_arena(count, [&] {  // the fit uses the threads of its caller
-        const SkyMixture sky = sky_mixture(environment, {}, folder, progress);
+        const EnvironmentMixture sky = mixture_of_environment(environment, {}, folder, progress);
         output->set(mixture_json(sky),
                     std::make_shared<const TablePixels>(light_map(sky, environment, count, progress)));
       });
@@ -144,7 +144,7 @@ vlr_status vlr_shell_maps_create_job(const vlr_model* model, vlr_job** out) {
     if (!model->model->shell) throw Error(Status::invalid_argument, "The model has no silhouette (VOTF).");
     auto output = std::make_shared<JobOutput>();
     *out = new vlr_job(output, [output, volume = model->model->shell->volume](Progress&) {
-      const OcclusionVolume& v = *volume;
+      const VotfVolume& v = *volume;
       const std::string json = text({{"layers", v.depth},
                                      {"bottom", v.bottom},
                                      {"top", v.top},

@@ -11,8 +11,8 @@ using namespace velour::capi;
 
 namespace {
 
-OcclusionCaptureOptions converted(const vlr_votf_options& given) {
-  OcclusionCaptureOptions options;
+VotfCaptureOptions converted(const vlr_votf_options& given) {
+  VotfCaptureOptions options;
   for (int i = 0; i < 2; ++i) {
     options.place.origin[i] = static_cast<float>(given.origin[i]);
     options.place.period[i] = static_cast<float>(given.period[i]);
@@ -27,7 +27,7 @@ OcclusionCaptureOptions converted(const vlr_votf_options& given) {
   return options;
 }
 
-DataOcclusionOptions of_data(const vlr_votf_options& given) {
+DataVotfOptions of_data(const vlr_votf_options& given) {
   return {.texels = given.texels,
           .surface = given.surface,
           .check_views = given.check_views,
@@ -40,10 +40,9 @@ vlr_job* shell_job(const vlr_model* model, const char* source, Find find) {
   auto output = std::make_shared<JobOutput>();
   const auto task = [output, base = model->model, source = std::string(source ? source : ""),
                      find = std::move(find)](Progress& progress) {
-    OcclusionCapture captured = find(progress);
+    VotfCapture captured = find(progress);
     auto result = std::make_shared<Model>(*base);
-    result->shell =
-        ModelShell{std::make_shared<const OcclusionVolume>(std::move(captured.volume)), source, captured.errors};
+    result->shell = ModelShell{std::make_shared<const VotfVolume>(std::move(captured.volume)), source, captured.errors};
     captured.volume = {};
     output->set(votf_json(*result->shell, captured.seconds, captured.warnings), result);
   };
@@ -53,7 +52,7 @@ vlr_job* shell_job(const vlr_model* model, const char* source, Find find) {
 }  // namespace
 
 void vlr_votf_options_init(vlr_votf_options* options) {
-  const OcclusionCaptureOptions defaults;
+  const VotfCaptureOptions defaults;
   *options = {};
   options->struct_size = sizeof(vlr_votf_options);
   options->texels = defaults.texels;
@@ -71,7 +70,7 @@ vlr_status vlr_votf_create_job(const vlr_scene* tile, const vlr_model* model, co
     require(out, "out");
     const auto given = read_options(options, vlr_votf_options_init, "vlr_votf_options");
     *out = shell_job(model, given.source, [scene = tile->scene, capture = converted(given)](Progress& progress) {
-      return capture_occlusion(*scene, capture, progress);
+      return capture_votf(*scene, capture, progress);
     });
   });
 }
@@ -84,7 +83,7 @@ vlr_status vlr_votf_data_create_job(const vlr_btf* btf, const vlr_model* model, 
     require(out, "out");
     const auto given = read_options(options, vlr_votf_options_init, "vlr_votf_options");
     *out = shell_job(model, given.source, [data = btf->btf, capture = of_data(given)](Progress& progress) {
-      return occlusion_of_data(*data, capture, progress);
+      return votf_of_data(*data, capture, progress);
     });
   });
 }

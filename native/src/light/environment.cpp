@@ -145,7 +145,7 @@ constexpr float kCosine[9] = {kPi, 2 * kPi / 3, 2 * kPi / 3, 2 * kPi / 3, kPi / 
 
 }  // namespace
 
-SkyIrradiance::SkyIrradiance(const Environment& sky) {
+EnvironmentIrradiance::EnvironmentIrradiance(const Environment& sky) {
   if (sky.black()) return;
   least_ = kMinOfMean * kPi * sky.mean_luminance();
   std::array<double, 9> sum{};
@@ -168,7 +168,7 @@ SkyIrradiance::SkyIrradiance(const Environment& sky) {
   for (size_t k = 0; k < 9; ++k) weight_[k] = kCosine[k] * static_cast<float>(sum[k] / kIrradianceDraws);
 }
 
-float SkyIrradiance::on(const Vec3& normal) const {
+float EnvironmentIrradiance::on(const Vec3& normal) const {
   const std::array<float, 9> y = harmonics(normal);
   float sum = 0;
   for (size_t k = 0; k < 9; ++k) sum += weight_[k] * y[k];

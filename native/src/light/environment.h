@@ -79,10 +79,10 @@ class Environment {
 /// Irradiance (luminance) as a function of the plane's normal, as nine spherical harmonics [RH01], from samples of the
 /// environment. Accurate to a few per cent, worse on planes that face away from a sun; at least a twentieth of the
 /// mean.
-class SkyIrradiance {
+class EnvironmentIrradiance {
  public:
-  SkyIrradiance() = default;  // black
-  explicit SkyIrradiance(const Environment& sky);
+  EnvironmentIrradiance() = default;  // black
+  explicit EnvironmentIrradiance(const Environment& sky);
   float on(const Vec3& normal) const;
 
  private:

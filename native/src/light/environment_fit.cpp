@@ -33,18 +33,18 @@ Moved moved(const Vec3d& from, const Vec3d& d, double q) {
   return {length > 1e-9 ? mean / length : from, gaussian_bandwidth_of_mean(lost / (1 + std::sqrt(1 - lost)))};
 }
 
-class SkyFit {
+class EnvironmentFit {
  public:
-  SkyFit(const EquirectangularImage& image, const SkyFitOptions& options, const Progress& progress)
+  EnvironmentFit(const EquirectangularImage& image, const EnvironmentFitOptions& options, const Progress& progress)
       : options_(options),
         progress_(progress),
-        points_(sky_points(image)),
+        points_(environment_points(image)),
         scale_(4 * kPiD * static_cast<double>(image.mean_luminance())),
         tests_(sphere_fibonacci(static_cast<int>(kTestDirections))) {
     smooth_image();
   }
 
-  SkyMixture run() {
+  EnvironmentMixture run() {
     push(Vec3d(0, 0, 1), kMinMeanBandwidth, 1.0);
     for (;;) {
       for (int i = 0; i < kStepsARound; ++i) step();
@@ -73,14 +73,14 @@ class SkyFit {
   /// Expectation step: sums the moments over all cells, in the order of the cells.
   void expect() {
     progress_.check();
-    const size_t n = lobes_.size(), blocks = (points_.size() + kSkyBlock - 1) / kSkyBlock;
+    const size_t n = lobes_.size(), blocks = (points_.size() + kEnvironmentBlock - 1) / kEnvironmentBlock;
     const size_t pieces = (blocks + kBlocksAPiece - 1) / kBlocksAPiece;
     pieces_.assign(pieces * n, {});
     tbb::parallel_for(size_t{0}, pieces, [&](size_t piece) {
-      std::vector<float> scratch(n * kSkyBlock);
+      std::vector<float> scratch(n * kEnvironmentBlock);
       const size_t end = std::min(blocks, (piece + 1) * kBlocksAPiece);
       for (size_t block = piece * kBlocksAPiece; block < end; ++block) {
-        add_sky_block(points_, block * kSkyBlock, lobes_, scratch.data(), &pieces_[piece * n]);
+        add_environment_block(points_, block * kEnvironmentBlock, lobes_, scratch.data(), &pieces_[piece * n]);
       }
     });
     moments_.assign(n, {});
@@ -90,10 +90,10 @@ class SkyFit {
   /// One step of expectation maximization. Drops lobes that have lost their energy.
   void step() {
     expect();
-    const SkyLobes old = std::move(lobes_);
+    const EnvironmentLobes old = std::move(lobes_);
     lobes_ = {};
     for (size_t k = 0; k < old.size(); ++k) {
-      const SkyMoments& m = moments_[k];
+      const EnvironmentMoments& m = moments_[k];
       if (!(m.energy > 1e-7)) continue;
       const Vec3d from = glm::normalize(Vec3d(old.x[k], old.y[k], old.z[k]));
       const Moved to = moved(from, Vec3d(m.dx, m.dy, m.dz) / m.energy, m.q / m.energy);
@@ -115,7 +115,7 @@ class SkyFit {
   }
 
   bool divide(size_t k) {
-    const SkyMoments& m = moments_[k];
+    const EnvironmentMoments& m = moments_[k];
     const double share = std::min(m.excess, 0.5 * m.energy);
     if (!(m.chi > 0) || !(share > 1e-6)) return false;
     const Moved child = moved(center(k), Vec3d(m.chi_x, m.chi_y, m.chi_z) / m.chi, m.chi_q / m.chi);
@@ -128,7 +128,7 @@ class SkyFit {
   void smooth_image() {
     smoothed_.resize(tests_.size());
     tbb::parallel_for(size_t{0}, tests_.size(), [&](size_t i) {
-      smoothed_[i] = smoothed_sky(points_, tests_[i], static_cast<float>(SkyMixture::kSmoothing));
+      smoothed_[i] = smoothed_environment(points_, tests_[i], static_cast<float>(EnvironmentMixture::kSmoothing));
     });
   }
 
@@ -138,7 +138,7 @@ class SkyFit {
       double value = 0;
       for (size_t k = 0; k < lobes_.size(); ++k) {
         value += static_cast<double>(lobes_.peak[k]) * kernel_convolution(Kernel::gaussian, Vec3d(tests_[i]),
-                                                                          SkyMixture::kSmoothing, center(k),
+                                                                          EnvironmentMixture::kSmoothing, center(k),
                                                                           static_cast<double>(lobes_.bandwidth[k]));
       }
       difference[i] = value - smoothed_[i];
@@ -149,11 +149,11 @@ class SkyFit {
     return std::sqrt(norm_sq(difference) / norm_sq(smoothed_));
   }
 
-  SkyMixture result() {
+  EnvironmentMixture result() {
     expect();  // colors from the responsibilities of the final lobes
-    SkyMixture sky;
+    EnvironmentMixture sky;
     for (size_t k = 0; k < lobes_.size(); ++k) {
-      const SkyMoments& m = moments_[k];
+      const EnvironmentMoments& m = moments_[k];
       const double peak = scale_ / kernel_integral(Kernel::gaussian, static_cast<double>(lobes_.bandwidth[k]));
       sky.center.push_back(Vec3(center(k)));
       sky.bandwidth.push_back(lobes_.bandwidth[k]);
@@ -163,23 +163,24 @@ class SkyFit {
     return sky;
   }
 
-  const SkyFitOptions options_;
+  const EnvironmentFitOptions options_;
   const Progress& progress_;
-  const SkyPoints points_;
+  const EnvironmentPoints points_;
   const double scale_;  // luminance x solid angle of the whole image
   const std::vector<Vec3> tests_;
   std::vector<double> smoothed_;
-  SkyLobes lobes_;
-  std::vector<SkyMoments> pieces_, moments_;
+  EnvironmentLobes lobes_;
+  std::vector<EnvironmentMoments> pieces_, moments_;
   double error_ = 0;
 };
 
 }  // namespace
 
-SkyMixture fit_sky(const EquirectangularImage& image, const SkyFitOptions& options, const Progress& progress) {
+EnvironmentMixture fit_environment(const EquirectangularImage& image, const EnvironmentFitOptions& options,
+                                   const Progress& progress) {
   if (!(image.mean_luminance() > 0.0f)) return {};
   const auto start = std::chrono::steady_clock::now();
-  SkyMixture sky = SkyFit(image, options, progress).run();
+  EnvironmentMixture sky = EnvironmentFit(image, options, progress).run();
   sky.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return sky;
 }
@@ -209,7 +210,7 @@ class Gathering {
     }
   }
 
-  SkyPoints run() {
+  EnvironmentPoints run() {
     std::vector<Cell> open = {{0, 0, image_.width(), image_.height()}};
     while (!open.empty()) {
       const Cell cell = open.back();
@@ -298,11 +299,11 @@ class Gathering {
   const size_t columns_;
   std::vector<double> sums_, cosine_, sine_;
   double total_ = 0;
-  SkyPoints points_;
+  EnvironmentPoints points_;
 };
 
 }  // namespace
 
-SkyPoints sky_points(const EquirectangularImage& image) { return Gathering(image).run(); }
+EnvironmentPoints environment_points(const EquirectangularImage& image) { return Gathering(image).run(); }
 
 }  // namespace velour

@@ -32,17 +32,19 @@ struct Offset {
 
 /// Cells of a block, padded with cells without energy.
 struct alignas(64) Block {
-  float x[kSkyBlock], y[kSkyBlock], z[kSkyBlock], spread[kSkyBlock], energy[kSkyBlock], area[kSkyBlock];
-  float r[kSkyBlock], g[kSkyBlock], b[kSkyBlock];
-  float inverse[kSkyBlock], chi[kSkyBlock], excess[kSkyBlock];  // 1 / density; see SkyMoments
+  float x[kEnvironmentBlock], y[kEnvironmentBlock], z[kEnvironmentBlock], spread[kEnvironmentBlock],
+      energy[kEnvironmentBlock], area[kEnvironmentBlock];
+  float r[kEnvironmentBlock], g[kEnvironmentBlock], b[kEnvironmentBlock];
+  float inverse[kEnvironmentBlock], chi[kEnvironmentBlock],
+      excess[kEnvironmentBlock];  // 1 / density; see EnvironmentMoments
   int count;
 };
 
-void load(const SkyPoints& p, size_t first, Block& block) {
-  const size_t n = std::min(kSkyBlock, p.size() - first);
+void load(const EnvironmentPoints& p, size_t first, Block& block) {
+  const size_t n = std::min(kEnvironmentBlock, p.size() - first);
   const auto copy = [&](const std::vector<float>& from, float* to) {
     std::copy_n(from.begin() + static_cast<std::ptrdiff_t>(first), n, to);
-    std::fill(to + n, to + kSkyBlock, 0.0f);
+    std::fill(to + n, to + kEnvironmentBlock, 0.0f);
   };
   copy(p.x, block.x);
   copy(p.y, block.y);
@@ -57,14 +59,14 @@ void load(const SkyPoints& p, size_t first, Block& block) {
 }
 
 template <class D>
-void densities(D d, const SkyLobes& lobes, Block& block, float* scratch) {
-  for (size_t i = 0; i < kSkyBlock; i += hn::Lanes(d)) {
+void densities(D d, const EnvironmentLobes& lobes, Block& block, float* scratch) {
+  for (size_t i = 0; i < kEnvironmentBlock; i += hn::Lanes(d)) {
     const auto x = hn::Load(d, block.x + i), y = hn::Load(d, block.y + i), z = hn::Load(d, block.z + i);
     auto total = hn::Set(d, 1e-30f);
     for (size_t k = 0; k < lobes.size(); ++k) {
       const Offset<D> o(d, x, y, z, lobes.x[k], lobes.y[k], lobes.z[k]);
       const auto value = hn::Mul(hn::Set(d, lobes.peak[k]), o.kernel(d, lobes.bandwidth[k]));
-      hn::StoreU(value, d, scratch + k * kSkyBlock + i);
+      hn::StoreU(value, d, scratch + k * kEnvironmentBlock + i);
       total = hn::Add(total, value);
     }
     const auto expected = hn::Max(hn::Mul(total, hn::Load(d, block.area + i)), hn::Set(d, 1e-30f));
@@ -78,12 +80,12 @@ void densities(D d, const SkyLobes& lobes, Block& block, float* scratch) {
 }
 
 template <class D>
-SkyMoments moments_of(D d, const SkyLobes& lobes, size_t k, const Block& block, const float* values) {
+EnvironmentMoments moments_of(D d, const EnvironmentLobes& lobes, size_t k, const Block& block, const float* values) {
   using V = hn::Vec<D>;
   const V zero = hn::Zero(d);
   V energy = zero, dx = zero, dy = zero, dz = zero, q = zero, r = zero, g = zero, b = zero;
   V chi = zero, chi_x = zero, chi_y = zero, chi_z = zero, chi_q = zero, excess = zero;
-  for (size_t i = 0; i < kSkyBlock; i += hn::Lanes(d)) {
+  for (size_t i = 0; i < kEnvironmentBlock; i += hn::Lanes(d)) {
     const Offset<D> o(d, hn::Load(d, block.x + i), hn::Load(d, block.y + i), hn::Load(d, block.z + i), lobes.x[k],
                       lobes.y[k], lobes.z[k]);
     const V p = hn::Mul(hn::LoadU(d, values + i), hn::Load(d, block.inverse + i));
@@ -109,15 +111,17 @@ SkyMoments moments_of(D d, const SkyLobes& lobes, size_t k, const Block& block, 
           sum(b),      sum(chi), sum(chi_x), sum(chi_y), sum(chi_z), sum(chi_q), sum(excess)};
 }
 
-void add_block_simd(const SkyPoints& points, size_t first, const SkyLobes& lobes, float* scratch, SkyMoments* moments) {
+void add_block_simd(const EnvironmentPoints& points, size_t first, const EnvironmentLobes& lobes, float* scratch,
+                    EnvironmentMoments* moments) {
   const hn::CappedTag<float, 16> d;
   Block block;
   load(points, first, block);
   densities(d, lobes, block, scratch);
-  for (size_t k = 0; k < lobes.size(); ++k) moments[k] += moments_of(d, lobes, k, block, scratch + k * kSkyBlock);
+  for (size_t k = 0; k < lobes.size(); ++k)
+    moments[k] += moments_of(d, lobes, k, block, scratch + k * kEnvironmentBlock);
 }
 
-double smoothed_simd(const SkyPoints& p, const Vec3& w, float bandwidth) {
+double smoothed_simd(const EnvironmentPoints& p, const Vec3& w, float bandwidth) {
   const hn::CappedTag<float, 16> d;
   const size_t lanes = hn::Lanes(d);
   double total = 0;
@@ -144,7 +148,7 @@ namespace velour {
 HWY_EXPORT(add_block_simd);
 HWY_EXPORT(smoothed_simd);
 
-SkyMoments& SkyMoments::operator+=(const SkyMoments& o) {
+EnvironmentMoments& EnvironmentMoments::operator+=(const EnvironmentMoments& o) {
   energy += o.energy;
   dx += o.dx;
   dy += o.dy;
@@ -162,11 +166,12 @@ SkyMoments& SkyMoments::operator+=(const SkyMoments& o) {
   return *this;
 }
 
-void add_sky_block(const SkyPoints& points, size_t first, const SkyLobes& lobes, float* scratch, SkyMoments* moments) {
+void add_environment_block(const EnvironmentPoints& points, size_t first, const EnvironmentLobes& lobes, float* scratch,
+                           EnvironmentMoments* moments) {
   VELOUR_SIMD_DISPATCH(add_block_simd)(points, first, lobes, scratch, moments);
 }
 
-double smoothed_sky(const SkyPoints& points, const Vec3& w, float bandwidth) {
+double smoothed_environment(const EnvironmentPoints& points, const Vec3& w, float bandwidth) {
   return VELOUR_SIMD_DISPATCH(smoothed_simd)(points, w, bandwidth);
 }
 

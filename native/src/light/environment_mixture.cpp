@@ -35,7 +35,7 @@ const Tensor* part(const TensorFile& file, const char* name, size_t rows, size_t
   return found != file.tensors.end() && found->second.data.size() == rows * columns ? &found->second : nullptr;
 }
 
-bool sound(const SkyMixture& sky) {
+bool sound(const EnvironmentMixture& sky) {
   for (size_t k = 0; k < sky.size(); ++k) {
     const Rgb& c = sky.coefficient[k];
     if (!(std::abs(glm::length(sky.center[k]) - 1) < 1e-3f)) return false;
@@ -45,7 +45,7 @@ bool sound(const SkyMixture& sky) {
   return std::isfinite(sky.relative_l2) && sky.relative_l2 >= 0;
 }
 
-std::optional<SkyMixture> mixture_of(const TensorFile& file) {
+std::optional<EnvironmentMixture> mixture_of(const TensorFile& file) {
   const auto kind = file.attributes.find("velour.kind"), version = file.attributes.find("velour.format_version");
   if (kind == file.attributes.end() || kind->second != kKind) return std::nullopt;
   if (version == file.attributes.end() || version->second != kVersion) return std::nullopt;
@@ -56,7 +56,7 @@ std::optional<SkyMixture> mixture_of(const TensorFile& file) {
   const Tensor* colors = part(file, "lobes.coefficient", n, 3);
   const Tensor* error = part(file, "fit.relative_l2", 1, 1);
   if (n == 0 || n > kMaxLobes || centers == nullptr || colors == nullptr || error == nullptr) return std::nullopt;
-  SkyMixture sky;
+  EnvironmentMixture sky;
   sky.bandwidth = widths->second.data;
   for (size_t k = 0; k < n; ++k) {
     const float *c = &centers->data[3 * k], *v = &colors->data[3 * k];
@@ -70,7 +70,8 @@ std::optional<SkyMixture> mixture_of(const TensorFile& file) {
 
 /// "FOLDER/sky-<SHA-256 of size, texels and options>.exr". The texels do not include the placement, so one file serves
 /// every strength and rotation.
-std::string sky_cache_path(const std::string& folder, const EquirectangularImage& image, const SkyFitOptions& options) {
+std::string mixture_cache_path(const std::string& folder, const EquirectangularImage& image,
+                               const EnvironmentFitOptions& options) {
   std::vector<uint8_t> key;
   const int32_t numbers[] = {image.width(), image.height(), options.max_lobes};
   append(key, numbers, 3);
@@ -80,7 +81,7 @@ std::string sky_cache_path(const std::string& folder, const EquirectangularImage
 }
 
 /// Empty if the file is missing or any of its entries is invalid; the caller then fits again.
-std::optional<SkyMixture> read_sky(const std::string& path) {
+std::optional<EnvironmentMixture> read_mixture(const std::string& path) {
   try {
     return mixture_of(decode_tensors(read_file(path, kMaxBytes), path, {{"lobes.", "fit."}, kMaxBytes}));
   } catch (const Error&) {  // missing, truncated, or another format
@@ -89,7 +90,7 @@ std::optional<SkyMixture> read_sky(const std::string& path) {
 }
 
 /// Writes atomically. Returns false if the file cannot be written.
-bool write_sky(const std::string& path, const SkyMixture& sky) {
+bool write_mixture(const std::string& path, const EnvironmentMixture& sky) {
   TensorFile file;
   file.attributes.emplace("velour.kind", kKind);
   file.attributes.emplace("velour.format_version", kVersion);
@@ -111,31 +112,31 @@ bool write_sky(const std::string& path, const SkyMixture& sky) {
   return true;
 }
 
-SkyMixture image_mixture(const EquirectangularImage& image, const SkyFitOptions& options, const std::string& folder,
-                         const Progress& progress) {
-  if (folder.empty()) return fit_sky(image, options, progress);
-  const std::string path = sky_cache_path(folder, image, options);
-  if (auto kept = read_sky(path)) return *std::move(kept);
-  const SkyMixture sky = fit_sky(image, options, progress);
-  write_sky(path, sky);  // on failure, the next render only has to fit again
+EnvironmentMixture image_mixture(const EquirectangularImage& image, const EnvironmentFitOptions& options,
+                                 const std::string& folder, const Progress& progress) {
+  if (folder.empty()) return fit_environment(image, options, progress);
+  const std::string path = mixture_cache_path(folder, image, options);
+  if (auto kept = read_mixture(path)) return *std::move(kept);
+  const EnvironmentMixture sky = fit_environment(image, options, progress);
+  write_mixture(path, sky);  // on failure, the next render only has to fit again
   return sky;
 }
 
 }  // namespace
 
-SkyMixture sky_mixture(const Environment& environment, const SkyFitOptions& options, const std::string& cache_folder,
-                       const Progress& progress) {
+EnvironmentMixture mixture_of_environment(const Environment& environment, const EnvironmentFitOptions& options,
+                                          const std::string& cache_folder, const Progress& progress) {
   if (environment.black()) return {};
   const EquirectangularImage* image = environment.equirectangular();
   if (image == nullptr) {
-    SkyMixture sky;
+    EnvironmentMixture sky;
     sky.center = {{0, 0, 1}};
     sky.bandwidth = {0};
     sky.coefficient = {environment.radiance({0, 0, 1})};
     return sky;
   }
   const auto start = std::chrono::steady_clock::now();
-  SkyMixture sky = image_mixture(*image, options, cache_folder, progress);
+  EnvironmentMixture sky = image_mixture(*image, options, cache_folder, progress);
   const EnvironmentPlacement& placement = environment.placement();
   const Mat3 image_to_world = glm::transpose(placement.world_to_image);
   for (Vec3& c : sky.center) c = glm::normalize(image_to_world * c);
@@ -149,7 +150,7 @@ namespace {
 constexpr uint32_t kDraws = 1024, kDrawBatch = DirectionBatch::kCapacity;
 static_assert(kDraws % kDrawBatch == 0);
 
-std::unique_ptr<const LobeMixture> density_of(const SkyMixture& sky) {
+std::unique_ptr<const LobeMixture> density_of(const EnvironmentMixture& sky) {
   auto mixture = std::make_unique<LobeMixture>();
   mixture->clear(Kernel::gaussian);
   for (size_t k = 0; k < sky.size(); ++k) mixture->add(sky.center[k], sky.bandwidth[k], sky.coefficient[k]);
@@ -159,7 +160,7 @@ std::unique_ptr<const LobeMixture> density_of(const SkyMixture& sky) {
 
 }  // namespace
 
-double sky_misfit(const Environment& environment, const SkyMixture& sky) {
+double misfit_of_environment(const Environment& environment, const EnvironmentMixture& sky) {
   const auto mixture = density_of(sky);
   double sum = 0;
   for (uint32_t first = 0; first < kDraws; first += kDrawBatch) {

@@ -12,7 +12,7 @@ class Environment;
 class EquirectangularImage;
 
 /// Radiance(w) ~ sum_k coefficient_k exp(bandwidth_k (w . center_k - 1)). Used for sampling only, never for shading.
-struct SkyMixture {
+struct EnvironmentMixture {
   std::vector<Vec3> center;  // unit; world frame unless stated otherwise
   std::vector<float> bandwidth;
   std::vector<Rgb> coefficient;  // radiance, never negative
@@ -26,7 +26,7 @@ struct SkyMixture {
   size_t size() const { return center.size(); }
 };
 
-struct SkyFitOptions {
+struct EnvironmentFitOptions {
   double tolerance = 0.02;  // maximum relative_l2; lobes are added until it is met
   int max_lobes = 256;
 };
@@ -38,13 +38,14 @@ struct SkyFitOptions {
 /// chi-square divergence) spawns a lobe with the moments of that excess; expectation maximization of von Mises-Fisher
 /// densities on luminance then moves all of them [BDGS05]. A lobe's color is the energy that it accounts for, so the
 /// total energy is exact per channel, and a sun of a few texels gets a lobe of its own.
-SkyMixture fit_sky(const EquirectangularImage& image, const SkyFitOptions& options, const Progress& progress);
+EnvironmentMixture fit_environment(const EquirectangularImage& image, const EnvironmentFitOptions& options,
+                                   const Progress& progress);
 
 /// Mixture of an environment in the world frame: one lobe of bandwidth 0 for a constant one, none for a black one. With
 /// a `cache_folder` (created if missing), fits are cached by the image's content. Invalid files there are replaced; a
 /// folder that cannot be written only costs time.
-SkyMixture sky_mixture(const Environment& environment, const SkyFitOptions& options, const std::string& cache_folder,
-                       const Progress& progress);
+EnvironmentMixture mixture_of_environment(const Environment& environment, const EnvironmentFitOptions& options,
+                                          const std::string& cache_folder, const Progress& progress);
 
 // Misfit of a mixture of lobes as a sampling density of its environment.
 
@@ -54,6 +55,6 @@ SkyMixture sky_mixture(const Environment& environment, const SkyFitOptions& opti
 /// from 1024 evenly spread samples of p: the variance over the squared mean of the light on a receiver that weights all
 /// directions equally, when directions are sampled from q. 0 if both agree, 0.1 to 0.3 if lights have sharp edges,
 /// which Gaussians cannot represent; infinite if the mixture misses a light. Neither may be black. Deterministic.
-double sky_misfit(const Environment& environment, const SkyMixture& sky);
+double misfit_of_environment(const Environment& environment, const EnvironmentMixture& sky);
 
 }  // namespace velour

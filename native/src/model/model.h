@@ -44,13 +44,13 @@ struct SourceRecord {
 };
 
 /// Kinds of model. Append new kinds at the end.
-using ModelBody = std::variant<ScatteredBrdf, ParametricBrdf, FactoredBtf, SrbfBtf, TensorBtf>;
+using ModelBody = std::variant<PerViewBrdf, ParametricBrdf, FactoredBtf, SrbfBtf, TensorBtf>;
 
 /// The silhouette (VOTF) of the structure over a material's surfaces.
 struct ModelShell {
-  std::shared_ptr<const OcclusionVolume> volume;
-  std::string source;                                    // name of what was captured
-  std::optional<OcclusionErrors> errors = std::nullopt;  // none: not measured
+  std::shared_ptr<const VotfVolume> volume;
+  std::string source;                               // name of what was captured
+  std::optional<VotfErrors> errors = std::nullopt;  // none: not measured
 };
 
 struct Model {

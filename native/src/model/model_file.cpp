@@ -26,15 +26,15 @@ constexpr uint64_t kMaxFileBytes = uint64_t{1} << 30;
 
 // One overload per kind of model.
 
-constexpr char kScattered[] = "scattered", kParametric[] = "parametric", kFactored[] = "factored-btf",
+constexpr char kPerView[] = "scattered", kParametric[] = "parametric", kFactored[] = "factored-btf",
                kSrbf[] = "srbf-btf", kTensor[] = "tensor-btf";
-const char* kind_of(const ScatteredBrdf&) { return kScattered; }
+const char* kind_of(const PerViewBrdf&) { return kPerView; }
 const char* kind_of(const ParametricBrdf&) { return kParametric; }
 const char* kind_of(const FactoredBtf&) { return kFactored; }
 const char* kind_of(const SrbfBtf&) { return kSrbf; }
 const char* kind_of(const TensorBtf&) { return kTensor; }
 
-void write_body(const ScatteredBrdf& brdf, TensorFile& file) { write_scattered(brdf, file); }
+void write_body(const PerViewBrdf& brdf, TensorFile& file) { write_per_view(brdf, file); }
 void write_body(const ParametricBrdf& brdf, TensorFile& file) { write_parametric(brdf, file); }
 void write_body(const FactoredBtf& btf, TensorFile& file) { write_factored(btf, file); }
 void write_body(const SrbfBtf& btf, TensorFile& file) { write_srbf_btf(btf, file); }
@@ -42,7 +42,7 @@ void write_body(const TensorBtf& btf, TensorFile& file) { write_tensor_btf(btf, 
 
 ModelBody read_body(const ModelFields& fields) {
   const std::string& kind = fields.attribute("velour.model");
-  if (kind == kScattered) return read_scattered(fields);
+  if (kind == kPerView) return read_per_view(fields);
   if (kind == kParametric) return read_parametric(fields);
   if (kind == kFactored) return read_factored(fields);
   if (kind == kSrbf) return read_srbf_btf(fields);

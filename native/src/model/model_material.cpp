@@ -19,7 +19,7 @@ std::shared_ptr<const Material> made_of_body(const std::shared_ptr<const Model>&
       model->body);
 }
 
-using Scattered = std::shared_ptr<const ScatteredBrdf>;
+using Scattered = std::shared_ptr<const PerViewBrdf>;
 using Parametric = std::shared_ptr<const ParametricBrdf>;
 using Factored = std::shared_ptr<const FactoredBtf>;
 using Srbf = std::shared_ptr<const SrbfBtf>;
@@ -34,7 +34,7 @@ Either(Makes...) -> Either<Makes...>;
 
 /// Material for light from one side.
 std::shared_ptr<const Material> lit_from(BtfLight light, const std::shared_ptr<const Model>& model, int neighbors) {
-  return made_of_body(model, Either{[&](const Scattered& body) { return make_scattered_material(body, neighbors); },
+  return made_of_body(model, Either{[&](const Scattered& body) { return make_per_view_material(body, neighbors); },
                                     [&](const Parametric& body) { return make_parametric_material(body); },
                                     [&](const Factored& body) { return make_factored_material(body, light); },
                                     [&](const Srbf& body) { return make_srbf_btf_material(body, light); },
@@ -47,7 +47,7 @@ bool knows_through(const Btf& btf) {
   return serving_side(btf, false, true) || serving_side(btf, true, false);
 }
 bool knows_through(const FactoredBtf& btf) { return PairInterpolation(btf.layout).knows_through(); }
-bool knows_through(const ScatteredBrdf&) { return false; }
+bool knows_through(const PerViewBrdf&) { return false; }
 bool knows_through(const ParametricBrdf&) { return false; }
 
 }  // namespace
@@ -68,7 +68,7 @@ std::shared_ptr<const Material> make_measured_material(std::shared_ptr<const Mea
   if (is_btf(*proposal)) {
     throw Error(Status::invalid_argument, "A BTF model cannot be used to sample a BRDF measurement; use a BRDF model.");
   }
-  if (const auto* body = std::get_if<ScatteredBrdf>(&proposal->body)) {
+  if (const auto* body = std::get_if<PerViewBrdf>(&proposal->body)) {
     return make_measured_material(std::move(measurement), Scattered(proposal, body), neighbors);
   }
   const auto* body = &std::get<ParametricBrdf>(proposal->body);

@@ -92,7 +92,7 @@ std::vector<uint32_t> read_first_lobes(const ModelFields& fields, size_t views, 
   return first;
 }
 
-void check_views(const ModelFields& fields, const ScatteredBrdf& brdf) {
+void check_views(const ModelFields& fields, const PerViewBrdf& brdf) {
   const std::string part = "views.direction";
   for (size_t i = 0; i < brdf.views.size(); ++i) {
     const Vec3& v = brdf.views[i];
@@ -115,7 +115,7 @@ Kernel read_kernel(const ModelFields& fields) {
 
 }  // namespace
 
-void write_scattered(const ScatteredBrdf& brdf, TensorFile& file) {
+void write_per_view(const PerViewBrdf& brdf, TensorFile& file) {
   file.attributes["velour.kernel"] = kernel_name(brdf.kernel);
   file.attributes["velour.parameterisation"] = kLightSpace;
   file.attributes["velour.isotropic"] = boolean_text(brdf.isotropic);
@@ -136,12 +136,12 @@ void write_scattered(const ScatteredBrdf& brdf, TensorFile& file) {
   file.tensors["lobes.coefficient"] = vectors(brdf.coefficient);
 }
 
-ScatteredBrdf read_scattered(const ModelFields& fields) {
+PerViewBrdf read_per_view(const ModelFields& fields) {
   if (fields.attribute("velour.parameterisation") != kLightSpace) {
     fields.fail("velour.parameterisation is '" + fields.attribute("velour.parameterisation") +
                 "'; this Velour supports only 'light'.");
   }
-  ScatteredBrdf brdf;
+  PerViewBrdf brdf;
   brdf.kernel = read_kernel(fields);
   brdf.isotropic = fields.boolean("velour.isotropic");
   brdf.align_views = fields.boolean("velour.align_views");

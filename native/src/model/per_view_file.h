@@ -6,8 +6,8 @@
 
 namespace velour {
 
-void write_scattered(const ScatteredBrdf& brdf, TensorFile& file);
+void write_per_view(const PerViewBrdf& brdf, TensorFile& file);
 /// Checks every shape and range.
-ScatteredBrdf read_scattered(const ModelFields& fields);
+PerViewBrdf read_per_view(const ModelFields& fields);
 
 }  // namespace velour

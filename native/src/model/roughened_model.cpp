@@ -31,7 +31,7 @@ Model roughened(const Model& model, float roughness) {
   }
   Model rougher = model;
   const auto r = static_cast<double>(roughness);
-  if (const auto* scattered = std::get_if<ScatteredBrdf>(&model.body)) rougher.body = roughened(*scattered, r);
+  if (const auto* per_view = std::get_if<PerViewBrdf>(&model.body)) rougher.body = roughened(*per_view, r);
   if (const auto* parametric = std::get_if<ParametricBrdf>(&model.body)) rougher.body = roughened(*parametric, r);
   rougher.fit.warnings.push_back("made rougher by " + text_of(roughness) +
                                  "; errors are those of the model before that");
@@ -243,8 +243,8 @@ void roughen(Kernel kernel, double by, float cosine, float& bandwidth, Rgb& coef
 
 }  // namespace
 
-ScatteredBrdf roughened(const ScatteredBrdf& brdf, double roughness) {
-  ScatteredBrdf rougher = brdf;
+PerViewBrdf roughened(const PerViewBrdf& brdf, double roughness) {
+  PerViewBrdf rougher = brdf;
   for (size_t view = 0; view < brdf.views.size(); ++view) {
     const double cosine = static_cast<double>(std::max(brdf.views[view].z, kMinViewCosine));
     const double by = light_bandwidth_of_roughness(roughness, cosine);

@@ -13,7 +13,7 @@ namespace velour {
 Model roughened(const Model& model, float roughness);
 
 /// Roughened bodies of models. Requires 0 < roughness <= 1.
-ScatteredBrdf roughened(const ScatteredBrdf& brdf, double roughness);
+PerViewBrdf roughened(const PerViewBrdf& brdf, double roughness);
 ParametricBrdf roughened(const ParametricBrdf& brdf, double roughness);
 
 }  // namespace velour

@@ -55,7 +55,7 @@ uint32_t side(const ModelFields& fields, uint64_t points, uint32_t most, const c
 }  // namespace
 
 void write_shell(const ModelShell& shell, TensorFile& file) {
-  const OcclusionVolume& v = *shell.volume;
+  const VotfVolume& v = *shell.volume;
   Json json = {{"bottom", v.bottom}, {"top", v.top},       {"reference", v.reference},   {"aspect", v.aspect},
                {"reach", v.reach},   {"closed", v.closed}, {"tile_width", v.tile_width}, {"source", shell.source}};
   if (shell.errors) json.update(Json{{"coverage", shell.errors->coverage}, {"wrong", shell.errors->wrong}});
@@ -67,8 +67,8 @@ std::optional<ModelShell> read_shell(const ModelFields& fields) {
   const std::string text = fields.attribute_or_empty(kAttribute);
   if (text.empty()) return std::nullopt;
   const ShellJson json(fields, text);
-  auto volume = std::make_shared<OcclusionVolume>();
-  OcclusionVolume& v = *volume;
+  auto volume = std::make_shared<VotfVolume>();
+  VotfVolume& v = *volume;
   const auto length = [&](const char* key, double least) {
     return static_cast<float>(json.number(key, least, kHighest));
   };
@@ -82,9 +82,9 @@ std::optional<ModelShell> read_shell(const ModelFields& fields) {
   v.tile_width = length("tile_width", 0);
   const Tensor& part = fields.tensor(kPart);
   if (part.shape.size() != 3) fields.fail(std::string(kPart) + " must have three dimensions.");
-  v.depth = side(fields, part.shape[0], OcclusionVolume::kMaxDepth, "z");
-  v.height = side(fields, part.shape[1], OcclusionVolume::kMaxSide, "y");
-  v.width = side(fields, part.shape[2], OcclusionVolume::kMaxSide, "x");
+  v.depth = side(fields, part.shape[0], VotfVolume::kMaxDepth, "z");
+  v.height = side(fields, part.shape[1], VotfVolume::kMaxSide, "y");
+  v.width = side(fields, part.shape[2], VotfVolume::kMaxSide, "x");
   v.distance.reserve(part.data.size());
   for (size_t i = 0; i < part.data.size(); ++i) {
     const float value = part.data[i];

@@ -43,7 +43,7 @@ struct NamedLobe {
 };
 
 /// Lobes as mixed by the material for the view: those of neighboring views with their weights.
-std::vector<NamedLobe> lobes_of(const ScatteredBrdf& /*brdf*/, const Material* material, const Vec3& wv) {
+std::vector<NamedLobe> lobes_of(const PerViewBrdf& /*brdf*/, const Material* material, const Vec3& wv) {
   const auto point = std::make_shared<PreparedBrdf>();
   material->prepare(wv, *point);
   const LobeMixture& m = point->lobes;
@@ -214,7 +214,7 @@ Vec3d turned_back(const Vec3& w, double phi) {
 
 std::vector<PlotPoint> sample_points(const Measurement& measurement, const PlotView& view) {
   std::vector<PlotPoint> points;
-  for (const ScatteredSample& sample : measurement.samples()) {
+  for (const IrregularSample& sample : measurement.samples()) {
     const double theta = std::acos(std::clamp(static_cast<double>(sample.wv.z), -1.0, 1.0));
     if (std::abs(degrees_from(theta - view.theta)) > kNear) continue;
     // For isotropic data, all planes of incidence are equivalent.

@@ -197,7 +197,7 @@ constexpr int kAzimuths = 12;
 constexpr uint32_t kTexels = 64;
 constexpr float kLongest = 4;  // maximum aspect; longer tiles get no more texels
 
-TileTexels texels_of(const OcclusionVolume& volume) {
+TileTexels texels_of(const VotfVolume& volume) {
   const float rows = std::clamp(kTexels * volume.aspect, 1.0f, kTexels * kLongest);
   return {kTexels, static_cast<uint32_t>(std::lround(rows)), volume.aspect};
 }

@@ -12,7 +12,7 @@
 namespace velour {
 namespace {
 
-constexpr int kCosineSide = 48, kSkySide = 1024, kMinSide = 24, kMaxSide = 640;
+constexpr int kCosineSide = 48, kEnvironmentSide = 1024, kMinSide = 24, kMaxSide = 640;
 constexpr double kPixelsOfDeviation = 3.5;  // per lobe's; linear look-ups then err by 1/98 of its peak along each axis
 constexpr int kTableAngles = 256;           // entries of the table of ReceivedLight
 
@@ -22,7 +22,7 @@ struct Map {
 
 int side_of(int level) {
   if (level == LightLevels::kCosine) return kCosineSide;
-  if (level == LightLevels::kSky) return kSkySide;
+  if (level == LightLevels::kSky) return kEnvironmentSide;
   const double deviations = std::sqrt(4 * kPiD * LightLevels::bandwidth(level));
   return std::clamp(static_cast<int>(kPixelsOfDeviation * deviations), kMinSide, kMaxSide);
 }
@@ -95,7 +95,7 @@ class Lobes {
  public:
   /// Takes the lobes that add at least a luminance of `least` to the mean over Gaussians of this bandwidth, anywhere
   /// within `reach` radians of `center`.
-  Lobes(const SkyMixture& sky, float least, float bandwidth, const Vec3& center, float reach)
+  Lobes(const EnvironmentMixture& sky, float least, float bandwidth, const Vec3& center, float reach)
       : bandwidth_(bandwidth),
         amplitude_(1 / static_cast<float>(kernel_integral(Kernel::gaussian, static_cast<double>(bandwidth)))) {
     GaussianLobes near;
@@ -125,7 +125,7 @@ class Lobes {
   std::vector<Rgb> coefficient_;
 };
 
-float mean_luminance(const SkyMixture& sky) {
+float mean_luminance(const EnvironmentMixture& sky) {
   double sum = 0;
   for (size_t k = 0; k < sky.size(); ++k) {
     sum += static_cast<double>(luminance(sky.coefficient[k])) *
@@ -168,7 +168,7 @@ void fill(const Block& block, const Map& map, TablePixels& pixels, const Value& 
 
 /// The lobes that matter in a block. Looks at all its pixels, because those of the border lie elsewhere on the sphere
 /// than its middle.
-Lobes lobes_in(const Block& block, const Map& map, const SkyMixture& sky, float least) {
+Lobes lobes_in(const Block& block, const Map& map, const EnvironmentMixture& sky, float least) {
   const Vec3 center = direction_at((block.x + block.x_end - 1) / 2, (block.y + block.y_end - 1) / 2, map.side);
   float reach = 0;
   for (int y = block.y; y < block.y_end; ++y) {
@@ -189,7 +189,7 @@ float LightLevels::of(float bandwidth) {
 
 float LightLevels::bandwidth(int level) { return std::exp2(static_cast<float>(level - kBroadest) / kPerOctave); }
 
-TablePixels light_map(const SkyMixture& sky, const Environment& environment, int threads, Progress& progress) {
+TablePixels light_map(const EnvironmentMixture& sky, const Environment& environment, int threads, Progress& progress) {
   uint32_t width, height;
   const auto maps = placed_maps(width, height);
   TablePixels pixels(width, height);

@@ -32,6 +32,6 @@ struct LightLevels {
 ///
 /// Look-ups are linear between centers and levels; their error is below three hundredths of what a lobe sees at most of
 /// a narrow light.
-TablePixels light_map(const SkyMixture& sky, const Environment& environment, int threads, Progress& progress);
+TablePixels light_map(const EnvironmentMixture& sky, const Environment& environment, int threads, Progress& progress);
 
 }  // namespace velour

@@ -150,8 +150,8 @@ LobeRows blended_rows(bool isotropic, const LobesOfViews& material, int threads,
 }
 
 /// The material's mixtures of f cos at all places.
-std::vector<LobeMixture> mixtures_of(const ScatteredBrdf& brdf, const LobeRows& rows) {
-  const ScatteredLobes lobes(brdf, 0);
+std::vector<LobeMixture> mixtures_of(const PerViewBrdf& brdf, const LobeRows& rows) {
+  const PerViewLobes lobes(brdf, 0);
   std::vector<LobeMixture> mixtures(places_of(rows));
   for (size_t place = 0; place < mixtures.size(); ++place) {
     lobes.gather(lobes.place(Vec3(view_at(rows, place))), mixtures[place]);
@@ -184,7 +184,7 @@ void write_mixture(const LobeMixture& mixture, const BroadPart& broad, float* to
   write_lobes(fitted, gaussians, to);
 }
 
-LobeRows rows_of(const ScatteredBrdf& brdf, int threads, Progress& progress) {
+LobeRows rows_of(const PerViewBrdf& brdf, int threads, Progress& progress) {
   LobeRows rows{.isotropic = brdf.isotropic, .side = brdf.isotropic ? kNearAngles : kNearGrid, .blends = false};
   const auto mixtures = mixtures_of(brdf, rows);
   for (const LobeMixture& mixture : mixtures) rows.lobes = std::max(rows.lobes, mixture.count + BroadPart::kLobes);
@@ -202,7 +202,7 @@ LobeRows lobe_rows(const Model& model, int threads, Progress& progress) {
   if (const auto* parametric = std::get_if<ParametricBrdf>(&model.body)) {
     return blended_rows(parametric->isotropic, *lobes_of_views(*parametric), threads, progress);
   }
-  if (const auto* scattered = std::get_if<ScatteredBrdf>(&model.body)) return rows_of(*scattered, threads, progress);
+  if (const auto* per_view = std::get_if<PerViewBrdf>(&model.body)) return rows_of(*per_view, threads, progress);
   throw Error(Status::invalid_argument, "BTF models have no lobe table; only BRDF models do.");
 }
 

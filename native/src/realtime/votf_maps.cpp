@@ -11,11 +11,11 @@ namespace {
 /// Distances of the points, which repeat along x and y.
 class Distances {
  public:
-  explicit Distances(const OcclusionVolume& volume) : v_(volume) {}
+  explicit Distances(const VotfVolume& volume) : v_(volume) {}
 
   float at(uint32_t x, uint32_t y, uint32_t z) const {
     const int byte = v_.distance[(size_t{z} * v_.height + y) * v_.width + x];
-    return v_.reach * static_cast<float>(byte - OcclusionVolume::kZero) / OcclusionVolume::kUnits;
+    return v_.reach * static_cast<float>(byte - VotfVolume::kZero) / VotfVolume::kUnits;
   }
   /// Writes distance and slope: central differences, one-sided at both ends of z.
   void write(uint32_t x, uint32_t y, uint32_t z, float* to) const {
@@ -30,12 +30,12 @@ class Distances {
   }
 
  private:
-  const OcclusionVolume& v_;
+  const VotfVolume& v_;
 };
 
 }  // namespace
 
-TablePixels shell_maps(const OcclusionVolume& volume) {
+TablePixels shell_maps(const VotfVolume& volume) {
   const uint32_t width = volume.width + 2 * kTableBorder, height = volume.height + 2 * kTableBorder;
   const uint64_t pixels = uint64_t{width} * height * volume.depth;
   if (pixels > kMaxShellPixels) {

@@ -5,16 +5,16 @@
 
 namespace velour {
 
-std::optional<Continuation> onward_along(const Vertex& vertex, const Vec3& wl, const Vec3& wl_world,
-                                         const Rgb& reflected, float pdf) {
+std::optional<Continuation> continuation_along(const Vertex& vertex, const Vec3& wl, const Vec3& wl_world,
+                                               const Rgb& reflected, float pdf) {
   if (!vertex.receives(wl, wl_world) || reflected == Rgb(0.0f)) return std::nullopt;
   return Continuation{vertex.ray(wl_world, std::numeric_limits<float>::infinity()), reflected * (std::abs(wl.z) / pdf),
                       wl, pdf};
 }
 
-std::optional<Continuation> draw_onward(const Vertex& vertex, const PreparedBrdf& prepared, SurfaceSampling sampling,
-                                        const std::optional<Mat3>& rec709_to_working, const Rgb& throughput,
-                                        const Vec2& u) {
+std::optional<Continuation> sample_continuation(const Vertex& vertex, const PreparedBrdf& prepared,
+                                                SurfaceSampling sampling, const std::optional<Mat3>& rec709_to_working,
+                                                const Rgb& throughput, const Vec2& u) {
   DirectionBatch wl;
   sample_surface(sampling, vertex, prepared, {&u, 1}, wl);
   wl.pad();
@@ -25,7 +25,7 @@ std::optional<Continuation> draw_onward(const Vertex& vertex, const PreparedBrdf
   vertex.surface->material->eval(prepared, wl, f, material_pdf);
   surface_pdf(sampling, vertex, prepared, wl, material_pdf, pdf);
   const Rgb reflected = throughput * in_working_space(rec709_to_working, vertex, f.get(0));
-  return onward_along(vertex, wl.get(0), wl_world, reflected, pdf.v[0]);
+  return continuation_along(vertex, wl.get(0), wl_world, reflected, pdf.v[0]);
 }
 
 }  // namespace velour

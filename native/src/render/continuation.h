@@ -28,14 +28,14 @@ inline Rgb in_working_space(const std::optional<Mat3>& rec709_to_working, const 
 
 /// Continuation along a direction that was sampled from the surface with density `pdf`; `reflected`: f times the
 /// throughput so far. Empty if it would go below the surface or carry nothing.
-std::optional<Continuation> onward_along(const Vertex& vertex, const Vec3& wl, const Vec3& wl_world,
-                                         const Rgb& reflected, float pdf);
+std::optional<Continuation> continuation_along(const Vertex& vertex, const Vec3& wl, const Vec3& wl_world,
+                                               const Rgb& reflected, float pdf);
 
 /// Continuation sampled from the surface with `u`, with throughput `throughput` f cos / pdf, which need not be finite.
 /// Empty if it would go below the surface or carry nothing. `prepared`: material at the vertex.
-std::optional<Continuation> draw_onward(const Vertex& vertex, const PreparedBrdf& prepared, SurfaceSampling sampling,
-                                        const std::optional<Mat3>& rec709_to_working, const Rgb& throughput,
-                                        const Vec2& u);
+std::optional<Continuation> sample_continuation(const Vertex& vertex, const PreparedBrdf& prepared,
+                                                SurfaceSampling sampling, const std::optional<Mat3>& rec709_to_working,
+                                                const Rgb& throughput, const Vec2& u);
 
 // Independent samples from a stream of items, each with probability proportional to its weight.
 

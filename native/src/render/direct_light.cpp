@@ -101,20 +101,22 @@ void DirectLight::draw_towards_products(std::span<const Receiver> receivers) {
 }
 
 /// A direction that cannot carry light counts in n but is not stored in the batch, so it costs nothing further.
-void DirectLight::keep_if_lit(const Vertex& vertex, const Vec3& wl, const Vec3& wl_world, Drawer drawer, uint8_t aim) {
+void DirectLight::keep_if_lit(const Vertex& vertex, const Vec3& wl, const Vec3& wl_world, Technique technique,
+                              uint8_t aim) {
   if (!vertex.receives_light(wl, wl_world)) return;
-  drawer_[world_.count] = drawer;
+  technique_[world_.count] = technique;
   aim_[world_.count] = aim;
   local_.push(wl);
   world_.push(wl_world);
 }
 
-void DirectLight::keep_world(const Vertex& vertex, const DirectionBatch& drawn, int first, int count, Drawer drawer) {
-  const bool aimed = drawer == Drawer::lights && !lighting_.emissive().empty();
+void DirectLight::keep_world(const Vertex& vertex, const DirectionBatch& drawn, int first, int count,
+                             Technique technique) {
+  const bool aimed = technique == Technique::lights && !lighting_.emissive().empty();
   for (int i = first; i < first + count; ++i) {
     const Vec3 wl_world = drawn.get(i);  // zero for the dark side of a light: then not above the horizon
     const uint8_t aim = aimed && aims_[i].instance != kNoHit ? static_cast<uint8_t>(i + 1) : 0;
-    keep_if_lit(vertex, vertex.frame.to_local(wl_world), wl_world, drawer, aim);
+    keep_if_lit(vertex, vertex.frame.to_local(wl_world), wl_world, technique, aim);
   }
 }
 
@@ -124,7 +126,7 @@ void DirectLight::draw_from_surface(const Receiver& receiver, const Work& work) 
   sample_surface(sampling_, receiver.vertex, work.prepared, u, drawn_);
   for (int i = 0; i < drawn_.count; ++i) {
     const Vec3 wl = drawn_.get(i);
-    keep_if_lit(receiver.vertex, wl, receiver.vertex.frame.to_world(wl), Drawer::surface);
+    keep_if_lit(receiver.vertex, wl, receiver.vertex.frame.to_world(wl), Technique::surface);
   }
 }
 
@@ -137,9 +139,9 @@ void DirectLight::shade(const Receiver& receiver, uint8_t place, Output output) 
   const Vertex& vertex = receiver.vertex;
   const Work& work = work_[place];
   local_.count = world_.count = 0;
-  keep_world(vertex, towards_products_, work.product_direction, work.from_product.count, Drawer::product);
+  keep_world(vertex, towards_products_, work.product_direction, work.from_product.count, Technique::product);
   draw_from_surface(receiver, work);
-  keep_world(vertex, towards_lights_, work.light_point, work.from_lights.count, Drawer::lights);
+  keep_world(vertex, towards_lights_, work.light_point, work.from_lights.count, Technique::lights);
   draw_sharp(receiver);
   if (local_.count == 0) return;
   local_.pad();
@@ -169,17 +171,17 @@ void DirectLight::add_terms(const Receiver& receiver, uint8_t place) {
     terms_.product.v[to] = has_product ? work.shares.product * product_pdf_.v[i] : 0.0f;
     terms_.surface.v[to] = work.shares.surface * surface_pdf_.v[i];
     terms_.light_share.v[to] = work.shares.lights;
-    terms_.drawer[to] = drawer_[i];
+    terms_.technique[to] = technique_[i];
     terms_.receiver[to] = place;
     terms_.aim[to] = aim_[i];
-    if (work.goes_on_drawn && drawer_[i] == Drawer::surface) go_on_along(receiver, i, to, work_[place]);
+    if (work.goes_on_drawn && technique_[i] == Technique::surface) go_on_along(receiver, i, to, work_[place]);
   }
 }
 
 void DirectLight::go_on_along(const Receiver& receiver, int i, int term, Work& work) {
   const Vertex& vertex = receiver.vertex;
-  work.continuation = onward_along(vertex, local_.get(i), world_.get(i), receiver.throughput * reflectance(vertex, i),
-                                   surface_pdf_.v[i]);
+  work.continuation = continuation_along(vertex, local_.get(i), world_.get(i),
+                                         receiver.throughput * reflectance(vertex, i), surface_pdf_.v[i]);
   const bool shares_ray = work.continuation && finite(work.continuation->throughput) && shares_rays_;
   if (shares_ray && vertex.rays_agree(world_.get(i))) work.shared_term = term;
 }
@@ -245,27 +247,27 @@ void DirectLight::queue(const Receiver& receiver, const Contribution& c, Output 
 
 std::optional<Continuation> DirectLight::extend(const Receiver& receiver, size_t place) {
   const Work& work = work_[place];
-  const auto continuation = work.goes_on_drawn
-                                ? work.continuation
-                                : draw_onward(receiver.vertex, work.prepared, sampling_, working_space_,
-                                              receiver.throughput, receiver.numbers->point(Purpose::onward));
+  const auto continuation =
+      work.goes_on_drawn ? work.continuation
+                         : sample_continuation(receiver.vertex, work.prepared, sampling_, working_space_,
+                                               receiver.throughput, receiver.numbers->point(Purpose::continuation));
   if (!continuation || finite(continuation->throughput)) return continuation;
   ++nan_samples_;
   return std::nullopt;
 }
 
-PathPast DirectLight::past_after(const Receiver& receiver, size_t place, const Continuation& onward) const {
-  PathPast past{std::min(receiver.past.least_density, onward.density), false};
+PathPast DirectLight::past_after(const Receiver& receiver, size_t place, const Continuation& continuation) const {
+  PathPast past{std::min(receiver.past.least_density, continuation.density), false};
   if (options_.light_paths.reflective_caustics) return past;
   const Material& material = *receiver.vertex.surface->material;
   past.was_diffuse =
-      receiver.numbers->label() < material.diffuse_share(work_[place].prepared, onward.wl, onward.density);
+      receiver.numbers->label() < material.diffuse_share(work_[place].prepared, continuation.wl, continuation.density);
   return past;
 }
 
 float LightTerms::weighed(Heuristic heuristic, int direction, float light_pdf) const {
   const float q[3] = {product.v[direction], surface.v[direction], light_share.v[direction] * light_pdf};
-  const float density = effective_density(heuristic, q, drawer[direction]);
+  const float density = effective_density(heuristic, q, technique[direction]);
   // A density of 0 results from rounding alone. NaN passes, to be counted.
   return density == 0.0f ? 0.0f : 1.0f / density;
 }
@@ -300,7 +302,7 @@ void LightTerms::find_emissive(const EmissiveMeshes& surfaces, std::span<const H
   for (int i = 0; i < world.count; ++i) {
     if (aim[i] != 0) {
       emissive.push_back({i, aims[aim[i] - size_t{1}], 0.0f});
-    } else if (drawer[i] != Drawer::lights) {
+    } else if (technique[i] != Technique::lights) {
       number[count] = i;
       searching[count++] = rays[static_cast<size_t>(i)];
     }

@@ -31,9 +31,9 @@ struct alignas(64) LightTerms {
   RgbBatch reflected;            // throughput f cos / n of n directions
   ScalarBatch product, surface;  // share of a technique times its density
   ScalarBatch light_share;
-  Drawer drawer[DirectionBatch::kCapacity];     // technique that sampled it
-  uint8_t receiver[DirectionBatch::kCapacity];  // index of the vertex in the batch
-  uint8_t aim[DirectionBatch::kCapacity];       // 0: none; otherwise 1 + index among the aims (Lighting::sample)
+  Technique technique[DirectionBatch::kCapacity];  // technique that sampled it
+  uint8_t receiver[DirectionBatch::kCapacity];     // index of the vertex in the batch
+  uint8_t aim[DirectionBatch::kCapacity];          // 0: none; otherwise 1 + index among the aims (Lighting::sample)
 
   // Results of look_up().
   RgbBatch environment;             // radiance
@@ -89,7 +89,8 @@ struct AwaitedLight {
 class DirectLight {
  public:
   /// `sky` is needed by `product`; null for other strategies.
-  DirectLight(const Scene& scene, const Lighting& lighting, const RenderOptions& options, const SkySampler* sky)
+  DirectLight(const Scene& scene, const Lighting& lighting, const RenderOptions& options,
+              const EnvironmentProductSampler* sky)
       : working_space_(scene.rec709_to_working()),
         materials_(scene.materials()),
         lighting_(lighting),
@@ -140,7 +141,7 @@ class DirectLight {
   std::optional<Continuation> extend(const Receiver& receiver, size_t place);
 
   /// PathPast of the path that continues from that vertex with the ray of extend().
-  PathPast past_after(const Receiver& receiver, size_t place, const Continuation& onward) const;
+  PathPast past_after(const Receiver& receiver, size_t place, const Continuation& continuation) const;
 
   /// Number of directions dropped so far because their term was not finite.
   uint64_t nan_samples() const { return nan_samples_; }
@@ -178,8 +179,8 @@ class DirectLight {
   void draw_towards_products(std::span<const Receiver> receivers);
   void draw_from_surface(const Receiver& receiver, const Work& work);
   void draw_sharp(const Receiver& receiver);
-  void keep_if_lit(const Vertex& vertex, const Vec3& wl, const Vec3& wl_world, Drawer drawer, uint8_t aim = 0);
-  void keep_world(const Vertex& vertex, const DirectionBatch& drawn, int first, int count, Drawer drawer);
+  void keep_if_lit(const Vertex& vertex, const Vec3& wl, const Vec3& wl_world, Technique technique, uint8_t aim = 0);
+  void keep_world(const Vertex& vertex, const DirectionBatch& drawn, int first, int count, Technique technique);
   /// Samples and reflects at one vertex.
   void shade(const Receiver& receiver, uint8_t place, Output output);
   void add_terms(const Receiver& receiver, uint8_t place);
@@ -212,7 +213,7 @@ class DirectLight {
   const SurfaceSampling sampling_;
   const bool meets_surfaces_;  // whether any directions are sampled from the surface
   const bool shares_rays_;     // whether a continuation ray may also serve as a shadow ray
-  const SkySampler* sky_;
+  const EnvironmentProductSampler* sky_;
 
   Work work_[kReceivers];
   LightView views_[kReceivers];
@@ -227,7 +228,7 @@ class DirectLight {
   // For one vertex: the sampled directions that can carry light, above both the shading horizon and the surface itself.
   // local_ additionally holds the directions of delta lights at its end.
   DirectionBatch drawn_, local_, world_;
-  Drawer drawer_[DirectionBatch::kCapacity];
+  Technique technique_[DirectionBatch::kCapacity];
   uint8_t aim_[DirectionBatch::kCapacity];  // see LightTerms::aim
   RgbBatch f_;
   ScalarBatch material_pdf_, surface_pdf_, product_pdf_;

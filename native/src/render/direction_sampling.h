@@ -28,15 +28,15 @@ void surface_pdf(SurfaceSampling sampling, const Vertex& vertex, const PreparedB
 // Combination of directions from several sampling techniques into one estimate.
 
 /// Sampling technique of a direction.
-enum class Drawer : uint8_t { product = 0, surface = 1, lights = 2 };
+enum class Technique : uint8_t { product = 0, surface = 1, lights = 2 };
 
 /// Multiple importance sampling [VG95]: of n directions, the share c_k comes from density p_k; the shares sum to 1.
 /// With q_k = c_k p_k, a direction contributes f / (n d):
 ///   balance  d = sum_k q_k               weight q_own / sum_k q_k
 ///   power    d = sum_k q_k^2 / q_own     weight q_own^2 / sum_k q_k^2, exponent 2
 /// where "own" is the density that the direction was sampled from. A share of 0 leaves a density out. Returns d for
-/// `q`, which is indexed by Drawer.
-inline float effective_density(Heuristic heuristic, const float (&q)[3], Drawer own) {
+/// `q`, which is indexed by Technique.
+inline float effective_density(Heuristic heuristic, const float (&q)[3], Technique own) {
   if (heuristic == Heuristic::balance) return q[0] + q[1] + q[2];
   const float q_own = q[static_cast<int>(own)];
   float d = 0.0f;

@@ -37,7 +37,7 @@ RayDecisions PathNumbers::decisions() {
 float PathNumbers::label() {
   if (sequence_ != Sequence::sobol) return random_.next();
   Vec2 u;
-  sobol_points(mix64(~key(Purpose::onward)), ray_, {&u, 1});
+  sobol_points(mix64(~key(Purpose::continuation)), ray_, {&u, 1});
   return u.x;
 }
 

@@ -45,7 +45,7 @@ struct RayDecisions {
 
 /// Purpose of the numbers at a vertex; each has its own sequence. `lens` has the key of the next vertex' `camera`,
 /// which does not exist.
-enum class Purpose : uint64_t { camera, side, surface, light, sharp, onward, product_side, product, lens };
+enum class Purpose : uint64_t { camera, side, surface, light, sharp, continuation, product_side, product, lens };
 
 /// `Sequence::sobol`: one scrambled sequence for every (seed, pixel, half, vertex of the path, purpose). The camera
 /// rays of a pixel and the directions of each take successive points of it. With a noise target or denoising, even and

@@ -23,7 +23,8 @@ struct Path {
 /// The owner turns hits into `receivers`, alternating with trace() and gather(), and adds the emission of surfaces.
 struct PathsInFlight {
   /// `sky`: see DirectLight.
-  PathsInFlight(const Scene& scene, const Lighting& lighting, const RenderOptions& options, const SkySampler* sky)
+  PathsInFlight(const Scene& scene, const Lighting& lighting, const RenderOptions& options,
+                const EnvironmentProductSampler* sky)
       : visible(scene), light(scene, lighting, options, sky) {}
 
   /// Finds where the rays end and how much of their light is transmitted on the way. Adds light that waited for them to

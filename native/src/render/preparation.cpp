@@ -104,7 +104,7 @@ void prepare(RenderContext& context, tbb::task_arena& arena, Progress& progress,
   }
   if (strategy == Strategy::product && !scene.environment().black()) {
     const std::string& folder = context.options.cache_folder;
-    stage("sky", [&] { arena.execute([&] { context.sky = sky_sampler(scene, folder, progress); }); });
+    stage("sky", [&] { arena.execute([&] { context.sky = environment_sampler(scene, folder, progress); }); });
   }
 }
 

@@ -32,7 +32,7 @@ struct RenderReport {
   double spp_mean = 0;     // light directions, mean over the pixels
   double block_noise = 0;  // largest relative error of a block (noise_target.h); 0 while unknown
   std::optional<uint64_t> blocks_unfinished;  // above the target when the render ended; empty without a target
-  /// The mixture that `product` used for the environment (SkyMixture).
+  /// The mixture that `product` used for the environment (EnvironmentMixture).
   struct Sky {
     uint64_t lobes;
     double relative_l2, seconds;

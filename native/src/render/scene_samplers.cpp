@@ -13,7 +13,7 @@ struct SceneSamplers {
   std::mutex mutex;
   std::shared_ptr<const TableSamplers> tables;
   std::shared_ptr<const GgxSamplers> ggx;
-  std::shared_ptr<const SkySampler> sky;
+  std::shared_ptr<const EnvironmentProductSampler> sky;
 };
 
 /// Returns what the scene keeps at `place`, or the result of `make`. Renders that start together may both make it, so
@@ -56,12 +56,15 @@ std::shared_ptr<const GgxSamplers> ggx_samplers(const Scene& scene, int threads,
   });
 }
 
-std::shared_ptr<const SkySampler> sky_sampler(const Scene& scene, const std::string& cache_folder, Progress& progress) {
+std::shared_ptr<const EnvironmentProductSampler> environment_sampler(const Scene& scene,
+                                                                     const std::string& cache_folder,
+                                                                     Progress& progress) {
   return kept(scene, &SceneSamplers::sky, [&] {
     const Environment& environment = scene.environment();
-    const SkyMixture sky = sky_mixture(environment, {}, cache_folder, progress);
-    SkySampler sampler{
-        SkyProposals(sky, sky_misfit(environment, sky)), {}, {sky.size(), sky.relative_l2, sky.seconds, sky.cached}};
+    const EnvironmentMixture sky = mixture_of_environment(environment, {}, cache_folder, progress);
+    EnvironmentProductSampler sampler{EnvironmentProposals(sky, misfit_of_environment(environment, sky)),
+                                      {},
+                                      {sky.size(), sky.relative_l2, sky.seconds, sky.cached}};
     sampler.lights_part = lights_parts(scene, sampler.proposals);
     return sampler;
   });

@@ -17,8 +17,8 @@ namespace velour {
 using TableSamplers = std::vector<std::shared_ptr<const TableSampler>>;
 using GgxSamplers = std::vector<std::unique_ptr<const GgxSampler>>;
 
-struct SkySampler {
-  SkyProposals proposals;
+struct EnvironmentProductSampler {
+  EnvironmentProposals proposals;
   std::vector<float> lights_part;  // by material (environment_proposals.h)
   RenderReport::Sky report;
 };
@@ -28,7 +28,9 @@ struct SkySampler {
 std::shared_ptr<const TableSamplers> table_samplers(const Scene& scene, const Progress& progress);
 /// `threads` 0: all.
 std::shared_ptr<const GgxSamplers> ggx_samplers(const Scene& scene, int threads, Progress& progress);
-/// `cache_folder`: cache of sky_mixture(), read by the first render.
-std::shared_ptr<const SkySampler> sky_sampler(const Scene& scene, const std::string& cache_folder, Progress& progress);
+/// `cache_folder`: cache of mixture_of_environment(), read by the first render.
+std::shared_ptr<const EnvironmentProductSampler> environment_sampler(const Scene& scene,
+                                                                     const std::string& cache_folder,
+                                                                     Progress& progress);
 
 }  // namespace velour

@@ -49,7 +49,7 @@ ShellRay ShellCrossing::in_shell() const {
 }
 
 ShellWay ShellCrossing::way_behind(const ShellRay& ray, const Hit& hit, const ShellEdge& edge) const {
-  const OcclusionVolume& volume = field().volume();
+  const VotfVolume& volume = field().volume();
   // At the silhouette of the smooth surface the ray passes by, whatever the triangles are.
   if (!(ray.cosine > 0)) return {ray, volume, 0, 0};
   const ShellSpan span = span_of(ray, volume);
@@ -60,7 +60,7 @@ ShellWay ShellCrossing::way_behind(const ShellRay& ray, const Hit& hit, const Sh
 }
 
 ShellWay ShellCrossing::way_at_side(const Ray& ray, const Hit& hit, const ShellEdge& edge) {
-  const OcclusionVolume& volume = field().volume();
+  const VotfVolume& volume = field().volume();
   ShellRay way = in_shell();
   way.height = -foot_.below * (volume.top - volume.bottom);
   // Below the top of a convex shell the radius is smaller.
@@ -102,7 +102,7 @@ bool ShellCrossing::find() {
 }
 
 Vec2 ShellCrossing::beyond_outline(const Vec2& texels) const {
-  const OcclusionVolume& volume = field().volume();
+  const VotfVolume& volume = field().volume();
   const Vec2 texel = Vec2(1, volume.aspect) / texels;
   // Half the extent of the mean of a texel and the interpolation between texels.
   const float most = std::min(1.5f * std::max(texel.x, texel.y), 0.9f * volume.reach);
@@ -139,7 +139,7 @@ Vec3 ShellCrossing::structure_normal(const Vec3& up) const {
 }
 
 SurfacePoint ShellCrossing::surface(SurfacePoint top, bool shaded) const {
-  const OcclusionVolume& volume = field().volume();
+  const VotfVolume& volume = field().volume();
   const Vec3 up = normal(), place = crossing_ + hit_.s * direction_;
   if (!shaded) {
     const float height = leaving_ ? volume.bottom : volume.top;
@@ -161,7 +161,7 @@ SurfacePoint ShellCrossing::surface(SurfacePoint top, bool shaded) const {
 }
 
 TexturePoint ShellCrossing::texture(TexturePoint top) const {
-  const OcclusionVolume& volume = field().volume();
+  const VotfVolume& volume = field().volume();
   const Vec3 up = normal(), wv = -direction_;
   const float cosine = std::max(glm::dot(wv, up), kMinCosine);
   // Vector from the hit along the ray to the plane of the texels.

@@ -25,7 +25,7 @@ struct RenderContext {
   // Null unless the strategy needs them.
   std::shared_ptr<const TableSamplers> tables;
   std::shared_ptr<const GgxSamplers> ggx;
-  std::shared_ptr<const SkySampler> sky;
+  std::shared_ptr<const EnvironmentProductSampler> sky;
 
   /// Camera rays per pixel of the whole image.
   int camera_rays() const { return rays_of(options.spp); }

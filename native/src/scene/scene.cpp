@@ -40,7 +40,7 @@ bool needs_tangents(const SurfaceMaterial& material) { return material.relief ||
 /// Whether both materials' shells lift meshes to the same tops, with the same folds.
 bool have_same_tops(const SurfaceMaterial& a, const SurfaceMaterial& b) {
   if (!a.shell || !b.shell) return !a.shell && !b.shell;
-  const OcclusionVolume &one = a.shell->volume(), &other = b.shell->volume();
+  const VotfVolume &one = a.shell->volume(), &other = b.shell->volume();
   return one.top == other.top && one.bottom == other.bottom && one.aspect == other.aspect;
 }
 

@@ -12,9 +12,9 @@
 namespace velour::test {
 
 /// A volume of heights `bottom` to `top` with `distance` (widths of the tile) at its points; aspect 1.
-inline std::shared_ptr<OcclusionVolume> shell_of(uint32_t texels, float bottom, float top,
-                                                 const std::function<float(const Vec3&)>& distance) {
-  auto volume = std::make_shared<OcclusionVolume>();
+inline std::shared_ptr<VotfVolume> shell_of(uint32_t texels, float bottom, float top,
+                                            const std::function<float(const Vec3&)>& distance) {
+  auto volume = std::make_shared<VotfVolume>();
   volume->width = volume->height = texels;
   volume->bottom = bottom;
   volume->top = top;
@@ -33,7 +33,7 @@ inline std::shared_ptr<OcclusionVolume> shell_of(uint32_t texels, float bottom, 
 }
 
 /// Wires along y, one a tile, of this radius about height 0 and x = 1/2.
-inline std::shared_ptr<OcclusionVolume> wires(uint32_t texels, float radius) {
+inline std::shared_ptr<VotfVolume> wires(uint32_t texels, float radius) {
   return shell_of(texels, -radius - 2.0f / static_cast<float>(texels), radius + 2.0f / static_cast<float>(texels),
                   [radius](const Vec3& p) { return std::hypot(p.x - 0.5f, p.z) - radius; });
 }

@@ -10,8 +10,8 @@ namespace velour::test {
 
 /// A colored highlight about each view's mirror direction over a broad lobe about the normal and a retro-reflecting
 /// one.
-inline ScatteredBrdf glossy_model(Kernel kernel, const std::vector<Vec3>& views, bool isotropic, float sharp = 300) {
-  ScatteredBrdf brdf;
+inline PerViewBrdf glossy_model(Kernel kernel, const std::vector<Vec3>& views, bool isotropic, float sharp = 300) {
+  PerViewBrdf brdf;
   brdf.kernel = kernel;
   brdf.isotropic = isotropic;
   brdf.default_neighbors = isotropic ? 2 : 4;
@@ -41,11 +41,11 @@ inline std::vector<Vec3> meridian_views() {
   return views;
 }
 
-inline ScatteredBrdf isotropic_model(Kernel kernel = Kernel::gaussian) {
+inline PerViewBrdf isotropic_model(Kernel kernel = Kernel::gaussian) {
   return glossy_model(kernel, meridian_views(), true);
 }
 
-inline ScatteredBrdf anisotropic_model() { return glossy_model(Kernel::gaussian, hemisphere_fibonacci(150), false); }
+inline PerViewBrdf anisotropic_model() { return glossy_model(Kernel::gaussian, hemisphere_fibonacci(150), false); }
 
 struct Evaluated {
   Rgb f;

@@ -20,11 +20,11 @@ inline Sampler material_sampler(std::shared_ptr<const Material> material, const 
 
 /// A highlight of albedo 1/2 about each view's mirror direction, whatever its bandwidth, over a broad lobe and a
 /// diffuse base.
-inline ScatteredBrdf highlight_model(Kernel kernel, float bandwidth, const std::vector<Vec3>& views, bool isotropic) {
-  ScatteredBrdf brdf;
+inline PerViewBrdf highlight_model(Kernel kernel, float bandwidth, const std::vector<Vec3>& views, bool isotropic) {
+  PerViewBrdf brdf;
   brdf.kernel = kernel;
   brdf.isotropic = isotropic;
-  brdf.default_neighbors = ScatteredBrdf::usual_neighbors(isotropic);
+  brdf.default_neighbors = PerViewBrdf::usual_neighbors(isotropic);
   brdf.views = views;
   brdf.first_lobe = {0};
   const auto add = [&](const Vec3& center, float b, const Rgb& albedo) {
@@ -42,8 +42,8 @@ inline ScatteredBrdf highlight_model(Kernel kernel, float bandwidth, const std::
 }
 
 inline std::shared_ptr<const Material> highlight_material(float bandwidth) {
-  return make_scattered_material(
-      std::make_shared<ScatteredBrdf>(highlight_model(Kernel::gaussian, bandwidth, meridian_views(), true)), 0);
+  return make_per_view_material(
+      std::make_shared<PerViewBrdf>(highlight_model(Kernel::gaussian, bandwidth, meridian_views(), true)), 0);
 }
 
 /// A measurement with a closed form: a Lambertian base and a broad lobe about the mirror direction, not reciprocal.
@@ -61,8 +61,8 @@ class SyntheticMeasurement final : public Measurement {
 };
 
 /// A raw measurement whose samples come from `proposal`.
-inline std::shared_ptr<const Material> measured(const ScatteredBrdf& proposal) {
-  return make_measured_material(std::make_shared<SyntheticMeasurement>(), std::make_shared<ScatteredBrdf>(proposal), 0);
+inline std::shared_ptr<const Material> measured(const PerViewBrdf& proposal) {
+  return make_measured_material(std::make_shared<SyntheticMeasurement>(), std::make_shared<PerViewBrdf>(proposal), 0);
 }
 
 /// A kind of material whose samples come from lobes.
@@ -77,14 +77,14 @@ inline const std::vector<LobeMaterial> kLobeMaterials = {
     {"isotropic abel-poisson",
      {1e-4f, 0.5f, 0.9f, 0.999f},
      [](float b) {
-       return make_scattered_material(
-           std::make_shared<ScatteredBrdf>(highlight_model(Kernel::abel_poisson, b, meridian_views(), true)), 0);
+       return make_per_view_material(
+           std::make_shared<PerViewBrdf>(highlight_model(Kernel::abel_poisson, b, meridian_views(), true)), 0);
      }},
     {"anisotropic gaussian",
      {1, 1e3f, 1e6f},
      [](float b) {
-       return make_scattered_material(
-           std::make_shared<ScatteredBrdf>(highlight_model(Kernel::gaussian, b, hemisphere_fibonacci(150), false)), 0);
+       return make_per_view_material(
+           std::make_shared<PerViewBrdf>(highlight_model(Kernel::gaussian, b, hemisphere_fibonacci(150), false)), 0);
      }},
     {"measured, proposal of lobes", {10, 1e5f}, [](float b) {
        return measured(highlight_model(Kernel::gaussian, b, meridian_views(), true));

@@ -76,7 +76,7 @@ void add_sun(Builder& builder, float degrees, int height) {
   const int width = 2 * height;
   std::vector<float> rgb;
   std::vector<size_t> inside;
-  double sky_energy = 0, sun_area = 0;
+  double environment_energy = 0, sun_area = 0;
   for (int y = 0; y < height; ++y) {
     const float theta = kPi * (static_cast<float>(y) + 0.5f) / static_cast<float>(height);
     for (int x = 0; x < width; ++x) {
@@ -86,11 +86,11 @@ void add_sun(Builder& builder, float degrees, int height) {
         inside.push_back(rgb.size());
         sun_area += std::sin(static_cast<double>(theta));
       }
-      sky_energy += static_cast<double>(luminance(sky) * std::sin(theta));
+      environment_energy += static_cast<double>(luminance(sky) * std::sin(theta));
       rgb.insert(rgb.end(), {sky.r, sky.g, sky.b});
     }
   }
-  for (const size_t i : inside) std::fill_n(&rgb[i], 3, static_cast<float>(9 * sky_energy / sun_area));
+  for (const size_t i : inside) std::fill_n(&rgb[i], 3, static_cast<float>(9 * environment_energy / sun_area));
   builder.sky(width, height, rgb);
 }
 

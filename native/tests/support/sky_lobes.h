@@ -5,15 +5,15 @@
 
 namespace velour::test {
 
-struct SkyLobe {
+struct EnvironmentLobe {
   Vec3 center;  // of any length
   float bandwidth;
   Rgb coefficient;
 };
 
-inline SkyMixture sky_of(const std::vector<SkyLobe>& lobes) {
-  SkyMixture sky;
-  for (const SkyLobe& lobe : lobes) {
+inline EnvironmentMixture sky_of(const std::vector<EnvironmentLobe>& lobes) {
+  EnvironmentMixture sky;
+  for (const EnvironmentLobe& lobe : lobes) {
     sky.center.push_back(glm::normalize(lobe.center));
     sky.bandwidth.push_back(lobe.bandwidth);
     sky.coefficient.push_back(lobe.coefficient);

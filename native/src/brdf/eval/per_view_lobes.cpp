@@ -35,7 +35,7 @@ struct Meridian {
 
 /// The lobes of a view as Gaussians of luminance. An Abel-Poisson lobe (the Henyey-Greenstein density) becomes the
 /// Gaussian of the same mean cosine, which is the lobe's bandwidth.
-GaussianLobes gaussians_of(const ScatteredBrdf& brdf, size_t view) {
+GaussianLobes gaussians_of(const PerViewBrdf& brdf, size_t view) {
   GaussianLobes lobes;
   for (size_t j = brdf.first_lobe[view]; j < brdf.first_lobe[view + 1]; ++j) {
     const auto own = static_cast<double>(brdf.bandwidth[j]);
@@ -61,7 +61,7 @@ size_t nearest_of(const ViewNeighbors& views) {
   return static_cast<size_t>(std::max_element(views.weight, views.weight + views.count) - views.weight);
 }
 
-int checked_neighbors(const ScatteredBrdf& brdf, int neighbors) {
+int checked_neighbors(const PerViewBrdf& brdf, int neighbors) {
   const int count = neighbors == 0 ? brdf.default_neighbors : neighbors;
   if (count < 1 || count > kMaxNeighbors) {
     throw Error(Status::invalid_argument, "The number of neighboring views (neighbors) is " + std::to_string(count) +
@@ -76,14 +76,14 @@ int checked_neighbors(const ScatteredBrdf& brdf, int neighbors) {
   return count;
 }
 
-int nearest_views(const ScatteredBrdf& brdf, int neighbors) {
+int nearest_views(const PerViewBrdf& brdf, int neighbors) {
   if (neighbors != 0) return neighbors;
   return std::clamp(LobeMixture::kCapacity / std::max(brdf.max_lobes_per_view(), 1), 1, kDissertationNeighbors);
 }
 
 }  // namespace
 
-ScatteredLobes::ScatteredLobes(const ScatteredBrdf& brdf, int neighbors)
+PerViewLobes::PerViewLobes(const PerViewBrdf& brdf, int neighbors)
     : isotropic_(brdf.isotropic),
       align_views_(brdf.align_views),
       neighbors_(checked_neighbors(brdf, neighbors)),
@@ -94,7 +94,7 @@ ScatteredLobes::ScatteredLobes(const ScatteredBrdf& brdf, int neighbors)
   for (size_t view = 0; view < views_.size(); ++view) add_view(brdf, view);
 }
 
-void ScatteredLobes::add_view(const ScatteredBrdf& brdf, size_t view) {
+void PerViewLobes::add_view(const PerViewBrdf& brdf, size_t view) {
   const Rgb diffuse = brdf.diffuse.empty() ? Rgb(0) : brdf.diffuse[view];
   const float cosine = std::max(luminance(diffuse), 0.0f);
   theta_.push_back(Meridian(views_[view]).theta());
@@ -105,7 +105,7 @@ void ScatteredLobes::add_view(const ScatteredBrdf& brdf, size_t view) {
   proposals_.push_back(proposal_of(gaussians_of(brdf, view), cosine));
 }
 
-void ScatteredLobes::gather(const Placement& placed, LobeMixture& mixture) const {
+void PerViewLobes::gather(const Placement& placed, LobeMixture& mixture) const {
   const ViewNeighbors& views = placed.views;
   mixture.clear(lobes_.kernel());
   for (int i = 0; i < views.count; ++i) {
@@ -114,23 +114,23 @@ void ScatteredLobes::gather(const Placement& placed, LobeMixture& mixture) const
   mixture.finish(kDefensiveShare);
 }
 
-void ScatteredLobes::propose(const Placement& placed, ProposalLobes& lobes) const {
+void PerViewLobes::propose(const Placement& placed, ProposalLobes& lobes) const {
   const size_t nearest = nearest_of(placed.views);
   lobes = proposals_[static_cast<size_t>(placed.views.index[nearest])];
   for (int j = 0; j < lobes.count; ++j) lobes.lobe[j].center = placed.rotation[nearest] * lobes.lobe[j].center;
 }
 
-ScatteredLobes::Placement ScatteredLobes::place(const Vec3& wv) const {
+PerViewLobes::Placement PerViewLobes::place(const Vec3& wv) const {
   if (!isotropic_) return turned(search_.nearest(wv), wv);
   const Meridian meridian(wv);
   return turned(neighbors_ == 2 ? bracketing_views(theta_, meridian.theta()) : search_.nearest(meridian.view()), wv);
 }
 
-ScatteredLobes::Placement ScatteredLobes::place_nearest(const Vec3& wv) const {
+PerViewLobes::Placement PerViewLobes::place_nearest(const Vec3& wv) const {
   return turned(nearest_.nearest(isotropic_ ? Meridian(wv).view() : wv), wv);
 }
 
-ScatteredLobes::Placement ScatteredLobes::turned(const ViewNeighbors& views, const Vec3& wv) const {
+PerViewLobes::Placement PerViewLobes::turned(const ViewNeighbors& views, const Vec3& wv) const {
   const Meridian meridian(wv);
   Placement placed;
   placed.views = views;

@@ -33,11 +33,11 @@ class ViewLobes {
 };
 
 /// Immutable; thread-safe; no allocation after construction.
-class ScatteredLobes {
+class PerViewLobes {
  public:
   /// Mixes `neighbors` views; 0: the model's default. Throws Error(invalid_argument) when there are more than
   /// kMaxNeighbors or when their lobes exceed LobeMixture::kCapacity.
-  ScatteredLobes(const ScatteredBrdf& brdf, int neighbors);
+  PerViewLobes(const PerViewBrdf& brdf, int neighbors);
 
   bool isotropic() const { return isotropic_; }
 
@@ -58,7 +58,7 @@ class ScatteredLobes {
 
  private:
   Placement turned(const ViewNeighbors& views, const Vec3& wv) const;
-  void add_view(const ScatteredBrdf& brdf, size_t view);
+  void add_view(const PerViewBrdf& brdf, size_t view);
 
   bool isotropic_, align_views_;
   int neighbors_;

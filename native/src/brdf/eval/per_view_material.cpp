@@ -11,7 +11,7 @@ namespace velour {
 
 namespace {
 
-bool resolve(const TableSampler& tables, const ScatteredBrdf& brdf, const ScatteredLobes& lobes) {
+bool resolve(const TableSampler& tables, const PerViewBrdf& brdf, const PerViewLobes& lobes) {
   const auto mixture = std::make_unique<LobeMixture>();
   std::vector<TableSampler::Peak> peaks;
   for (size_t view = 0; view < brdf.views.size(); ++view) {
@@ -37,7 +37,7 @@ bool resolve(const TableSampler& tables, const ScatteredBrdf& brdf, const Scatte
 }
 
 /// Tables of the model's f cos; null if they do not resolve its lobes.
-std::shared_ptr<const TableSampler> tables_of(const ScatteredBrdf& brdf, const ScatteredLobes& lobes) {
+std::shared_ptr<const TableSampler> tables_of(const PerViewBrdf& brdf, const PerViewLobes& lobes) {
   const auto tables = std::make_shared<const TableSampler>(lobes.isotropic(), [&](const Vec3& wv, auto wl, auto f_cos) {
     const auto mixture = std::make_unique<LobeMixture>();
     lobes.gather(lobes.place(wv), *mixture);
@@ -55,7 +55,7 @@ std::shared_ptr<const TableSampler> tables_of(const ScatteredBrdf& brdf, const S
 /// of the nearest views.
 class LobeSampledMaterial : public Material {
  public:
-  LobeSampledMaterial(const ScatteredBrdf& brdf, int neighbors)
+  LobeSampledMaterial(const PerViewBrdf& brdf, int neighbors)
       : lobes_(brdf, neighbors), tables_(tables_of(brdf, lobes_)) {}
 
   void sample(const PreparedBrdf& point, std::span<const Vec2> u, DirectionBatch& wl) const override {
@@ -80,7 +80,7 @@ class LobeSampledMaterial : public Material {
     TableSampler::pdf(point.table, wl, pdf);
   }
 
-  ScatteredLobes lobes_;
+  PerViewLobes lobes_;
 
  private:
   bool draws_lobes(const PreparedBrdf& point) const { return point.interpolated_draws || tables_ == nullptr; }
@@ -88,7 +88,7 @@ class LobeSampledMaterial : public Material {
   std::shared_ptr<const TableSampler> tables_;
 };
 
-class ScatteredMaterial final : public LobeSampledMaterial {
+class PerViewMaterial final : public LobeSampledMaterial {
  public:
   using LobeSampledMaterial::LobeSampledMaterial;
 
@@ -114,10 +114,9 @@ class ScatteredMaterial final : public LobeSampledMaterial {
   bool isotropic() const override { return lobes_.isotropic(); }
 };
 
-class MeasuredScatteredMaterial final : public LobeSampledMaterial {
+class MeasuredPerViewMaterial final : public LobeSampledMaterial {
  public:
-  MeasuredScatteredMaterial(std::shared_ptr<const Measurement> measurement, const ScatteredBrdf& proposal,
-                            int neighbors)
+  MeasuredPerViewMaterial(std::shared_ptr<const Measurement> measurement, const PerViewBrdf& proposal, int neighbors)
       : LobeSampledMaterial(proposal, neighbors), measurement_(std::move(measurement)) {}
 
   void prepare(const Vec3& wv, const SurfaceSite& /*site*/, PreparedBrdf& point) const override {
@@ -138,13 +137,13 @@ class MeasuredScatteredMaterial final : public LobeSampledMaterial {
 
 }  // namespace
 
-std::shared_ptr<const Material> make_scattered_material(std::shared_ptr<const ScatteredBrdf> brdf, int neighbors) {
-  return std::make_shared<ScatteredMaterial>(*brdf, neighbors);
+std::shared_ptr<const Material> make_per_view_material(std::shared_ptr<const PerViewBrdf> brdf, int neighbors) {
+  return std::make_shared<PerViewMaterial>(*brdf, neighbors);
 }
 
 std::shared_ptr<const Material> make_measured_material(std::shared_ptr<const Measurement> measurement,
-                                                       std::shared_ptr<const ScatteredBrdf> proposal, int neighbors) {
-  return std::make_shared<MeasuredScatteredMaterial>(std::move(measurement), *proposal, neighbors);
+                                                       std::shared_ptr<const PerViewBrdf> proposal, int neighbors) {
+  return std::make_shared<MeasuredPerViewMaterial>(std::move(measurement), *proposal, neighbors);
 }
 
 }  // namespace velour

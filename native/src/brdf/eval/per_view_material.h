@@ -11,10 +11,10 @@
 namespace velour {
 
 /// f and samples of the model. `neighbors` 0: the model's default.
-std::shared_ptr<const Material> make_scattered_material(std::shared_ptr<const ScatteredBrdf> brdf, int neighbors);
+std::shared_ptr<const Material> make_per_view_material(std::shared_ptr<const PerViewBrdf> brdf, int neighbors);
 
 /// f of the measurement, samples of the model: unbiased whatever the model's error.
 std::shared_ptr<const Material> make_measured_material(std::shared_ptr<const Measurement> measurement,
-                                                       std::shared_ptr<const ScatteredBrdf> proposal, int neighbors);
+                                                       std::shared_ptr<const PerViewBrdf> proposal, int neighbors);
 
 }  // namespace velour

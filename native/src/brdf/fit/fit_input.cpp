@@ -83,7 +83,7 @@ DirectionPair canonical(const Vec3& wl, const Vec3& wv) {
   return {Vec3(l), Vec3(static_cast<float>(std::hypot(wv.x, wv.y)), 0, wv.z)};
 }
 
-void add_sample(const ScatteredSample& sample, const Vec3& wl, const Vec3& wv, std::map<int, MeasuredSlice>& bins) {
+void add_sample(const IrregularSample& sample, const Vec3& wl, const Vec3& wv, std::map<int, MeasuredSlice>& bins) {
   const DirectionPair pair = canonical(wl, wv);
   const double degrees = std::atan2(pair.wv.x, pair.wv.z) * 180 / kPiD;
   const int bin = static_cast<int>(std::lround(degrees / kBin));
@@ -105,9 +105,9 @@ double luminance_energy(const MeasuredSlice& slice) {
 
 }  // namespace
 
-std::vector<MeasuredSlice> bin_samples(std::span<const ScatteredSample> samples) {
+std::vector<MeasuredSlice> bin_samples(std::span<const IrregularSample> samples) {
   std::map<int, MeasuredSlice> bins;
-  for (const ScatteredSample& s : samples) {
+  for (const IrregularSample& s : samples) {
     add_sample(s, s.wl, s.wv, bins);
     add_sample(s, s.wv, s.wl, bins);
   }

@@ -28,6 +28,6 @@ void warn_of_slices(const MeasuredSlices& slices, std::vector<std::string>& warn
 /// the interpolation) and on one side of the plane of incidence. A pair is moved to the view of its bin, by a few
 /// tenths of a degree, with its half vector kept, because f depends on it most. All samples have the same weight. Bins
 /// have the energy of all samples within kHeldOutGroup, as reported errors do.
-std::vector<MeasuredSlice> bin_samples(std::span<const ScatteredSample> samples);
+std::vector<MeasuredSlice> bin_samples(std::span<const IrregularSample> samples);
 
 }  // namespace velour

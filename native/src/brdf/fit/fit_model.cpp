@@ -61,7 +61,7 @@ Model fit_model(ModelKind kind, const Measurement& measurement, const FitOptions
   refuse_contradictions(kind, options);
   if (options.for_scene) return bounded_for_scene(measurement, options, progress);
   if (kind == ModelKind::parametric) return bounded_parametric(measurement, options, progress);
-  return fit_scattered(measurement, options, progress);
+  return fit_per_view(measurement, options, progress);
 }
 
 }  // namespace velour

@@ -7,7 +7,7 @@
 namespace velour {
 
 /// In the order of Model's bodies; the values are those of VLR_MODEL_*.
-enum class ModelKind { scattered = 0, parametric = 1 };
+enum class ModelKind { per_view = 0, parametric = 1 };
 
 constexpr ModelKind kDefaultModelKind = ModelKind::parametric;
 

@@ -67,43 +67,43 @@ std::vector<MeasuredSlice> seen_slices(std::vector<MeasuredSlice> slices, const 
 /// Searches for the smallest model whose pictures are no worse than those of the full model.
 class SceneSearch {
  public:
-  SceneSearch(const std::vector<MeasuredSlice>& slices, const TrackedFitOptions& tracked, bool limit,
+  SceneSearch(const std::vector<MeasuredSlice>& slices, const GrowthOptions& growth_options, bool limit,
               const PictureError& judge, const ParametricBrdf& full, Progress& progress)
       : slices_(slices),
-        tracked_(tracked),
+        growth_options_(growth_options),
         limit_(limit),
         judge_(judge),
         progress_(progress),
         full_shares_(judge.shares(full)) {
-    tracked_.tolerance *= kSceneGoalShare;
-    tracked_.seen_evenly = false;
+    growth_options_.tolerance *= kSceneGoalShare;
+    growth_options_.seen_evenly = false;
     least_bytes_ = full.parameter_bytes();
   }
 
   /// Covers `begin` to `end` of the task's progress, one step per number of cells. The fits report their own progress
   /// to a stage of zero width.
   void run(double begin, double end) {
-    const int most = tracked_.cells;
+    const int most = growth_options_.cells;
     double at = begin;
     for (const int cells : kCells) {
       if (cells > most) break;
       progress_.stage("fitting the scene model", at, at);
       at += (end - begin) / static_cast<double>(std::size(kCells));
-      tracked_.cells = cells;
+      growth_options_.cells = cells;
       try_lobes();
     }
   }
 
   /// Nothing if no smaller model is good enough.
-  std::optional<TrackedFit>& best() { return best_; }
+  std::optional<GrowthResult>& best() { return best_; }
   const std::vector<double>& full_shares() const { return full_shares_; }
 
  private:
   uint64_t bytes_of(int lobes) const {
     ParametricBrdf brdf;
-    brdf.isotropic = tracked_.isotropic;
-    brdf.cells = tracked_.cells;
-    brdf.views = tracked_.views;
+    brdf.isotropic = growth_options_.isotropic;
+    brdf.cells = growth_options_.cells;
+    brdf.views = growth_options_.views;
     brdf.space.resize(static_cast<size_t>(lobes));
     return ParametricBrdf::parameter_bytes(brdf.index(brdf.spline().node_count(), 0, 0), brdf.space.size());
   }
@@ -111,19 +111,19 @@ class SceneSearch {
   /// Finds the fewest lobes that are enough, if that makes a smaller model than the best so far. Goes upwards: small
   /// fits are fast, and a fit that ended with fewer lobes than allowed ends the same if more are allowed.
   void try_lobes() {
-    tracked_.max_lobes = ParametricBrdf::kMaxLobes;
-    TrackedGrowth growth(slices_, tracked_, progress_);
+    growth_options_.max_lobes = ParametricBrdf::kMaxLobes;
+    LobeGrowth growth(slices_, growth_options_, progress_);
     for (int lobes = 1; lobes <= ParametricBrdf::kMaxLobes && bytes_of(lobes) < least_bytes_; lobes += 1 + lobes / 5) {
       if (enough(growth, lobes) || tried_lobes_ < lobes) return;
     }
   }
 
   /// Whether a fit of at most `lobes` makes pictures as good as the full model's; if so, it becomes the best so far.
-  bool enough(TrackedGrowth& growth, int lobes) {
-    TrackedFit fit = growth.fit(lobes);
+  bool enough(LobeGrowth& growth, int lobes) {
+    GrowthResult fit = growth.fit(lobes);
     tried_lobes_ = fit.brdf.lobe_count();
     judge_.refine_colors(fit.brdf);
-    if (limit_) limit_albedo(fit.brdf, tracked_.threads, progress_);
+    if (limit_) limit_albedo(fit.brdf, growth_options_.threads, progress_);
     // Excess error over the full model, hit by hit, so that the common part and its noise cancel.
     std::vector<double> excess = judge_.shares(fit.brdf);
     for (size_t i = 0; i < excess.size(); ++i) excess[i] -= (1 + kSlack) * full_shares_[i];
@@ -135,14 +135,14 @@ class SceneSearch {
   }
 
   const std::vector<MeasuredSlice>& slices_;
-  TrackedFitOptions tracked_;
+  GrowthOptions growth_options_;
   bool limit_;  // limit the albedo
   const PictureError& judge_;
   Progress& progress_;
   std::vector<double> full_shares_;
   uint64_t least_bytes_;
   int tried_lobes_ = 0;  // lobes of the last fit
-  std::optional<TrackedFit> best_;
+  std::optional<GrowthResult> best_;
 };
 
 Model full_model(const Measurement& measurement, FitOptions options, Progress& progress) {
@@ -184,15 +184,15 @@ Model fit_for_scene(const Measurement& measurement, const FitOptions& options, P
   const MeasuredSlices measured = parametric_slices(measurement, options, progress);
   const std::vector<MeasuredSlice> slices = seen_slices(measured.slices, range, observation);
   const PictureError judge(measurement, full_brdf, observation, options.threads, progress);
-  TrackedFitOptions tracked = tracked_options(measurement, options);
-  tracked.views = range;
-  SceneSearch search(slices, tracked, options.limit_albedo, judge, full_brdf, progress);
+  GrowthOptions growth_options = growth_options_of(measurement, options);
+  growth_options.views = range;
+  SceneSearch search(slices, growth_options, options.limit_albedo, judge, full_brdf, progress);
   search.run(begin + kReadingShare, 0.95);
 
   progress.stage("checking the model", 0.95, 1.0);
   Model model = full;
   if (search.best()) {
-    judge_again(slices, tracked, *search.best(), progress);  // colors have changed
+    judge_again(slices, growth_options, *search.best(), progress);  // colors have changed
     model = parametric_model(measurement, *search.best(), options, progress);
     model.shell = full.shell;
   } else {

@@ -103,7 +103,7 @@ CornellText split(std::span<const double> numbers, const std::string& path) {
 }
 
 /// False if an angle is not finite. Throws if a polar angle is outside [0, pi].
-bool read_directions(std::span<const double> row, size_t index, const std::string& path, ScatteredSample& sample) {
+bool read_directions(std::span<const double> row, size_t index, const std::string& path, IrregularSample& sample) {
   for (const size_t i : {0u, 2u}) {
     if (row[i] < 0.0 || row[i] > kPiD)
       fail(path, "theta of sample " + std::to_string(index + 1) + " is " + std::to_string(row[i]) +
@@ -115,13 +115,13 @@ bool read_directions(std::span<const double> row, size_t index, const std::strin
   return true;
 }
 
-std::vector<ScatteredSample> read_samples(const CornellText& text, const std::string& path, EntryCounts& counts) {
+std::vector<IrregularSample> read_samples(const CornellText& text, const std::string& path, EntryCounts& counts) {
   const auto weights = rec709_weights(text.wavelengths);
-  std::vector<ScatteredSample> samples;
+  std::vector<IrregularSample> samples;
   std::vector<float> spectrum(text.wavelengths.size());
   for (size_t i = 0; i * text.row_size < text.rows.size(); ++i) {
     const auto row = text.rows.subspan(i * text.row_size, text.row_size);
-    ScatteredSample sample;
+    IrregularSample sample;
     if (!read_directions(row, i, path, sample)) {
       count_entry(Rgb(NAN), NegativeRule::luminance, counts);
       continue;
@@ -138,37 +138,37 @@ std::vector<ScatteredSample> read_samples(const CornellText& text, const std::st
 }
 
 /// The interpolation of `samples` as a table. Throws Error(bad_data) if there are too few.
-HalfDiffTable tabulated(std::span<const ScatteredSample> samples, const std::string& path, const Progress& progress) {
-  if (samples.size() < ScatteredInterpolant::kNeighbors)
+HalfDiffTable tabulated(std::span<const IrregularSample> samples, const std::string& path, const Progress& progress) {
+  if (samples.size() < IrregularInterpolant::kNeighbors)
     fail(path, "has " + std::to_string(samples.size()) + " valid samples; at least " +
-                   std::to_string(ScatteredInterpolant::kNeighbors) + " are needed to interpolate.");
-  return {kCornellLayout, resample_scattered(ScatteredInterpolant(samples), kCornellLayout, progress)};
+                   std::to_string(IrregularInterpolant::kNeighbors) + " are needed to interpolate.");
+  return {kCornellLayout, resample_irregular(IrregularInterpolant(samples), kCornellLayout, progress)};
 }
 
 /// A table for eval; the samples themselves for the error of a fit.
-class ScatteredMeasurement : public TableMeasurement {
+class IrregularMeasurement : public TableMeasurement {
  public:
-  ScatteredMeasurement(std::vector<ScatteredSample> samples, Provenance provenance, const EntryCounts& counts,
+  IrregularMeasurement(std::vector<IrregularSample> samples, Provenance provenance, const EntryCounts& counts,
                        Details details, const Progress& progress)
       : TableMeasurement(tabulated(samples, provenance.path, progress), provenance, counts, std::move(details)),
         samples_(std::move(samples)) {
-    for (const ScatteredSample& sample : samples_) lowest_ = std::min({lowest_, sample.wl.z, sample.wv.z});
+    for (const IrregularSample& sample : samples_) lowest_ = std::min({lowest_, sample.wl.z, sample.wv.z});
   }
 
-  std::span<const ScatteredSample> samples() const override { return samples_; }
+  std::span<const IrregularSample> samples() const override { return samples_; }
 
   std::shared_ptr<const Measurement> without_held_out(const Progress& progress) const override {
-    std::vector<ScatteredSample> kept;
+    std::vector<IrregularSample> kept;
     for (size_t i = 0; i < samples_.size(); ++i) {
       if (!held_out_sample(i)) kept.push_back(samples_[i]);
     }
-    if (kept.size() < ScatteredInterpolant::kNeighbors)
+    if (kept.size() < IrregularInterpolant::kNeighbors)
       fail(provenance().path, "has " + std::to_string(samples_.size()) + " valid samples, of which " +
                                   std::to_string(kept.size()) +
                                   " remain when one in eight is held out to measure the error; at least " +
-                                  std::to_string(ScatteredInterpolant::kNeighbors) +
+                                  std::to_string(IrregularInterpolant::kNeighbors) +
                                   " are needed. Measure more directions, or fit all data.");
-    return std::make_shared<ScatteredMeasurement>(std::move(kept), provenance(), counts(), details(), progress);
+    return std::make_shared<IrregularMeasurement>(std::move(kept), provenance(), counts(), details(), progress);
   }
 
   /// Below the lowest direction of any sample the interpolation only extrapolates, so a view there is not covered.
@@ -178,7 +178,7 @@ class ScatteredMeasurement : public TableMeasurement {
   }
 
  private:
-  std::vector<ScatteredSample> samples_;
+  std::vector<IrregularSample> samples_;
   float lowest_ = 1.0f;
 };
 
@@ -230,7 +230,7 @@ std::shared_ptr<const Measurement> read_cornell(std::span<const uint8_t> bytes, 
   auto samples = read_samples(text, path, counts);
   provenance.format = "cornell";
   provenance.description = opening_comment(bytes);
-  return std::make_shared<ScatteredMeasurement>(std::move(samples), std::move(provenance), counts, describe(text),
+  return std::make_shared<IrregularMeasurement>(std::move(samples), std::move(provenance), counts, describe(text),
                                                 Progress());
 }
 

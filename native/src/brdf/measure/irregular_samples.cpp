@@ -13,7 +13,7 @@
 namespace velour {
 namespace {
 
-constexpr int kCount = ScatteredInterpolant::kNeighbors;
+constexpr int kCount = IrregularInterpolant::kNeighbors;
 constexpr double kHalfPower = 0.7;  // exponent of theta_h
 constexpr double kAzimuthWeight = 0.3;
 constexpr double kLinearBelow = 0.01;  // 1/sr: asinh turns from linear to logarithmic here
@@ -52,8 +52,8 @@ float expand(double g) { return static_cast<float>(kLinearBelow * std::sinh(g));
 }  // namespace
 
 /// The samples as a nanoflann data set, and a tree over them.
-struct ScatteredInterpolant::Index {
-  explicit Index(std::span<const ScatteredSample> samples);
+struct IrregularInterpolant::Index {
+  explicit Index(std::span<const IrregularSample> samples);
 
   size_t kdtree_get_point_count() const { return regression.size(); }
   double kdtree_get_pt(size_t i, size_t axis) const { return regression[i][axis]; }
@@ -70,8 +70,8 @@ struct ScatteredInterpolant::Index {
   std::unique_ptr<Tree> tree;
 };
 
-ScatteredInterpolant::Index::Index(std::span<const ScatteredSample> samples) {
-  for (const ScatteredSample& sample : samples) {
+IrregularInterpolant::Index::Index(std::span<const IrregularSample> samples) {
+  for (const IrregularSample& sample : samples) {
     const Place place = place_of(sample.wl, sample.wv);
     regression.push_back(place.regression);
     reach.push_back(place.reach);
@@ -81,7 +81,7 @@ ScatteredInterpolant::Index::Index(std::span<const ScatteredSample> samples) {
   tree->buildIndex();
 }
 
-ScatteredInterpolant::ScatteredInterpolant(std::span<const ScatteredSample> samples) {
+IrregularInterpolant::IrregularInterpolant(std::span<const IrregularSample> samples) {
   if (samples.size() < kNeighbors)
     throw Error(Status::invalid_argument, std::to_string(samples.size()) +
                                               " valid samples are too few to interpolate; at least " +
@@ -89,9 +89,9 @@ ScatteredInterpolant::ScatteredInterpolant(std::span<const ScatteredSample> samp
   index_ = std::make_unique<const Index>(samples);
 }
 
-ScatteredInterpolant::~ScatteredInterpolant() = default;
+IrregularInterpolant::~IrregularInterpolant() = default;
 
-std::optional<Rgb> ScatteredInterpolant::f(const Vec3& wl, const Vec3& wv) const {
+std::optional<Rgb> IrregularInterpolant::f(const Vec3& wl, const Vec3& wv) const {
   const Place here = place_of(wl, wv);
   Nearest nearest;
   (void)index_->tree->knnSearch(here.regression.data(), kCount, nearest.sample.data(), nearest.distance_sq.data());
@@ -102,7 +102,7 @@ std::optional<Rgb> ScatteredInterpolant::f(const Vec3& wl, const Vec3& wv) const
   return index_->regress(here.regression, nearest);
 }
 
-Rgb ScatteredInterpolant::Index::regress(const Point& here, const Nearest& nearest) const {
+Rgb IrregularInterpolant::Index::regress(const Point& here, const Nearest& nearest) const {
   const double width = std::max(nearest.distance_sq.back(), 1e-12);
   Eigen::Matrix<double, kCount, 4> terms;
   Eigen::Matrix<double, kCount, 3> data;
@@ -127,7 +127,7 @@ Rgb ScatteredInterpolant::Index::regress(const Point& here, const Nearest& neare
   return f;
 }
 
-std::vector<TableNode> resample_scattered(const ScatteredInterpolant& interpolant, const BrdfTableLayout& layout,
+std::vector<TableNode> resample_irregular(const IrregularInterpolant& interpolant, const BrdfTableLayout& layout,
                                           const Progress& progress) {
   const HorizonTest horizon(layout);
   std::vector<TableNode> nodes(layout.size());

@@ -17,13 +17,13 @@ namespace velour {
 /// for highlights and linear about 0, with Gaussian weights over the 16 nearest samples and a light ridge on the
 /// slopes. The result never falls below those samples; it may rise above them by their range, because a highlight's top
 /// mostly lies between samples. docs/reference/measurement_formats.md compares the alternatives.
-class ScatteredInterpolant {
+class IrregularInterpolant {
  public:
   /// Copies what it needs. Throws Error(invalid_argument) for fewer than kNeighbors samples.
-  explicit ScatteredInterpolant(std::span<const ScatteredSample> samples);
-  ~ScatteredInterpolant();
-  ScatteredInterpolant(const ScatteredInterpolant&) = delete;
-  ScatteredInterpolant& operator=(const ScatteredInterpolant&) = delete;
+  explicit IrregularInterpolant(std::span<const IrregularSample> samples);
+  ~IrregularInterpolant();
+  IrregularInterpolant(const IrregularInterpolant&) = delete;
+  IrregularInterpolant& operator=(const IrregularInterpolant&) = delete;
 
   /// Nothing if no sample is within kReach. Both directions must be above the horizon. Thread-safe.
   std::optional<Rgb> f(const Vec3& wl, const Vec3& wv) const;
@@ -39,7 +39,7 @@ class ScatteredInterpolant {
 };
 
 /// The interpolant at the nodes of `layout` (phi_h 1, phi_d even), so that a look-up costs as little as MERL's.
-std::vector<TableNode> resample_scattered(const ScatteredInterpolant& interpolant, const BrdfTableLayout& layout,
+std::vector<TableNode> resample_irregular(const IrregularInterpolant& interpolant, const BrdfTableLayout& layout,
                                           const Progress& progress);
 
 }  // namespace velour

@@ -34,7 +34,7 @@ struct EntryCounts {
 };
 
 /// One irregular sample. Such samples are fitted directly, without interpolation.
-struct ScatteredSample {
+struct IrregularSample {
   Vec3 wl, wv;
   Rgb f;
 };
@@ -59,7 +59,7 @@ class Measurement {
   virtual bool covers_view(float theta_v) const = 0;
 
   /// The irregular samples; empty for tables.
-  virtual std::span<const ScatteredSample> samples() const { return {}; }
+  virtual std::span<const IrregularSample> samples() const { return {}; }
 
   /// For irregular samples: the same measurement without the samples i with held_out_sample(i)
   /// (brdf/measure/held_out.h), so that its interpolation does not depend on them. Tables return nullptr: a fit leaves

@@ -13,7 +13,7 @@
 namespace velour {
 
 /// Slices of f cos(theta_l) over wl, one per view. Plain data; immutable once inside a Model.
-struct ScatteredBrdf {
+struct PerViewBrdf {
   Kernel kernel = Kernel::gaussian;
   /// If true, views lie on the meridian phi_v = 0 and slices rotate with the view; otherwise they cover the hemisphere.
   bool isotropic = true;

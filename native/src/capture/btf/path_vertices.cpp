@@ -126,11 +126,11 @@ void PathVertices::go_on(uint32_t depth) {
     Vec2 u;
     sobol_points(key, path % sampling_.samples, {&u, 1});
     from.vertex.surface->material->prepare(from.vertex.wv, from.vertex.site, prepared_);
-    const auto onward = draw_onward(from.vertex, prepared_, SurfaceSampling::material,
-                                    tile_.scene().rec709_to_working(), from.throughput, u);
-    if (!onward || !std::isfinite(luminance(onward->throughput))) continue;
-    rays_.push_back(onward->ray);
-    throughput_.push_back(onward->throughput);
+    const auto continuation = sample_continuation(from.vertex, prepared_, SurfaceSampling::material,
+                                                  tile_.scene().rec709_to_working(), from.throughput, u);
+    if (!continuation || !std::isfinite(luminance(continuation->throughput))) continue;
+    rays_.push_back(continuation->ray);
+    throughput_.push_back(continuation->throughput);
     path_of_.push_back(path);
   }
 }

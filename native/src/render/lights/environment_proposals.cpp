@@ -26,7 +26,7 @@ int level_of(float bandwidth, int levels) {
   return std::min(level, levels - 1);
 }
 
-GaussianLobes lobes_of(const SkyMixture& sky) {
+GaussianLobes lobes_of(const EnvironmentMixture& sky) {
   GaussianLobes lobes;
   for (size_t k = 0; k < sky.size(); ++k) {
     lobes.add({sky.center[k], sky.bandwidth[k], luminance(sky.coefficient[k])});
@@ -36,7 +36,8 @@ GaussianLobes lobes_of(const SkyMixture& sky) {
 
 }  // namespace
 
-SkyProposals::SkyProposals(const SkyMixture& sky, double misfit) : blurs_edges_(misfit > kBlurred) {
+EnvironmentProposals::EnvironmentProposals(const EnvironmentMixture& sky, double misfit)
+    : blurs_edges_(misfit > kBlurred) {
   constexpr size_t kLists = static_cast<size_t>(kSide) * kSide * kLevels;
   lists_.resize(kLists * kBlocks);
   blocks_.assign(kLists, 0);
@@ -48,7 +49,7 @@ SkyProposals::SkyProposals(const SkyMixture& sky, double misfit) : blurs_edges_(
 }
 
 /// Moves the sun out of `sky`, but never the last lobe: something must remain to propose.
-void SkyProposals::set_sun(GaussianLobes& sky) {
+void EnvironmentProposals::set_sun(GaussianLobes& sky) {
   constexpr float kNarrow = 1000;  // a standard deviation below two degrees
   if (sky.size() < 2) return;
   double total = 0;
@@ -65,7 +66,7 @@ void SkyProposals::set_sun(GaussianLobes& sky) {
   }
 }
 
-void SkyProposals::fill_list(size_t list, const LobeTree& tree) {
+void EnvironmentProposals::fill_list(size_t list, const LobeTree& tree) {
   // A lobe anywhere in the cell and with any bandwidth of the level, blurred into one.
   constexpr float kCellVariance = 4 / (3.0f * kSide * kSide);
   const int cell = static_cast<int>(list / kLevels), level = static_cast<int>(list % kLevels);
@@ -78,20 +79,21 @@ void SkyProposals::fill_list(size_t list, const LobeTree& tree) {
   blocks_[list] = static_cast<uint8_t>((count + LobeBlock::kSize - 1) / LobeBlock::kSize);
 }
 
-size_t SkyProposals::list_of(const GaussianLobe& world) const {
+size_t EnvironmentProposals::list_of(const GaussianLobe& world) const {
   const int cell = octahedral_cell(world.center, kSide), level = level_of(world.bandwidth, kLevels);
   return static_cast<size_t>(cell * kLevels + level);
 }
 
-void SkyProposals::multiply(const GaussianLobe& world, size_t list, const Vec3& normal, LobeProducts& products) const {
+void EnvironmentProposals::multiply(const GaussianLobe& world, size_t list, const Vec3& normal,
+                                    LobeProducts& products) const {
   multiply_lobes(world, {&lists_[list * kBlocks], blocks_[list]}, &normal, products);
   if (sun_ && sun_->bandwidth[0] < kSunSharpness * world.bandwidth) {
     multiply_lobes(world, {&*sun_, 1}, &normal, products);
   }
 }
 
-bool SkyProposals::propose(const ProposalLobes& brdf, const Frame& frame, LobeProducts& scratch,
-                           LobeMixture& density) const {
+bool EnvironmentProposals::propose(const ProposalLobes& brdf, const Frame& frame, LobeProducts& scratch,
+                                   LobeMixture& density) const {
   static_assert((ProposalLobes::kCapacity + 1) * (kListed + LobeProducts::kLanes) <= LobeProducts::kCapacity);
   GaussianLobe lobe[ProposalLobes::kCapacity + 1];
   size_t list[ProposalLobes::kCapacity + 1];
@@ -144,7 +146,7 @@ double broad_share(const Material& material) {
   return all > 0 ? broad / all : 0;
 }
 
-std::vector<float> lights_parts(const Scene& scene, const SkyProposals& sky) {
+std::vector<float> lights_parts(const Scene& scene, const EnvironmentProposals& sky) {
   std::vector<float> parts;
   for (const SurfaceMaterial& m : scene.materials()) {
     const bool half = sky.has_sun() || (sky.blurs_edges() && broad_share(*m.material) > kDiffuse);

@@ -22,10 +22,10 @@ namespace velour {
 /// none, so many samples from its products miss it, while light sampling samples its texels exactly and concentrates on
 /// them. Where the BRDF lobe is far broader than the sun, their product is left to light sampling, which gets a larger
 /// share under such an environment (see lights_parts() below).
-class SkyProposals {
+class EnvironmentProposals {
  public:
   /// `misfit`: of the mixture to its environment.
-  explicit SkyProposals(const SkyMixture& sky, double misfit = 0);
+  explicit EnvironmentProposals(const EnvironmentMixture& sky, double misfit = 0);
   static constexpr int kListed = 32;  // maximum number of nodes of a cut
 
   /// World-space density of the products of `brdf` (in `frame`) with the environment; the cosine part of `brdf` is
@@ -54,16 +54,16 @@ class SkyProposals {
 
 // Materials for which `product` samples lights instead of products of lobes.
 
-class SkyProposals;
+class EnvironmentProposals;
 
 /// Share of the products' directions (kProductShare) that light sampling takes over, by material: half, or nothing. The
 /// same at all vertices of a material, since the points of a sequence stay even only if all vertices deal them alike.
 ///
-/// Under a sun it is half for all materials; SkyProposals says why. Studio lights are the same at a smaller scale: a
-/// mixture of few Gaussians blurs their edges. A highlight blurs them as well, so that its products lose nothing. A
-/// diffuse material resolves them, and there light sampling, with one smooth map of the unit square, does better for
-/// half of the directions.
-std::vector<float> lights_parts(const Scene& scene, const SkyProposals& sky);
+/// Under a sun it is half for all materials; EnvironmentProposals says why. Studio lights are the same at a smaller
+/// scale: a mixture of few Gaussians blurs their edges. A highlight blurs them as well, so that its products lose
+/// nothing. A diffuse material resolves them, and there light sampling, with one smooth map of the unit square, does
+/// better for half of the directions.
+std::vector<float> lights_parts(const Scene& scene, const EnvironmentProposals& sky);
 
 /// Share of the reflection of uniform light, according to the material's proposals, that is in lobes as broad as a
 /// cosine; mean over views. 0 if it has no lobes.

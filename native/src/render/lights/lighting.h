@@ -75,7 +75,7 @@ class Lighting {
   Vec3 sample_near(const LightView& view, const Vec2& u, Hit* aim) const;
 
   const Environment& environment_;
-  const SkyIrradiance sky_;
+  const EnvironmentIrradiance sky_;
   std::vector<Lamp> suns_, lamps_;  // with extent
   const EmissiveMeshes emissive_;
   LightTree near_;           // lamps_, then emissive_.lights()

@@ -57,21 +57,21 @@ void HitLightEstimator::draw(const Vertex& vertex, Counts counts, PathNumbers& n
     numbers.points(Purpose::light, 0, points);
     lighting_.sample({&view_, 1}, {view_of_, points.size()}, points, drawn, {aims, points.size()});
     for (int i = 0; i < drawn.count; ++i) {
-      keep_if_received(vertex, vertex.frame.to_local(drawn.get(i)), drawn.get(i), Drawer::lights, aims[i]);
+      keep_if_received(vertex, vertex.frame.to_local(drawn.get(i)), drawn.get(i), Technique::lights, aims[i]);
     }
   }
   const std::span<Vec2> points(u, static_cast<size_t>(counts.surface));
   numbers.points(Purpose::surface, 0, points);
   vertex.surface->material->sample(prepared_, points, drawn);
   for (int i = 0; i < drawn.count; ++i) {
-    keep_if_received(vertex, drawn.get(i), vertex.frame.to_world(drawn.get(i)), Drawer::surface, {});
+    keep_if_received(vertex, drawn.get(i), vertex.frame.to_world(drawn.get(i)), Technique::surface, {});
   }
 }
 
-void HitLightEstimator::keep_if_received(const Vertex& vertex, const Vec3& wl, const Vec3& wl_world, Drawer drawer,
-                                         const Hit& aim) {
+void HitLightEstimator::keep_if_received(const Vertex& vertex, const Vec3& wl, const Vec3& wl_world,
+                                         Technique technique, const Hit& aim) {
   if (!vertex.receives_light(wl, wl_world)) return;
-  drawer_[local_.count] = drawer;
+  technique_[local_.count] = technique;
   aims_[local_.count] = aim;
   local_.push(wl);
   world_.push(wl_world);
@@ -130,7 +130,7 @@ void HitLightEstimator::add_emissive(const Vertex& vertex, Counts counts) {
     emissive_[i] = Rgb(0.0f);
     const Hit& hit = hits_[i];
     if (hit.instance == kNoHit || !lighting_.emissive().holds(hit)) continue;
-    if (drawer_[i] == Drawer::lights && !same_crossing(hit, aims_[i])) continue;
+    if (technique_[i] == Technique::lights && !same_crossing(hit, aims_[i])) continue;
     const float pdf = lighting_.emissive_pdf(view_, world_.get(i), hit);
     const float density =
         static_cast<float>(counts.lights) * pdf + static_cast<float>(counts.surface) * material_pdf_.v[i];

@@ -41,7 +41,8 @@ class HitLightEstimator {
   };
   Counts counts(int bounces) const;
   void draw(const Vertex& vertex, Counts counts, PathNumbers& numbers);
-  void keep_if_received(const Vertex& vertex, const Vec3& wl, const Vec3& wl_world, Drawer drawer, const Hit& aim);
+  void keep_if_received(const Vertex& vertex, const Vec3& wl, const Vec3& wl_world, Technique technique,
+                        const Hit& aim);
   void weigh(const Vertex& vertex, Counts counts);
   void trace(const Vertex& vertex);
   void add_lights(const Vertex& vertex);
@@ -68,7 +69,7 @@ class HitLightEstimator {
   RgbBatch environment_, f_;
   ScalarBatch light_pdf_, material_pdf_;
   std::vector<LampHit> lamp_hits_;
-  Drawer drawer_[DirectionBatch::kCapacity];
+  Technique technique_[DirectionBatch::kCapacity];
   Hit aims_[DirectionBatch::kCapacity];      // from Lighting::sample
   float weight_[DirectionBatch::kCapacity];  // cos / (n density); 0: aimed at an emissive mesh
   Ray rays_[DirectionBatch::kCapacity];

@@ -79,12 +79,13 @@ void ViewTracer::see_surface(const Vertex& vertex, double weight, SurfaceDomain&
 void ViewTracer::go_on(const Vertex& vertex, const Path& path) {
   PathNumbers numbers = path.numbers;
   vertex.surface->material->prepare(vertex.wv, vertex.site, prepared_);
-  const auto onward = draw_onward(vertex, prepared_, SurfaceSampling::material, scene_.rec709_to_working(),
-                                  path.throughput, numbers.point(Purpose::onward));
-  if (!onward || !std::isfinite(luminance(onward->throughput))) return;
+  const auto continuation =
+      sample_continuation(vertex, prepared_, SurfaceSampling::material, scene_.rec709_to_working(), path.throughput,
+                          numbers.point(Purpose::continuation));
+  if (!continuation || !std::isfinite(luminance(continuation->throughput))) return;
   numbers.next_vertex();
-  next_.push_back({numbers, onward->throughput, path.cell, vertex.cone});
-  next_rays_.push_back(onward->ray);
+  next_.push_back({numbers, continuation->throughput, path.cell, vertex.cone});
+  next_rays_.push_back(continuation->ray);
 }
 
 }  // namespace velour

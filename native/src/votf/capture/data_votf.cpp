@@ -23,9 +23,9 @@ constexpr float kFar = 0.5f;      // search range for a structure of unknown ext
 constexpr uint32_t kCoarse = 48;  // texels of the grid of that search
 constexpr uint32_t kLines = 3;    // lines along a side of a texel, for the check
 
-class DataOcclusion {
+class DataVotf {
  public:
-  DataOcclusion(const BtfMeasurement& btf, const DataOcclusionOptions& options, Progress& progress)
+  DataVotf(const BtfMeasurement& btf, const DataVotfOptions& options, Progress& progress)
       : btf_(btf),
         options_(options),
         progress_(progress),
@@ -33,7 +33,7 @@ class DataOcclusion {
         width_(btf.grid().tile_metres ? btf.grid().tile_metres->x : 1.0f),
         heights_(btf.has_structure() && btf.shell()) {}
 
-  OcclusionCapture run() {
+  VotfCapture run() {
     const auto start = std::chrono::steady_clock::now();
     look_through();
     if (heights_) {
@@ -51,7 +51,7 @@ class DataOcclusion {
   }
 
  private:
-  OcclusionVolume& volume() { return result_.volume; }
+  VotfVolume& volume() { return result_.volume; }
   size_t views() const { return btf_.layout().views().size(); }
   Vec3 direction_of(size_t view) const { return unit_direction(btf_.layout().views()[view]); }
   /// Converts a height over the lowest point to widths over the surface.
@@ -84,7 +84,7 @@ class DataOcclusion {
 
   /// Heights in widths over the surface. The grid extends a point beyond the structure at both ends.
   void lay_out(float lowest, float highest, float reference) {
-    OcclusionVolume& v = volume();
+    VotfVolume& v = volume();
     const bool closed = v.closed;
     v = empty_shell(options_.texels > 0 ? options_.texels : texels_.width, texels_.aspect, lowest, highest);
     v.closed = closed;
@@ -94,7 +94,7 @@ class DataOcclusion {
 
   /// Without heights: computes a coarse hull over the whole search range, then lays out the range that it fills.
   void lay_out_hull() {
-    const OcclusionVolume coarse = empty_shell(std::min(kCoarse, texels_.width), texels_.aspect, -kFar, kFar);
+    const VotfVolume coarse = empty_shell(std::min(kCoarse, texels_.width), texels_.aspect, -kFar, kFar);
     progress_.stage("finding the height range", 0.1, 0.2);
     const std::vector<float> level = fused(coarse);
     const size_t layer = size_t{coarse.width} * coarse.height;
@@ -120,7 +120,7 @@ class DataOcclusion {
     lay_out(-surface, high - low - surface, -low - surface);
   }
 
-  std::vector<float> fused(const OcclusionVolume& grid) {
+  std::vector<float> fused(const VotfVolume& grid) {
     ShellFusion fusion(grid, texels_, grid.closed);
     for (uint32_t v = 0; v < views(); ++v) {
       progress_.check();
@@ -142,7 +142,7 @@ class DataOcclusion {
   }
 
   void fill(const std::vector<float>& level) {
-    OcclusionVolume& v = volume();
+    VotfVolume& v = volume();
     progress_.stage("computing distances", 0.7, 0.8);
     const std::vector<float> distance = level_distances(level, grid_of(v), progress_);
     v.distance.resize(distance.size());
@@ -164,11 +164,11 @@ class DataOcclusion {
     return static_cast<float>(std::accumulate(meets, meets + kLines * kLines, 0)) / (kLines * kLines);
   }
 
-  OcclusionErrors errors() {
+  VotfErrors errors() {
     // Non-owning pointer: the volume outlives `field`.
-    const ShellField field(std::shared_ptr<const OcclusionVolume>(std::shared_ptr<void>(), &volume()));
+    const ShellField field(std::shared_ptr<const VotfVolume>(std::shared_ptr<void>(), &volume()));
     const size_t count = std::min<size_t>(options_.check_views, views());
-    std::vector<OcclusionErrors> seen(count);
+    std::vector<VotfErrors> seen(count);
     tbb::parallel_for(size_t{0}, count, [&](size_t i) {
       progress_.check();
       const auto view = static_cast<uint32_t>(i * views() / count);
@@ -179,8 +179,8 @@ class DataOcclusion {
         seen[i].wrong += static_cast<double>(std::abs(truth - met(field, t, direction_of(view))));
       }
     });
-    OcclusionErrors errors;
-    for (const OcclusionErrors& e : seen) {
+    VotfErrors errors;
+    for (const VotfErrors& e : seen) {
       errors.coverage += e.coverage / static_cast<double>(count * texels_.size());
       errors.wrong += e.wrong / static_cast<double>(count * texels_.size());
     }
@@ -188,20 +188,20 @@ class DataOcclusion {
   }
 
   const BtfMeasurement& btf_;
-  const DataOcclusionOptions& options_;
+  const DataVotfOptions& options_;
   Progress& progress_;
   const TileTexels texels_;
   const float width_;  // meters per width, or 1 if unknown
   const bool heights_;
-  OcclusionCapture result_;
+  VotfCapture result_;
 };
 
 }  // namespace
 
-OcclusionCapture occlusion_of_data(const BtfMeasurement& btf, const DataOcclusionOptions& options, Progress& progress) {
-  OcclusionCapture capture;
+VotfCapture votf_of_data(const BtfMeasurement& btf, const DataVotfOptions& options, Progress& progress) {
+  VotfCapture capture;
   tbb::task_arena arena(arena_concurrency(options.threads));
-  arena.execute([&] { capture = DataOcclusion(btf, options, progress).run(); });
+  arena.execute([&] { capture = DataVotf(btf, options, progress).run(); });
   return capture;
 }
 
@@ -212,12 +212,12 @@ constexpr uint32_t kMinTexels = 4;
 
 }  // namespace
 
-OcclusionVolume empty_shell(uint32_t texels, float aspect, float lowest, float highest) {
-  if (texels < kMinTexels || texels > OcclusionVolume::kMaxSide) {
+VotfVolume empty_shell(uint32_t texels, float aspect, float lowest, float highest) {
+  if (texels < kMinTexels || texels > VotfVolume::kMaxSide) {
     refuse("A silhouette (VOTF) cannot have " + std::to_string(texels) + " texels along x; the number must be " +
-           std::to_string(kMinTexels) + " to " + std::to_string(OcclusionVolume::kMaxSide) + ".");
+           std::to_string(kMinTexels) + " to " + std::to_string(VotfVolume::kMaxSide) + ".");
   }
-  OcclusionVolume v;
+  VotfVolume v;
   v.width = texels;
   v.aspect = aspect;
   v.height = std::max(1u, static_cast<uint32_t>(std::lround(static_cast<float>(v.width) * v.aspect)));
@@ -225,8 +225,8 @@ OcclusionVolume empty_shell(uint32_t texels, float aspect, float lowest, float h
   v.top = highest + v.pitch();
   const double cells = std::ceil(static_cast<double>((v.top - v.bottom) / v.pitch()));
   if (!std::isfinite(cells)) refuse("The heights of a silhouette (VOTF) must be finite.");
-  if (v.height > OcclusionVolume::kMaxSide || cells + 1 > OcclusionVolume::kMaxDepth ||
-      uint64_t{v.width} * v.height * static_cast<uint64_t>(cells + 1) > OcclusionVolume::kMaxPoints) {
+  if (v.height > VotfVolume::kMaxSide || cells + 1 > VotfVolume::kMaxDepth ||
+      uint64_t{v.width} * v.height * static_cast<uint64_t>(cells + 1) > VotfVolume::kMaxPoints) {
     refuse("A silhouette (VOTF) of " + std::to_string(v.width) + " x " + std::to_string(v.height) + " x " +
            std::to_string(static_cast<uint64_t>(cells) + 1) + " points is too large; reduce the number of texels.");
   }
@@ -235,7 +235,7 @@ OcclusionVolume empty_shell(uint32_t texels, float aspect, float lowest, float h
   return v;
 }
 
-DistanceGrid grid_of(const OcclusionVolume& v) {
+DistanceGrid grid_of(const VotfVolume& v) {
   const TileTexels texels{v.width, v.height, v.aspect};
   return {v.width,
           v.height,

@@ -8,7 +8,7 @@
 
 namespace velour {
 
-struct DataOcclusionOptions {
+struct DataVotfOptions {
   uint32_t texels = 0;  // along x, at the same resolution along y and z; 0: those of the data
   double surface = 0;   // height of the carrying surface over the lowest point of the structure, in meters (in widths
                         // if the tile's size is unknown)
@@ -22,16 +22,16 @@ struct DataOcclusionOptions {
 /// `wrong` is the mean difference between a texel's coverage and the share of kLines x kLines lines through it that hit
 /// the volume. Throws Error(invalid_argument) for invalid grid sizes, Error(unsupported) if there is no coverage, or if
 /// coverage alone does not determine the hull's extent.
-OcclusionCapture occlusion_of_data(const BtfMeasurement& btf, const DataOcclusionOptions& options, Progress& progress);
+VotfCapture votf_of_data(const BtfMeasurement& btf, const DataVotfOptions& options, Progress& progress);
 
 // The grid of a tile's shell.
 
 /// A volume without distances, but with their reach: `texels` points along x, the same resolution along y and z, and
 /// one point beyond the structure at both ends, so that rays begin and end outside. `lowest` and `highest` are heights
 /// over the surface that carries the shell, in tile widths. Throws Error(invalid_argument) for invalid sizes.
-OcclusionVolume empty_shell(uint32_t texels, float aspect, float lowest, float highest);
+VotfVolume empty_shell(uint32_t texels, float aspect, float lowest, float highest);
 
 /// Positions of the points of `volume`.
-DistanceGrid grid_of(const OcclusionVolume& volume);
+DistanceGrid grid_of(const VotfVolume& volume);
 
 }  // namespace velour

@@ -12,8 +12,8 @@ constexpr float kBand = 2;       // pitches behind the surface seen by a view wi
 constexpr float kWhole = 0.98f;  // minimum coverage for a texel's mean height to be that of a surface
 constexpr float kSmooth = 1;     // maximum spread in pitches, and half the maximum step; more is an edge
 
-OcclusionVolume without_distances(const OcclusionVolume& volume) {
-  OcclusionVolume sizes = volume;
+VotfVolume without_distances(const VotfVolume& volume) {
+  VotfVolume sizes = volume;
   sizes.distance.clear();
   return sizes;
 }
@@ -66,7 +66,7 @@ ShellFusion::Surfaces::Surfaces(const SeenTexels& seen, const TileTexels& texels
   }
 }
 
-ShellFusion::ShellFusion(const OcclusionVolume& volume, const TileTexels& texels, bool closed)
+ShellFusion::ShellFusion(const VotfVolume& volume, const TileTexels& texels, bool closed)
     : grid_(without_distances(volume)),
       texels_(texels),
       closed_(closed),

@@ -28,7 +28,7 @@ struct SeenTexels {
 class ShellFusion {
  public:
   /// The grid has the sizes of `volume`, whose distances are ignored. `closed`: solid below the grid.
-  ShellFusion(const OcclusionVolume& volume, const TileTexels& texels, bool closed);
+  ShellFusion(const VotfVolume& volume, const TileTexels& texels, bool closed);
 
   void add(const SeenTexels& seen, const Progress& progress);
   /// One number per point, [z][y][x], positive outside, 0 on the surface; the input of level_distances().
@@ -49,7 +49,7 @@ class ShellFusion {
   void add_distance(const SeenTexels& seen, const Surfaces& surfaces, const BilinearTexels& at, float height,
                     Evidence& evidence) const;
 
-  const OcclusionVolume grid_;  // without distances
+  const VotfVolume grid_;  // without distances
   const TileTexels texels_;
   const bool closed_;
   std::vector<Evidence> evidence_;  // [z][y][x]

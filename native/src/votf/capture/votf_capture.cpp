@@ -149,14 +149,14 @@ std::vector<Triangle> triangles_of(const RepeatedTile& tile, double surface) {
   return triangles;
 }
 
-class OcclusionCapturer {
+class VotfCapturer {
  public:
-  OcclusionCapturer(const Scene& scene, const OcclusionCaptureOptions& options, Progress& progress)
+  VotfCapturer(const Scene& scene, const VotfCaptureOptions& options, Progress& progress)
       : options_(options),
         progress_(progress),
         tile_(scene, place_of(scene, options.place), options.threads, progress) {}
 
-  OcclusionCapture run() {
+  VotfCapture run() {
     const auto start = std::chrono::steady_clock::now();
     inspect();
     measure();
@@ -170,7 +170,7 @@ class OcclusionCapturer {
   }
 
  private:
-  OcclusionVolume& volume() { return result_.volume; }
+  VotfVolume& volume() { return result_.volume; }
   float in_widths(double z) const { return static_cast<float>((z - options_.surface) / tile_.period().x); }
 
   void inspect() {
@@ -184,7 +184,7 @@ class OcclusionCapturer {
   }
 
   void measure() {
-    OcclusionVolume& v = volume();
+    VotfVolume& v = volume();
     const bool closed = v.closed;
     v = empty_shell(options_.texels, tile_.period().y / tile_.period().x,
                     in_widths(static_cast<double>(tile_.bottom())), in_widths(static_cast<double>(tile_.top())));
@@ -200,7 +200,7 @@ class OcclusionCapturer {
   TileTexels texels() const { return {result_.volume.width, result_.volume.height, result_.volume.aspect}; }
 
   void fill() {
-    OcclusionVolume& v = volume();
+    VotfVolume& v = volume();
     const std::vector<float> distance = surface_distances(triangles_of(tile_, options_.surface), grid_of(v), progress_);
     progress_.update(0.7);
     std::vector<Vec2> places;
@@ -225,9 +225,9 @@ class OcclusionCapturer {
     });
   }
 
-  OcclusionErrors errors() {
+  VotfErrors errors() {
     // Non-owning pointer: the volume outlives `field`.
-    const ShellField field(std::shared_ptr<const OcclusionVolume>(std::shared_ptr<void>(), &volume()));
+    const ShellField field(std::shared_ptr<const VotfVolume>(std::shared_ptr<void>(), &volume()));
     const float reference = volume().reference * tile_.period().x + static_cast<float>(options_.surface);
     std::vector<std::pair<int64_t, int64_t>> seen(options_.check_views);  // numbers of covered and of wrong texels
     tbb::parallel_for(0u, options_.check_views, [&](uint32_t i) {
@@ -241,7 +241,7 @@ class OcclusionCapturer {
       for (size_t t = 0; t < truth.size(); ++t) seen[i].second += truth[t] != found[t] ? 1 : 0;
     });
     const double all = static_cast<double>(options_.check_views) * static_cast<double>(texels().size());
-    OcclusionErrors errors;
+    VotfErrors errors;
     for (const auto& [covered, wrong] : seen) {
       errors.coverage += static_cast<double>(covered) / all;
       errors.wrong += static_cast<double>(wrong) / all;
@@ -249,19 +249,19 @@ class OcclusionCapturer {
     return errors;
   }
 
-  const OcclusionCaptureOptions& options_;
+  const VotfCaptureOptions& options_;
   Progress& progress_;
   const RepeatedTile tile_;
   RayShare share_{options_.measure_ray_share, 8};
-  OcclusionCapture result_;
+  VotfCapture result_;
 };
 
 }  // namespace
 
-OcclusionCapture capture_occlusion(const Scene& scene, const OcclusionCaptureOptions& options, Progress& progress) {
-  OcclusionCapture capture;
+VotfCapture capture_votf(const Scene& scene, const VotfCaptureOptions& options, Progress& progress) {
+  VotfCapture capture;
   tbb::task_arena arena(arena_concurrency(options.threads));
-  arena.execute([&] { capture = OcclusionCapturer(scene, options, progress).run(); });
+  arena.execute([&] { capture = VotfCapturer(scene, options, progress).run(); });
   return capture;
 }
 

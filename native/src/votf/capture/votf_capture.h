@@ -11,7 +11,7 @@
 
 namespace velour {
 
-struct OcclusionCaptureOptions {
+struct VotfCaptureOptions {
   TilePlace place;                           // period (0, 0): the geometry's bounding box
   double metres_per_unit = 1.0;              // of the scene; 0: unknown
   uint32_t texels = 128;                     // along x, at the same resolution along y and z
@@ -23,9 +23,9 @@ struct OcclusionCaptureOptions {
   bool measure_ray_share = false;
 };
 
-struct OcclusionCapture {
-  OcclusionVolume volume;
-  std::optional<OcclusionErrors> errors;
+struct VotfCapture {
+  VotfVolume volume;
+  std::optional<VotfErrors> errors;
   double seconds = 0;
   std::optional<double> ray_share;  // relative to the bare Embree rate for the same rays, including the checks
   std::vector<std::string> warnings;
@@ -34,7 +34,7 @@ struct OcclusionCapture {
 /// `scene` must be committed. Inside and outside are distinguished along vertical rays by the facing of the surfaces
 /// they hit; a sheet that is open below is solid down to the bottom if the tile is closed, and about a texel thick
 /// otherwise. Throws Error(invalid_argument) for invalid grid sizes.
-OcclusionCapture capture_occlusion(const Scene& scene, const OcclusionCaptureOptions& options, Progress& progress);
+VotfCapture capture_votf(const Scene& scene, const VotfCaptureOptions& options, Progress& progress);
 
 // Coverage of texels in a view, by rays against the geometry itself.
 

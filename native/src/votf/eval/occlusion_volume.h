@@ -12,7 +12,7 @@ namespace velour {
 ///
 /// Represents the view-dependent occlusion V(t, wv) of every texel t and view wv, i.e. whether the line through t along
 /// wv is blocked, also between the measured views and on curved surfaces (shell_trace.h).
-struct OcclusionVolume {
+struct VotfVolume {
   uint32_t width = 0, height = 0, depth = 0;  // grid points; x and y at the centers of cells
   float aspect = 1;
   float bottom = 0, top = 0;      // heights of the first and the last grid points along z
@@ -33,7 +33,7 @@ struct OcclusionVolume {
 
 /// Error of the volume against rays traced through the geometry itself, over views uniform in solid angle up to 75
 /// degrees.
-struct OcclusionErrors {
+struct VotfErrors {
   double coverage = 0;  // mean V over the views
   double wrong = 0;     // share of (texel center, view) pairs with wrong visibility
 };

@@ -4,8 +4,8 @@
 
 namespace velour {
 
-ShellField::ShellField(std::shared_ptr<const OcclusionVolume> volume) : volume_(std::move(volume)) {
-  const OcclusionVolume& v = *volume_;
+ShellField::ShellField(std::shared_ptr<const VotfVolume> volume) : volume_(std::move(volume)) {
+  const VotfVolume& v = *volume_;
   const size_t row = (size_t{v.width} + 1) * v.depth;
   column_.resize((size_t{v.height} + 1) * row + sizeof(int32_t));
   for (size_t y = 0; y <= v.height; ++y) {
@@ -26,7 +26,7 @@ ShellField::ShellField(std::shared_ptr<const OcclusionVolume> volume) : volume_(
             .pitch = v.pitch(),
             .per_step = 1.0f / v.step(),
             .per_aspect = 1.0f / v.aspect,
-            .unit = v.reach / OcclusionVolume::kUnits};
+            .unit = v.reach / VotfVolume::kUnits};
 }
 
 float ShellField::distance(const Vec3& q) const {

@@ -23,9 +23,9 @@ struct ShellTable {
 /// Immutable, thread-safe.
 class ShellField {
  public:
-  explicit ShellField(std::shared_ptr<const OcclusionVolume> volume);
+  explicit ShellField(std::shared_ptr<const VotfVolume> volume);
 
-  const OcclusionVolume& volume() const { return *volume_; }
+  const VotfVolume& volume() const { return *volume_; }
   const ShellTable& table() const { return table_; }
   /// Signed distance at `q` in tile widths, trilinear; x and y repeat, z is clamped to the volume.
   float distance(const Vec3& q) const;
@@ -33,7 +33,7 @@ class ShellField {
   Vec3 gradient(const Vec3& q) const;
 
  private:
-  std::shared_ptr<const OcclusionVolume> volume_;
+  std::shared_ptr<const VotfVolume> volume_;
   std::vector<uint8_t> column_;  // the points of a column, along z, are contiguous
   ShellTable table_;
 };

@@ -61,7 +61,7 @@ HWY_INLINE V distance_at(D d, const ShellTable& t, const PlaceLanes<D>& q) {
   const V a = along_z(0), b = along_z(depth), c = along_z(row), e = along_z(row + depth);
   const V low = hn::MulAdd(x_part, hn::Sub(b, a), a), high = hn::MulAdd(x_part, hn::Sub(e, c), c);
   const V level = hn::MulAdd(y_part, hn::Sub(high, low), low);
-  return hn::Mul(hn::Set(d, t.unit), hn::Sub(level, hn::Set(d, OcclusionVolume::kZero)));
+  return hn::Mul(hn::Set(d, t.unit), hn::Sub(level, hn::Set(d, VotfVolume::kZero)));
 }
 
 template <class D>

@@ -15,7 +15,7 @@ constexpr float kOwnDepth = 2;  // pitches: maximum depth at which a ray that st
 float squared(float x) { return x * x; }
 
 /// Upper bound on the tile widths that a ray within the shell covers per meter.
-float fastest(const ShellRay& ray, float sine, const OcclusionVolume& volume) {
+float fastest(const ShellRay& ray, float sine, const VotfVolume& volume) {
   const float across = glm::length(ray.along) * sine;
   // Rays steepen within concave shells, and within convex ones on their way up.
   const float down = ray.scale * (ray.curvature < 0 || ray.height < 0 ? 1.0f : ray.cosine);
@@ -31,7 +31,7 @@ float sine_of(const ShellRay& ray) { return std::sqrt(std::max(0.0f, 1.0f - squa
 
 Vec3 ShellRay::at(float s) const { return place_on_ray(*this, s); }
 
-ShellSpan span_of(const ShellRay& ray, const OcclusionVolume& volume) {
+ShellSpan span_of(const ShellRay& ray, const VotfVolume& volume) {
   // Radii r with 1 - r^2 = curvature * fall: s^2 curvature - 2 s cosine + fall = 0.
   const float down = (volume.top - volume.bottom) / ray.scale;
   const float fall = down * (2 - ray.curvature * down);
@@ -40,7 +40,7 @@ ShellSpan span_of(const ShellRay& ray, const OcclusionVolume& volume) {
   return {2 * ray.cosine / ray.curvature, false};
 }
 
-ShellSpan span_from_side(const ShellRay& ray, const OcclusionVolume& volume, bool onwards) {
+ShellSpan span_from_side(const ShellRay& ray, const VotfVolume& volume, bool onwards) {
   // First positive root, as above, of s^2 curvature - 2 s cosine = rise (2 + curvature rise).
   const float down = onwards ? ray.cosine : -ray.cosine, infinite = std::numeric_limits<float>::infinity();
   const auto first = [&](float rise) {
@@ -56,7 +56,7 @@ ShellSpan span_from_side(const ShellRay& ray, const OcclusionVolume& volume, boo
   return {std::min(bottom, top), bottom < top};
 }
 
-ShellWay::ShellWay(const ShellRay& along, const OcclusionVolume& volume, float from, float to, bool starts_on,
+ShellWay::ShellWay(const ShellRay& along, const VotfVolume& volume, float from, float to, bool starts_on,
                    const ShellEdge& edge)
     : ray(along),
       begin(from),
@@ -80,7 +80,7 @@ ShellHit trace_shell(const ShellField& field, const ShellWay& way) {
   return hit;
 }
 
-ShellWay line_through(const OcclusionVolume& volume, const Vec2& place, const Vec3& w) {
+ShellWay line_through(const VotfVolume& volume, const Vec2& place, const Vec3& w) {
   const Vec3 up = w.z < 0 ? -w : w;
   const float sine = std::sqrt(up.x * up.x + up.y * up.y);
   const Vec2 azimuth = sine > 0 ? Vec2(up.x, up.y) / sine : Vec2(1, 0);

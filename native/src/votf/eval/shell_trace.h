@@ -29,9 +29,9 @@ struct ShellSpan {
   float end;            // meters past the crossing
   bool through_bottom;  // false: it leaves through the top again
 };
-ShellSpan span_of(const ShellRay& ray, const OcclusionVolume& volume);
+ShellSpan span_of(const ShellRay& ray, const VotfVolume& volume);
 /// Extent of a ray that crosses a side, forward (`onwards`) or backward; infinite if it stays within.
-ShellSpan span_from_side(const ShellRay& ray, const OcclusionVolume& volume, bool onwards);
+ShellSpan span_from_side(const ShellRay& ray, const VotfVolume& volume, bool onwards);
 
 /// Sine of the ray's angle with the normal.
 float sine_of(const ShellRay& ray);
@@ -48,7 +48,7 @@ struct ShellWay {
   /// begin inside it, because the point was found along another ray, and arcs agree only to about a pitch. Its search
   /// starts where it comes out, or at `begin` if it is deeper inside.
   ShellWay() = default;
-  ShellWay(const ShellRay& ray, const OcclusionVolume& volume, float begin, float end, bool starts_on = false,
+  ShellWay(const ShellRay& ray, const VotfVolume& volume, float begin, float end, bool starts_on = false,
            const ShellEdge& edge = {});
 
   bool empty() const { return begin == end; }
@@ -81,7 +81,7 @@ inline constexpr float kShellStride = 1.6f;   // step length as a multiple of th
 inline constexpr int kMaxShellLooks = 4096;   // a ray that glides along a surface for so long counts as a hit
 
 /// The line along unit `w`, w.z not 0, through `place` (tile widths) on the reference plane of a flat shell.
-ShellWay line_through(const OcclusionVolume& volume, const Vec2& place, const Vec3& w);
+ShellWay line_through(const VotfVolume& volume, const Vec2& place, const Vec3& w);
 
 /// V of points: 1 where the line through one of `places` along `w` meets the structure, otherwise 0.
 void lines_meet(const ShellField& field, std::span<const Vec2> places, const Vec3& w, uint8_t* meets);

@@ -77,7 +77,7 @@ TEST(Albedo, ControlADensityFivePercentTooHighIsSeen) { EXPECT_TRUE(albedos(1.05
 
 // A proposal that knows nothing of the material costs variance, never truth.
 TEST(Albedo, ABadProposalIsUnbiased) {
-  ScatteredBrdf bad = test::glossy_model(Kernel::gaussian, {{0, 0, 1}}, true, 2000);
+  PerViewBrdf bad = test::glossy_model(Kernel::gaussian, {{0, 0, 1}}, true, 2000);
   bad.center[0] = direction(1.2f, 1);
   const auto material = test::measured(bad);
   test::ZTests tests, control;

@@ -91,7 +91,7 @@ double spread(const Material& material, bool interpolated) {
 }
 
 // The point of tables beside the dissertation's density: as good a fit, drawn from by one map.
-TEST(ScatteredDraws, VaryAsLittleAsTheInterpolatedDensity) {
+TEST(PerViewDraws, VaryAsLittleAsTheInterpolatedDensity) {
   for (const auto& lobes : {test::kLobeMaterials[0], test::kLobeMaterials[1]}) {
     for (const float bandwidth : lobes.bandwidths) {
       if (bandwidth > 1e4f || bandwidth == 0.999f) continue;  // a row of the tables is half a deviation, or more

@@ -41,7 +41,7 @@ TEST_P(RoughenedSampling, OfAParametricModelFollowsItsDensity) {
   test::expect_proven(test::warped_sampler(material, test::view_at(degrees)), "rougher-parametric");
 }
 
-TEST_P(RoughenedSampling, OfAScatteredModelFollowsItsDensity) {
+TEST_P(RoughenedSampling, OfAPerViewModelFollowsItsDensity) {
   const auto [bandwidth, roughness, degrees] = GetParam();
   const auto model = test::highlight_model(Kernel::gaussian, bandwidth, test::meridian_views(), true);
   const Vec3 wv = test::view_at(degrees);

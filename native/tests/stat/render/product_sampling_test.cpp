@@ -11,8 +11,8 @@
 namespace velour {
 namespace {
 
-SkyMixture sky_of(int lobes, float sharpest) {
-  SkyMixture sky;
+EnvironmentMixture sky_of(int lobes, float sharpest) {
+  EnvironmentMixture sky;
   RandomStream random(5, 0, 0);
   for (int k = 0; k < lobes; ++k) {
     sky.center.push_back(sample_uniform_sphere(random.next2()));
@@ -32,10 +32,10 @@ ProposalLobes glossy() {
 
 const Frame kFrame = Frame::about(glm::normalize(Vec3(0.2f, -0.7f, 0.5f)));
 
-LobeMixture proposal(const SkyMixture& sky, const ProposalLobes& brdf = glossy(), const Frame& frame = kFrame) {
+LobeMixture proposal(const EnvironmentMixture& sky, const ProposalLobes& brdf = glossy(), const Frame& frame = kFrame) {
   LobeMixture mixture;
   LobeProducts scratch;
-  EXPECT_TRUE(SkyProposals(sky).propose(brdf, frame, scratch, mixture));
+  EXPECT_TRUE(EnvironmentProposals(sky).propose(brdf, frame, scratch, mixture));
   return mixture;
 }
 
@@ -70,7 +70,7 @@ TEST_P(ProposalSampling, FollowsItsDensity) {
   const auto material = test::highlight_material(bandwidth);
   PreparedBrdf point;
   material->prepare(test::view_at(degrees), point);
-  SkyMixture sky = sky_of(lobes, sharpest);
+  EnvironmentMixture sky = sky_of(lobes, sharpest);
   if (lobes == 1) sky.bandwidth = {sharpest}, sky.center = {kFrame.to_world(test::mirror(test::view_at(degrees)))};
   ProposalLobes few;
   ASSERT_TRUE(material->proposal_lobes(point, few));
@@ -91,7 +91,7 @@ TEST(ProposalSamplingControl, ABandwidthOffByFivePercentIsSeen) {
 
 TEST(ProductSampling, GoesWhereBothAre) {
   // Density at the product of a highlight and a sun inside it, against either alone.
-  SkyMixture sky;
+  EnvironmentMixture sky;
   sky.center = {kFrame.to_world(glm::normalize(Vec3(0.6f, 0.05f, 0.7f))), kFrame.to_world({-0.8f, 0, 0.6f})};
   sky.bandwidth = {3000, 3000};
   sky.coefficient = {Rgb(1.0f), Rgb(1.0f)};
@@ -101,24 +101,24 @@ TEST(ProductSampling, GoesWhereBothAre) {
 
 // The lights draw a sun's texels exactly: only a highlight about as sharp as the sun is multiplied with it.
 TEST(ProductSampling, LeavesASunToTheLights) {
-  SkyMixture sky;
+  EnvironmentMixture sky;
   sky.center = {kFrame.to_world(glossy().lobe[0].center), kFrame.z};
   sky.bandwidth = {1e5f, 2.0f};
   sky.coefficient = {Rgb(1e6f), Rgb(1.0f)};
-  ASSERT_TRUE(SkyProposals(sky).has_sun());
+  ASSERT_TRUE(EnvironmentProposals(sky).has_sun());
   EXPECT_LT(test::mixture_density(proposal(sky), sky.center[0]), 10);
   ProposalLobes mirror = glossy();
   mirror.lobe[0].bandwidth = 1e5f;
   EXPECT_GT(test::mixture_density(proposal(sky, mirror), sky.center[0]), 1000);
   sky.coefficient[0] = Rgb(1.0f);
-  EXPECT_FALSE(SkyProposals(sky).has_sun());
+  EXPECT_FALSE(EnvironmentProposals(sky).has_sun());
 }
 
 TEST(ProductSampling, ASkyOfBadFitBlursEdges) {
-  const SkyMixture sky = sky_of(20, 100);
-  EXPECT_FALSE(SkyProposals(sky, 0.1).blurs_edges());
-  EXPECT_TRUE(SkyProposals(sky, 0.3).blurs_edges());
-  EXPECT_TRUE(SkyProposals(sky, std::numeric_limits<double>::infinity()).blurs_edges());
+  const EnvironmentMixture sky = sky_of(20, 100);
+  EXPECT_FALSE(EnvironmentProposals(sky, 0.1).blurs_edges());
+  EXPECT_TRUE(EnvironmentProposals(sky, 0.3).blurs_edges());
+  EXPECT_TRUE(EnvironmentProposals(sky, std::numeric_limits<double>::infinity()).blurs_edges());
 }
 
 // Light sampling takes over for diffuse materials only: a highlight blurs edges itself.
@@ -126,7 +126,7 @@ TEST(ProductSampling, LightsTakeOverWhereTheMaterialIsBroad) {
   const auto part = [](float bandwidth, double misfit) {
     Scene scene;
     scene.add_material({test::highlight_material(bandwidth), Rgb(0.0f), true});
-    return lights_parts(scene, SkyProposals(sky_of(20, 100), misfit)).at(0);
+    return lights_parts(scene, EnvironmentProposals(sky_of(20, 100), misfit)).at(0);
   };
   EXPECT_EQ(part(2, 0.1), 0.0f);
   EXPECT_EQ(part(2, 0.3), 0.5f);
@@ -134,14 +134,14 @@ TEST(ProductSampling, LightsTakeOverWhereTheMaterialIsBroad) {
 }
 
 TEST(ProductSampling, NothingToProposeBelowTheHorizon) {
-  SkyMixture sky;
+  EnvironmentMixture sky;
   sky.center = {-kFrame.z};
   sky.bandwidth = {1e5f};
   sky.coefficient = {Rgb(1.0f)};
   LobeMixture mixture;
   LobeProducts scratch;
-  EXPECT_FALSE(SkyProposals(sky).propose(glossy(), kFrame, scratch, mixture));
-  EXPECT_FALSE(SkyProposals({}).propose(glossy(), kFrame, scratch, mixture));
+  EXPECT_FALSE(EnvironmentProposals(sky).propose(glossy(), kFrame, scratch, mixture));
+  EXPECT_FALSE(EnvironmentProposals({}).propose(glossy(), kFrame, scratch, mixture));
 }
 
 /// Two spheres that shade each other, of a material that has lobes, under an uneven sky and a lamp.
@@ -214,9 +214,9 @@ TEST_F(ProductStrategy, AgreesWithMisForEverySplit) {
 
 TEST_F(ProductStrategy, AgreesUnderSoftboxesThatTheLightsDraw) {
   const Progress progress;
-  const SkyMixture sky = sky_mixture(softboxes(), {}, "", progress);
+  const EnvironmentMixture sky = mixture_of_environment(softboxes(), {}, "", progress);
   const Scene scene = pair(softboxes(), false, 2.0f);
-  ASSERT_GT(lights_parts(scene, SkyProposals(sky, sky_misfit(softboxes(), sky))).at(0), 0.0f);
+  ASSERT_GT(lights_parts(scene, EnvironmentProposals(sky, misfit_of_environment(softboxes(), sky))).at(0), 0.0f);
   test::ZTests tests;
   for (const int split : {1, 8}) {
     compare(std::to_string(split), measure(scene, Strategy::product, split), measure(scene, Strategy::mis), tests);

@@ -117,13 +117,13 @@ std::shared_ptr<const Material> through_of(const std::shared_ptr<const BtfTable>
 
 std::shared_ptr<const ShellField> shell_of(Mesh mesh) {
   const auto tile = test::tile_of(std::move(mesh), std::make_shared<test::Lambert>(0.8f));
-  OcclusionCaptureOptions options;
+  VotfCaptureOptions options;
   options.place.period = {1, 1};
   options.reference_height = 0;
   options.check_views = 0;
   Progress progress;
   return std::make_shared<const ShellField>(
-      std::make_shared<const OcclusionVolume>(capture_occlusion(*tile, options, progress).volume));
+      std::make_shared<const VotfVolume>(capture_votf(*tile, options, progress).volume));
 }
 
 /// The middle of many tiles from far away, in a sun that shines from behind them alone.

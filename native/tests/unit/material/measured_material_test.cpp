@@ -24,9 +24,9 @@ class HalfCovered final : public Measurement {
 using Shared = std::shared_ptr<const Material>;
 
 /// A material of the measurement, and of the model that is its proposal.
-std::pair<Shared, Shared> scattered_proposal() {
-  const auto proposal = std::make_shared<ScatteredBrdf>(test::isotropic_model());
-  return {make_measured_material(std::make_shared<HalfCovered>(), proposal, 0), make_scattered_material(proposal, 0)};
+std::pair<Shared, Shared> per_view_proposal() {
+  const auto proposal = std::make_shared<PerViewBrdf>(test::isotropic_model());
+  return {make_measured_material(std::make_shared<HalfCovered>(), proposal, 0), make_per_view_material(proposal, 0)};
 }
 
 std::pair<Shared, Shared> parametric_proposal() {
@@ -35,7 +35,7 @@ std::pair<Shared, Shared> parametric_proposal() {
 }
 
 class MeasuredMaterial : public testing::TestWithParam<std::pair<Shared, Shared> (*)()> {};
-INSTANTIATE_TEST_SUITE_P(Proposals, MeasuredMaterial, testing::Values(&scattered_proposal, &parametric_proposal));
+INSTANTIATE_TEST_SUITE_P(Proposals, MeasuredMaterial, testing::Values(&per_view_proposal, &parametric_proposal));
 
 TEST_P(MeasuredMaterial, ClampsChannelsAndIsBlackWhereNothingWasMeasured) {
   const auto [material, model] = GetParam()();

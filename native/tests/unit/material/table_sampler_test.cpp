@@ -45,7 +45,7 @@ TEST(TableSampler, ResolvesASharpHighlight) {
 }
 
 TEST(TableSampler, AnisotropicTablesFollowTheView) {
-  const auto material = make_scattered_material(std::make_shared<ScatteredBrdf>(test::anisotropic_model()), 0);
+  const auto material = make_per_view_material(std::make_shared<PerViewBrdf>(test::anisotropic_model()), 0);
   const TableSampler table(*material);
   for (const float phi : {-3.1f, -0.2f, 0.0f, 1.0f, 3.1f}) {
     const Vec3 wv = direction(0.8f, phi);

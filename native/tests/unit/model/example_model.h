@@ -34,7 +34,7 @@ inline Model example_record() {
 }
 
 inline Model example_model(Kernel kernel = Kernel::gaussian, bool isotropic = true) {
-  ScatteredBrdf brdf;
+  PerViewBrdf brdf;
   brdf.kernel = kernel;
   brdf.isotropic = isotropic;
   brdf.align_views = false;

@@ -63,7 +63,7 @@ TEST(HostileModel, NearlyUnitCentersAreMadeUnit) {
   TensorFile file = decode_tensors(encode_model(test::example_model()), "example");
   for (float& x : file.tensors["lobes.center"].data) x *= 1.0005f;
   const Model model = decode_model(encode_tensors(file), "metal.velour");
-  for (const Vec3& c : std::get<ScatteredBrdf>(model.body).center) EXPECT_NEAR(glm::length(c), 1, 1e-6);
+  for (const Vec3& c : std::get<PerViewBrdf>(model.body).center) EXPECT_NEAR(glm::length(c), 1, 1e-6);
 }
 
 TEST(HostileModel, MissingOrMisshapenPartsAreNamed) {
@@ -230,7 +230,7 @@ TEST(HostileModel, TruncatedFilesAreRefused) {
   }
 }
 
-void expect_sound(const ScatteredBrdf& brdf) { ASSERT_EQ(brdf.first_lobe.back(), brdf.center.size()); }
+void expect_sound(const PerViewBrdf& brdf) { ASSERT_EQ(brdf.first_lobe.back(), brdf.center.size()); }
 
 void expect_sound(const ParametricBrdf& brdf) {
   for (const float angle : {0.0f, 0.7f, 1.57f}) {

@@ -18,7 +18,7 @@ using test::example_model;
 
 using test::example_parametric;
 
-const ScatteredBrdf& scattered(const Model& model) { return std::get<ScatteredBrdf>(model.body); }
+const PerViewBrdf& scattered(const Model& model) { return std::get<PerViewBrdf>(model.body); }
 const ParametricBrdf& parametric(const Model& model) { return std::get<ParametricBrdf>(model.body); }
 
 void expect_same_record(const Model& a, const Model& b) {
@@ -39,7 +39,7 @@ void expect_same_record(const Model& a, const Model& b) {
   EXPECT_EQ(a.source.sha256, b.source.sha256);
 }
 
-void expect_same(const ScatteredBrdf& a, const ScatteredBrdf& b) {
+void expect_same(const PerViewBrdf& a, const PerViewBrdf& b) {
   EXPECT_EQ(a.kernel, b.kernel);
   EXPECT_EQ(a.isotropic, b.isotropic);
   EXPECT_EQ(a.align_views, b.align_views);
@@ -75,7 +75,7 @@ void expect_round_trip(const Model& model) {
 TEST(ModelFile, RoundTripKeepsEveryBit) {
   for (const Kernel kernel : {Kernel::gaussian, Kernel::abel_poisson}) {
     for (const bool isotropic : {true, false}) {
-      expect_round_trip<ScatteredBrdf>(example_model(kernel, isotropic));
+      expect_round_trip<PerViewBrdf>(example_model(kernel, isotropic));
     }
   }
 }
@@ -140,13 +140,13 @@ TEST(ModelFile, TheOrderIsOptionalAndShort) {
 
 TEST(ModelFile, ABlackModelHasNoLobes) {
   Model black = example_model();
-  auto& brdf = std::get<ScatteredBrdf>(black.body);
+  auto& brdf = std::get<PerViewBrdf>(black.body);
   brdf.center.clear();
   brdf.bandwidth.clear();
   brdf.coefficient.clear();
   brdf.diffuse.clear();
   brdf.first_lobe.assign(brdf.views.size() + 1, 0);
-  expect_round_trip<ScatteredBrdf>(black);
+  expect_round_trip<PerViewBrdf>(black);
 }
 
 TEST(ModelFile, SavesAndLoads) {

@@ -16,7 +16,7 @@ Model model_with_shell() {
   auto volume = test::wires(8, 0.2f);
   volume->reference = 0.125f;
   volume->tile_width = 0.25f;
-  model.shell = ModelShell{volume, "wires", OcclusionErrors{0.5, 0.0625}};
+  model.shell = ModelShell{volume, "wires", VotfErrors{0.5, 0.0625}};
   return model;
 }
 
@@ -33,7 +33,7 @@ TEST(ShellFile, ComesBackAsItWas) {
   const Model model = model_with_shell();
   const Model read = decode_model(encode_model(model), "model.velour");
   ASSERT_TRUE(read.shell);
-  const OcclusionVolume &a = *model.shell->volume, &b = *read.shell->volume;
+  const VotfVolume &a = *model.shell->volume, &b = *read.shell->volume;
   EXPECT_EQ(a.distance, b.distance);
   EXPECT_EQ(a.width, b.width);
   EXPECT_EQ(a.height, b.height);

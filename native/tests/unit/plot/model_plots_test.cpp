@@ -118,14 +118,14 @@ class FewSamples final : public AnalyticMeasurement {
     add(direction(radians_from(50.0f), 1.0f + 2.0f), wv);                                   // off the plane
     add(direction(radians_from(50.0f), 1.0f + kPi), direction(radians_from(40.0f), 1.0f));  // off the view
   }
-  std::span<const ScatteredSample> samples() const override { return samples_; }
+  std::span<const IrregularSample> samples() const override { return samples_; }
 
  private:
   void add(const Vec3& wl, const Vec3& wv) { samples_.push_back({wl, wv, lambert({wl, wv})}); }
-  std::vector<ScatteredSample> samples_;
+  std::vector<IrregularSample> samples_;
 };
 
-TEST(LobesPlot, OfScatteredSamplesShowsThoseNearViewAndPlane) {
+TEST(LobesPlot, OfIrregularSamplesShowsThoseNearViewAndPlane) {
   const FewSamples measurement;
   const Plot plot = plotted(PlotKind::lobes, model_of(isotropic_model()), &measurement, view_of(30));
   const auto& points = series_of(plot, "measured").points;

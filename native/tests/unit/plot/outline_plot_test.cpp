@@ -10,7 +10,7 @@
 namespace velour {
 namespace {
 
-Model with_shell(std::shared_ptr<OcclusionVolume> volume) {
+Model with_shell(std::shared_ptr<VotfVolume> volume) {
   Model model;
   model.shell = ModelShell{std::move(volume), "example"};
   return model;

@@ -10,7 +10,7 @@
 namespace velour {
 namespace {
 
-SkyMixture sky_with_sun() {
+EnvironmentMixture sky_with_sun() {
   return test::sky_of({{{0, 0, 1}, 0, Rgb(0.1f, 0.2f, 0.3f)},
                        {{0.2f, 0.1f, 1}, 1.5f, Rgb(0.5f, 0.6f, 0.9f)},
                        {{1, -0.5f, 0.8f}, 3000, Rgb(900, 800, 600)},
@@ -19,7 +19,7 @@ SkyMixture sky_with_sun() {
 }
 
 /// The mean over a Gaussian density, by the closed form in double.
-Vec3d mean_of(const SkyMixture& sky, const Vec3& w, double bandwidth) {
+Vec3d mean_of(const EnvironmentMixture& sky, const Vec3& w, double bandwidth) {
   Vec3d sum(0.0);
   for (size_t k = 0; k < sky.size(); ++k) {
     sum += Vec3d(sky.coefficient[k].r, sky.coefficient[k].g, sky.coefficient[k].b) *
@@ -31,7 +31,7 @@ Vec3d mean_of(const SkyMixture& sky, const Vec3& w, double bandwidth) {
 }
 
 /// Irradiance over pi, by the sum over evenly spread light directions.
-Vec3d received(const SkyMixture& sky, const Vec3& normal) {
+Vec3d received(const EnvironmentMixture& sky, const Vec3& normal) {
   Vec3d sum(0.0);
   const auto lights = sphere_fibonacci(200000);
   for (const Vec3& w : lights) {
@@ -58,7 +58,7 @@ class LightMap : public ::testing::Test {
 };
 
 TEST_F(LightMap, LooksUpProductIntegrals) {
-  const SkyMixture sky = sky_with_sun();
+  const EnvironmentMixture sky = sky_with_sun();
   for (const double bandwidth : {1.0, 1.4, 5.0, 33.0, 260.0, 1448.0, 8192.0}) {
     double error = 0, peak = 0;
     auto places = sphere_fibonacci(997);
@@ -79,7 +79,7 @@ TEST_F(LightMap, LooksUpProductIntegrals) {
 }
 
 TEST_F(LightMap, KnowsWhatAReceiverGets) {
-  const SkyMixture sky = sky_with_sun();
+  const EnvironmentMixture sky = sky_with_sun();
   for (const Vec3& normal : sphere_fibonacci(23)) {
     const Vec3d exact = received(sky, normal);
     const Vec3d found(test::mean_light(map(), LightLevels::kCosine, normal));

@@ -17,14 +17,14 @@
 namespace velour {
 namespace {
 
-SkyMixture soft_sky() {
+EnvironmentMixture soft_sky() {
   return test::sky_of({{{0.2f, 0.1f, 1}, 0.7f, Rgb(0.3f, 0.4f, 0.6f)},
                        {{1, -0.5f, 0.8f}, 700, Rgb(200, 180, 120)},
                        {{-1, 0.3f, 0.2f}, 40, Rgb(3, 1, 0.5f)},
                        {{0.3f, 0.9f, 0.1f}, 12, Rgb(0.2f, 0.7f, 0.1f)}});
 }
 
-Rgb radiance(const SkyMixture& sky, const Vec3& w) {
+Rgb radiance(const EnvironmentMixture& sky, const Vec3& w) {
   Rgb sum(0.0f);
   for (size_t k = 0; k < sky.size(); ++k) {
     const Vec3 apart = w - sky.center[k];
@@ -34,7 +34,7 @@ Rgb radiance(const SkyMixture& sky, const Vec3& w) {
 }
 
 /// What `material` reflects of `sky` towards `wv`, by evenly spread light directions: no error of a table.
-Vec3d reflected(const Material& material, const SkyMixture& sky, const Frame& frame, const Vec3& wv) {
+Vec3d reflected(const Material& material, const EnvironmentMixture& sky, const Frame& frame, const Vec3& wv) {
   static const auto lights = hemisphere_fibonacci(120000);
   PreparedBrdf point;
   material.prepare(frame.to_local(wv), point);
@@ -57,7 +57,7 @@ Vec3d reflected(const Material& material, const SkyMixture& sky, const Frame& fr
 /// Relative L2 of what the tables shade, over random surfaces and views up to 80 degrees.
 double shading_error(const LobeRows& rows, const Material& material) {
   Progress progress;
-  const SkyMixture sky = soft_sky();
+  const EnvironmentMixture sky = soft_sky();
   const TablePixels map = light_map(sky, Environment(), 0, progress);
   std::mt19937 random(3);
   std::uniform_real_distribution<float> uniform(0, 1);
@@ -87,8 +87,8 @@ double shading_error(const PrincipledParameters& parameters) {
 Model of(ModelBody body) { return {.body = std::move(body), .fit = {}, .source = {}}; }
 
 /// Views at every `step` degrees of the meridian, three lobes each.
-ScatteredBrdf scattered_model(double step) {
-  ScatteredBrdf brdf;
+PerViewBrdf per_view_model(double step) {
+  PerViewBrdf brdf;
   brdf.first_lobe = {0};
   for (double degrees = 0; degrees <= 88; degrees += step) {
     const double theta = degrees * kPiD / 180;
@@ -141,7 +141,7 @@ TEST(LobeRows, BothHalvesOfSymmetricModelsAreSeen) {
   EXPECT_GT(shading_error(half, symmetric_model(true, 400)), 0.1);
 }
 
-TEST(LobeRows, ShadeScatteredModels) { EXPECT_LT(shading_error(of(scattered_model(2))), 0.03); }
+TEST(LobeRows, ShadePerViewModels) { EXPECT_LT(shading_error(of(per_view_model(2))), 0.03); }
 
 /// Coarser: most of the error of the first is at grazing views of its sharp lobes.
 TEST(LobeRows, ShadePrincipledMaterials) {

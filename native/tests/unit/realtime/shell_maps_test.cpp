@@ -10,7 +10,7 @@ namespace velour {
 namespace {
 
 /// Pixel of a point of the volume, or of the border around it.
-const float* pixel(const TablePixels& maps, const OcclusionVolume& volume, uint32_t x, uint32_t y, uint32_t z) {
+const float* pixel(const TablePixels& maps, const VotfVolume& volume, uint32_t x, uint32_t y, uint32_t z) {
   return maps.at(x + 1, z * (volume.height + 2) + y + 1);
 }
 
@@ -52,7 +52,7 @@ TEST(ShellMaps, BordersRepeatTheTile) {
 }
 
 TEST(ShellMaps, OfTooManyPointsAreRefused) {
-  OcclusionVolume volume;
+  VotfVolume volume;
   volume.width = volume.height = 4096;
   volume.depth = 2;
   EXPECT_THROW(shell_maps(volume), Error);

@@ -97,14 +97,14 @@ TEST(NoiseTarget, DecisionsGrowRarer) {
 }
 
 TEST(Combination, WeightsOfAllDensitiesAddUpToOne) {
-  const Drawer drawers[] = {Drawer::product, Drawer::surface, Drawer::lights};
+  const Technique drawers[] = {Technique::product, Technique::surface, Technique::lights};
   for (Heuristic heuristic : {Heuristic::balance, Heuristic::power}) {
     for (const auto& share : {std::array{0.0f, 0.5f, 0.5f}, {0.5f, 0.4f, 0.1f}, {0.0f, 1.0f, 0.0f}}) {
       for (const auto& pdf :
            {std::array{1.0f, 1.0f, 1.0f}, {0.0f, 3.0f, 0.1f}, {5.0f, 1e25f, 2.0f}, {2.0f, 0.7f, 0.0f}}) {
         const float q[3] = {share[0] * pdf[0], share[1] * pdf[1], share[2] * pdf[2]};
         float sum = 0;
-        for (Drawer own : drawers) {
+        for (Technique own : drawers) {
           // f / (n d) times the expected number of such directions, n c p: weights of one f add up to 1.
           const float q_own = q[static_cast<int>(own)];
           if (q_own > 0) sum += q_own / effective_density(heuristic, q, own);

@@ -289,15 +289,15 @@ TEST(SceneChanges, SamplersAreSharedUntilAnythingButTheCameraChanges) {
   Progress progress;
   const auto tables = table_samplers(scene, progress);
   const auto lobes = ggx_samplers(scene, 2, progress);
-  const auto sky = sky_sampler(scene, "", progress);
+  const auto sky = environment_sampler(scene, "", progress);
   scene.set_camera(test::camera_above(3));
   EXPECT_EQ(table_samplers(scene, progress), tables);
   EXPECT_EQ(ggx_samplers(scene, 2, progress), lobes);
-  EXPECT_EQ(sky_sampler(scene, "", progress), sky);
+  EXPECT_EQ(environment_sampler(scene, "", progress), sky);
   scene.set_material(0, {gray(0.9f), Rgb(0.0f), false});
   EXPECT_NE(table_samplers(scene, progress), tables);
   EXPECT_NE(ggx_samplers(scene, 2, progress), lobes);
-  EXPECT_NE(sky_sampler(scene, "", progress), sky);
+  EXPECT_NE(environment_sampler(scene, "", progress), sky);
 }
 
 /// What an earlier render has left must not be drawn from after a change.

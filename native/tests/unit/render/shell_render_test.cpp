@@ -17,7 +17,7 @@ namespace {
 
 constexpr float kRadius = 0.2f;  // of wires a tile apart
 
-std::shared_ptr<const ShellField> field_of(std::shared_ptr<const OcclusionVolume> volume) {
+std::shared_ptr<const ShellField> field_of(std::shared_ptr<const VotfVolume> volume) {
   return std::make_shared<const ShellField>(std::move(volume));
 }
 

@@ -41,7 +41,7 @@ TEST(ShellRay, IsAStraightRayOverACircle) {
 }
 
 TEST(ShellRay, EndsAtTheBottomOrAtTheTop) {
-  OcclusionVolume volume;
+  VotfVolume volume;
   volume.bottom = -0.1f;
   volume.top = 0.1f;
   for (const float curvature : {0.0f, 0.2f, 1.0f, -0.5f}) {
@@ -60,7 +60,7 @@ TEST(ShellRay, EndsAtTheBottomOrAtTheTop) {
 }
 
 TEST(ShellRay, FromASideItGoesToTheBottomOrTheTop) {
-  OcclusionVolume volume;
+  VotfVolume volume;
   volume.bottom = -0.1f;
   volume.top = 0.1f;
   int through_bottom = 0, within = 0, all = 0;
@@ -193,7 +193,7 @@ TEST(TraceShells, DoesWithEachRayWhatItDoesWithItAlone) {
 
 TEST(TraceShell, ARayThatStartsOnTheStructureLeavesItFirst) {
   const ShellField field(test::wires(64, 0.2f));
-  const OcclusionVolume& volume = field.volume();
+  const VotfVolume& volume = field.volume();
   const ShellRay ray{{0.5f, 0.5f}, {1, 0}, 1.0f, 0.0f, 1};
   const float surface = volume.top - 0.2f, pitch = volume.pitch();
   EXPECT_FALSE(trace_shell(field, {ray, volume, surface + pitch, 0, true}));

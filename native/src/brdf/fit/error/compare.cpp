@@ -84,7 +84,7 @@ AzimuthErrors sample_errors(const Measurement& measurement, const Material& mate
   const auto samples = measurement.samples();
   for (size_t i = 0; i < samples.size(); ++i) {
     if (i % 1024 == 0) progress.check();
-    const ScatteredSample& s = samples[i];
+    const IrregularSample& s = samples[i];
     if (!held_out_sample(i) || reported_view_of(s.wv) != degrees) continue;
     Rgb model;
     evaluate(material, s.wv, {&s.wl, 1}, {&model, 1});
@@ -102,10 +102,10 @@ Comparison compare(const Measurement& measurement, const Material& material, Pro
   for (const int degrees : kHeldOutViews) {
     std::optional<double>& entry = out.by_view_angle[key_of(degrees)];
     if (measurement.covers_view(static_cast<float>(radians_from(static_cast<double>(degrees))))) {
-      const bool scattered = !measurement.samples().empty();
-      const auto errors = scattered ? sample_errors(measurement, material, degrees, progress)
+      const bool irregular = !measurement.samples().empty();
+      const auto errors = irregular ? sample_errors(measurement, material, degrees, progress)
                                     : table_errors(measurement, material, degrees, progress, out);
-      entry = mean_error(errors, scattered ? 1 : kMinLights);
+      entry = mean_error(errors, irregular ? 1 : kMinLights);
       if (!entry) out.narrow_views.erase(degrees);
       for (const ViewError& e : errors) {
         log_sq += e.log_sq_sum();
@@ -192,9 +192,9 @@ struct ReducedSample {
   int view;
 };
 
-std::vector<ReducedSample> reduced(std::span<const ScatteredSample> samples) {
+std::vector<ReducedSample> reduced(std::span<const IrregularSample> samples) {
   std::vector<ReducedSample> out;
-  for (const ScatteredSample& s : samples) {
+  for (const IrregularSample& s : samples) {
     const double theta_l = std::acos(std::clamp(s.wl.z, -1.0f, 1.0f)),
                  theta_v = std::acos(std::clamp(s.wv.z, -1.0f, 1.0f));
     const double turn = std::remainder(std::atan2(s.wl.y, s.wl.x) - std::atan2(s.wv.y, s.wv.x), 2 * kPiD);

@@ -45,7 +45,7 @@ void warn_of_few_samples(size_t samples, bool all_data, std::vector<std::string>
                      std::to_string(judges) + (all_data ? " fitted samples" : " held-out samples"));
 }
 
-void warn_of_azimuth(std::span<const ScatteredSample> samples, std::vector<std::string>& warnings) {
+void warn_of_azimuth(std::span<const IrregularSample> samples, std::vector<std::string>& warnings) {
   const std::optional<AzimuthSpread> spread = azimuth_spread(samples);
   if (!spread || spread->turned < kBrushed || spread->turned < 2 * spread->alike) return;
   warnings.push_back("the surface is anisotropic: " + std::to_string(spread->turned_pairs) +
@@ -198,9 +198,9 @@ double median(std::vector<float>& values) {
 
 }  // namespace
 
-std::optional<AzimuthSpread> azimuth_spread(std::span<const ScatteredSample> samples) {
+std::optional<AzimuthSpread> azimuth_spread(std::span<const IrregularSample> samples) {
   std::vector<Entry> entries;
-  for (const ScatteredSample& s : samples) {
+  for (const IrregularSample& s : samples) {
     const HalfDiff angles = half_diff(s.wl, s.wv);
     const float f = luminance(s.f);
     if (angles.theta_h < kUpright || !(f > 0.0f)) continue;

@@ -25,6 +25,6 @@ struct AzimuthSpread {
 };
 
 /// Nothing if there are fewer than 100 such pairs of either kind, too few to tell.
-std::optional<AzimuthSpread> azimuth_spread(std::span<const ScatteredSample> samples);
+std::optional<AzimuthSpread> azimuth_spread(std::span<const IrregularSample> samples);
 
 }  // namespace velour

@@ -28,13 +28,13 @@ constexpr int kIdleLobes = 2;
 // That share once growth by view errors has ended and only the picture error asks for more lobes.
 constexpr double kMinPictureGain = 0.03;
 
-OrderPoint order_point(const TrackedProblem& problem, const TrackedLobes& lobes) {
+OrderPoint order_point(const FitProblem& problem, const FitLobes& lobes) {
   OrderPoint point;
   point.lobes = lobes.model.lobe_count();
   point.parameter_bytes =
       ParametricBrdf::parameter_bytes(static_cast<uint64_t>(lobes.x.size()), lobes.model.space.size());
   double weight = 0;
-  for (const TrackedView& v : problem.views()) {
+  for (const FitView& v : problem.views()) {
     if (v.guide) continue;
     const double error = reported_error(problem.views(), v);
     point.worst = std::max(point.worst, kViewGoalShare * error / v.goal);
@@ -46,19 +46,19 @@ OrderPoint order_point(const TrackedProblem& problem, const TrackedLobes& lobes)
 }
 
 /// Raises the weights of views that are far from their goal.
-void reweight(TrackedProblem& problem) {
+void reweight(FitProblem& problem) {
   double square = 0, mean = 0, count = 0;
-  for (const TrackedView& v : problem.views()) {
+  for (const FitView& v : problem.views()) {
     if (!v.guide) square += (v.error / v.goal) * (v.error / v.goal), ++count;
   }
   const double middle = std::sqrt(square / count);
   if (!(middle > 0)) return;
-  for (TrackedView& v : problem.views()) {
+  for (FitView& v : problem.views()) {
     if (v.guide) continue;
     v.weight *= std::clamp(v.error / v.goal / middle, 0.6, 1.8);
     mean += v.weight / count;
   }
-  for (TrackedView& v : problem.views()) {
+  for (FitView& v : problem.views()) {
     if (!v.guide) v.weight /= mean;
   }
   problem.weigh_for_pictures();
@@ -72,7 +72,7 @@ bool is_color(const ParametricBrdf& model, Index i) {
 double half(double value) { return glm::unpackHalf1x16(glm::packHalf1x16(static_cast<float>(value))); }
 
 /// Rounds to half floats, as in the file: shapes first, so that the colors can compensate.
-void round_to_half(TrackedProblem& problem, TrackedLobes& lobes) {
+void round_to_half(FitProblem& problem, FitLobes& lobes) {
   for (const bool colors : {false, true}) {
     for (Index i = 0; i < lobes.x.size(); ++i) {
       if (is_color(lobes.model, i) == colors) lobes.x[i] = half(lobes.x[i]);
@@ -83,14 +83,14 @@ void round_to_half(TrackedProblem& problem, TrackedLobes& lobes) {
 }
 
 /// Mean over the views, weighted by the projected area, cos(theta_v).
-double mean_picture_error(const TrackedProblem& problem) {
+double mean_picture_error(const FitProblem& problem) {
   double sum = 0, weight = 0;
-  for (const TrackedView& v : problem.views()) sum += v.wv.z * v.picture_error, weight += v.wv.z;
+  for (const FitView& v : problem.views()) sum += v.wv.z * v.picture_error, weight += v.wv.z;
   return sum / std::max(weight, 1e-12);
 }
 
 /// Adds the picture error to the cost, and lobes as long as they lower it enough.
-void grow_for_pictures(TrackedProblem& problem, TrackedLobes& lobes, int most, std::vector<OrderPoint>& points) {
+void grow_for_pictures(FitProblem& problem, FitLobes& lobes, int most, std::vector<OrderPoint>& points) {
   constexpr LobeSpace kBoth[] = {LobeSpace::half, LobeSpace::light};
   problem.weigh_for_pictures();
   refine(problem, lobes, kPolishSteps, kPolishLeast);
@@ -103,7 +103,7 @@ void grow_for_pictures(TrackedProblem& problem, TrackedLobes& lobes, int most, s
 }
 
 /// Final refinement for a number of lobes: reweights views that are far from their goal, then rounds.
-void polish(TrackedProblem& problem, TrackedLobes& lobes) {
+void polish(FitProblem& problem, FitLobes& lobes) {
   refine(problem, lobes, kPolishSteps, kPolishLeast);
   for (int round = 0; round < kPolishRounds; ++round) {
     reweight(problem);
@@ -112,10 +112,10 @@ void polish(TrackedProblem& problem, TrackedLobes& lobes) {
   round_to_half(problem, lobes);
 }
 
-void record_errors(const TrackedProblem& problem, TrackedFit& fit) {
+void record_errors(const FitProblem& problem, GrowthResult& fit) {
   fit.views.clear();
   fit.error.clear();
-  for (const TrackedView& v : problem.views()) {
+  for (const FitView& v : problem.views()) {
     if (v.guide) continue;
     fit.views.push_back(v.wv);
     fit.error.push_back(reported_error(problem.views(), v));
@@ -124,9 +124,9 @@ void record_errors(const TrackedProblem& problem, TrackedFit& fit) {
 
 }  // namespace
 
-class TrackedGrowth::Growth {
+class LobeGrowth::Growth {
  public:
-  Growth(TrackedProblem& problem, const TrackedFitOptions& options, Progress& progress)
+  Growth(FitProblem& problem, const GrowthOptions& options, Progress& progress)
       : problem_(problem), options_(options), progress_(progress) {
     lobes_.model.isotropic = options.isotropic;
     lobes_.model.cells = options.cells;
@@ -162,16 +162,16 @@ class TrackedGrowth::Growth {
     }
   }
 
-  const TrackedLobes& lobes() const { return lobes_; }
+  const FitLobes& lobes() const { return lobes_; }
   const std::vector<OrderPoint>& points() const { return points_; }
 
  private:
   bool good_enough() const { return points_.back().worst <= kViewGoalShare; }
 
-  TrackedProblem& problem_;
-  const TrackedFitOptions& options_;
+  FitProblem& problem_;
+  const GrowthOptions& options_;
   Progress& progress_;
-  TrackedLobes lobes_;
+  FitLobes lobes_;
   std::vector<OrderPoint> points_;
   int idle_ = 0;       // lobes in a row that gained next to nothing
   bool done_ = false;  // no more lobes are wanted
@@ -187,8 +187,8 @@ double beside_fold(double tolerance, double fold) {
   return std::min(tolerance, std::sqrt(allowed * allowed - fold * fold));
 }
 
-TrackedProblem problem_of(const std::vector<MeasuredSlice>& slices, const TrackedFitOptions& options,
-                          const Progress& progress) {
+FitProblem problem_of(const std::vector<MeasuredSlice>& slices, const GrowthOptions& options,
+                      const Progress& progress) {
   const auto goal = [&options](const MeasuredSlice& slice) {
     const double theta_v = std::acos(std::clamp(Vec3d(slice.wv).z, -1.0, 1.0));
     return kViewGoalShare * beside_fold(tolerance_at(options.tolerance, theta_v), slice.fold);
@@ -200,19 +200,19 @@ TrackedProblem problem_of(const std::vector<MeasuredSlice>& slices, const Tracke
 }  // namespace
 
 /// Greedy growth may start in the wrong space and never recover, so the first lobes are also tried in half space alone.
-struct TrackedGrowth::State {
-  TrackedFitOptions options;
-  TrackedProblem problem, problem_of_half;
+struct LobeGrowth::State {
+  GrowthOptions options;
+  FitProblem problem, problem_of_half;
   Growth both, half;
 
-  State(const std::vector<MeasuredSlice>& slices, const TrackedFitOptions& wanted, Progress& progress)
+  State(const std::vector<MeasuredSlice>& slices, const GrowthOptions& wanted, Progress& progress)
       : options(wanted),
         problem(problem_of(slices, options, progress)),
         problem_of_half(problem),
         both(problem, options, progress),
         half(problem_of_half, options, progress) {}
 
-  TrackedFit fit(int most);
+  GrowthResult fit(int most);
 
  private:
   const Growth& grown(int most) {
@@ -236,23 +236,22 @@ struct TrackedGrowth::State {
   bool begun = false, by_half = false;
 };
 
-TrackedGrowth::TrackedGrowth(const std::vector<MeasuredSlice>& slices, const TrackedFitOptions& options,
-                             Progress& progress)
+LobeGrowth::LobeGrowth(const std::vector<MeasuredSlice>& slices, const GrowthOptions& options, Progress& progress)
     : state_(std::make_unique<State>(slices, options, progress)) {}
-TrackedGrowth::~TrackedGrowth() = default;
+LobeGrowth::~LobeGrowth() = default;
 
-TrackedFit TrackedGrowth::fit(int most) {
-  TrackedFit fit;
+GrowthResult LobeGrowth::fit(int most) {
+  GrowthResult fit;
   in_one_arena(state_->options.threads, [&] { fit = state_->fit(most); });
   return fit;
 }
 
-TrackedFit TrackedGrowth::State::fit(int most) {
+GrowthResult LobeGrowth::State::fit(int most) {
   const Growth& growth = grown(most);
-  TrackedLobes lobes = growth.lobes();
-  TrackedFit fit;
+  FitLobes lobes = growth.lobes();
+  GrowthResult fit;
   fit.order.points = growth.points();
-  TrackedProblem own = problem;  // a copy, because its weights change
+  FitProblem own = problem;  // a copy, because its weights change
   own.evaluate(lobes.model, lobes.x);
   if (lobes.model.lobe_count() > 0) {
     grow_for_pictures(own, lobes, most, fit.order.points);
@@ -267,16 +266,16 @@ TrackedFit TrackedGrowth::State::fit(int most) {
   return fit;
 }
 
-TrackedFit fit_tracked(const std::vector<MeasuredSlice>& slices, const TrackedFitOptions& options, Progress& progress) {
-  return TrackedGrowth(slices, options, progress).fit(options.max_lobes);
+GrowthResult grow_lobes(const std::vector<MeasuredSlice>& slices, const GrowthOptions& options, Progress& progress) {
+  return LobeGrowth(slices, options, progress).fit(options.max_lobes);
 }
 
-void judge_again(const std::vector<MeasuredSlice>& slices, TrackedFitOptions options, TrackedFit& fit,
+void judge_again(const std::vector<MeasuredSlice>& slices, GrowthOptions options, GrowthResult& fit,
                  const Progress& progress) {
   options.cells = fit.brdf.cells;
   options.views = fit.brdf.views;
-  TrackedProblem problem = problem_of(slices, options, progress);
-  for (TrackedView& v : problem.views()) v.error = error_of(fit.brdf, v);
+  FitProblem problem = problem_of(slices, options, progress);
+  for (FitView& v : problem.views()) v.error = error_of(fit.brdf, v);
   record_errors(problem, fit);
 }
 

@@ -11,7 +11,7 @@
 
 namespace velour {
 
-struct TrackedFitOptions {
+struct GrowthOptions {
   bool isotropic = true;
   int cells = 10;
   ViewRange views;
@@ -21,22 +21,22 @@ struct TrackedFitOptions {
   int threads = 0;
 };
 
-struct TrackedFit {
+struct GrowthResult {
   ParametricBrdf brdf;  // control values are half floats
   std::vector<Vec3d> views;
   std::vector<double> error;  // relative L2 of each view, channels weighted as in luminance
   OrderCurve order;           // the growth, then the final model
 };
 
-/// Fits with increasing numbers of lobes that share their growth. Each equals fit_tracked() with that maximum.
-class TrackedGrowth {
+/// Fits with increasing numbers of lobes that share their growth. Each equals grow_lobes() with that maximum.
+class LobeGrowth {
  public:
   /// options.max_lobes only scales the progress.
-  TrackedGrowth(const std::vector<MeasuredSlice>& slices, const TrackedFitOptions& options, Progress& progress);
-  ~TrackedGrowth();
+  LobeGrowth(const std::vector<MeasuredSlice>& slices, const GrowthOptions& options, Progress& progress);
+  ~LobeGrowth();
 
   /// Fit with at most `most` lobes, which must not decrease from call to call.
-  TrackedFit fit(int most);
+  GrowthResult fit(int most);
 
  private:
   class Growth;
@@ -44,10 +44,10 @@ class TrackedGrowth {
   std::unique_ptr<State> state_;
 };
 
-TrackedFit fit_tracked(const std::vector<MeasuredSlice>& slices, const TrackedFitOptions& options, Progress& progress);
+GrowthResult grow_lobes(const std::vector<MeasuredSlice>& slices, const GrowthOptions& options, Progress& progress);
 
 /// Recomputes the errors of `fit` after a change of its model.
-void judge_again(const std::vector<MeasuredSlice>& slices, TrackedFitOptions options, TrackedFit& fit,
+void judge_again(const std::vector<MeasuredSlice>& slices, GrowthOptions options, GrowthResult& fit,
                  const Progress& progress);
 
 }  // namespace velour

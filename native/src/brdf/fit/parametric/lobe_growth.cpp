@@ -17,17 +17,16 @@ constexpr int kFirstSteps = 3, kGrowthSteps = 20;
 constexpr double kGrowthTolerance = 3e-3;
 
 /// Trials after their first steps: a new lobe in each of the `spaces` and, if samples are dense, a split lobe.
-std::vector<TrackedLobes> first_steps(const TrackedProblem& problem, const TrackedLobes& lobes,
-                                      std::span<const LobeSpace> spaces) {
-  std::vector<std::optional<TrackedLobes>> found(spaces.size() + (problem.dense() ? 1 : 0));
+std::vector<FitLobes> first_steps(const FitProblem& problem, const FitLobes& lobes, std::span<const LobeSpace> spaces) {
+  std::vector<std::optional<FitLobes>> found(spaces.size() + (problem.dense() ? 1 : 0));
   parallel_pieces(found.size(), problem.threads(), problem.progress(), [&](size_t i) {
     found[i] = i < spaces.size() ? with_best_lobe(problem, lobes, spaces[i]) : with_split_lobe(problem, lobes);
     if (!found[i]) return;
-    TrackedProblem own = problem;
+    FitProblem own = problem;
     refine(own, *found[i], kFirstSteps, kGrowthTolerance);
   });
-  std::vector<TrackedLobes> out;
-  for (std::optional<TrackedLobes>& trial : found) {
+  std::vector<FitLobes> out;
+  for (std::optional<FitLobes>& trial : found) {
     if (trial) out.push_back(std::move(*trial));
   }
   return out;
@@ -35,9 +34,9 @@ std::vector<TrackedLobes> first_steps(const TrackedProblem& problem, const Track
 
 }  // namespace
 
-bool add_lobe(TrackedProblem& problem, TrackedLobes& lobes, std::span<const LobeSpace> spaces) {
+bool add_lobe(FitProblem& problem, FitLobes& lobes, std::span<const LobeSpace> spaces) {
   problem.evaluate(lobes.model, lobes.x);  // the search reads its residuals
-  std::vector<TrackedLobes> trials = first_steps(problem, lobes, spaces);
+  std::vector<FitLobes> trials = first_steps(problem, lobes, spaces);
   const auto best = std::min_element(trials.begin(), trials.end(), costs_less);
   if (best != trials.end()) refine(problem, *best, kGrowthSteps - kFirstSteps, kGrowthTolerance);
   const bool better = best != trials.end() && best->cost < lobes.cost;
@@ -46,11 +45,11 @@ bool add_lobe(TrackedProblem& problem, TrackedLobes& lobes, std::span<const Lobe
   return better;
 }
 
-bool exchange_lobe(TrackedProblem& problem, TrackedLobes& lobes) {
+bool exchange_lobe(FitProblem& problem, FitLobes& lobes) {
   if (lobes.model.lobe_count() < 2) return false;
-  TrackedLobes fewer;
+  FitLobes fewer;
   for (Index j = 0; j < lobes.model.lobe_count(); ++j) {
-    TrackedLobes trial = without_lobe(lobes, j);
+    FitLobes trial = without_lobe(lobes, j);
     trial.cost = problem.evaluate(trial.model, trial.x);
     if (j == 0 || trial.cost < fewer.cost) fewer = std::move(trial);
   }
@@ -73,8 +72,8 @@ Index rows_of(const ParametricBrdf& model) {
 
 }  // namespace
 
-TrackedLobes without_lobe(const TrackedLobes& lobes, Index lobe) {
-  TrackedLobes out = lobes;
+FitLobes without_lobe(const FitLobes& lobes, Index lobe) {
+  FitLobes out = lobes;
   out.model.space.erase(out.model.space.begin() + lobe);
   const Index rows = rows_of(lobes.model), count = lobes.model.lobe_count();
   out.x.resize(rows * (count - 1));
@@ -85,8 +84,8 @@ TrackedLobes without_lobe(const TrackedLobes& lobes, Index lobe) {
   return out;
 }
 
-TrackedLobes only_lobe(const TrackedLobes& lobes, Index lobe) {
-  TrackedLobes out = lobes;
+FitLobes only_lobe(const FitLobes& lobes, Index lobe) {
+  FitLobes out = lobes;
   out.model.space.assign(1, lobes.model.space[static_cast<size_t>(lobe)]);
   const Index rows = rows_of(lobes.model), count = lobes.model.lobe_count();
   out.x.resize(rows);
@@ -94,8 +93,8 @@ TrackedLobes only_lobe(const TrackedLobes& lobes, Index lobe) {
   return out;
 }
 
-TrackedLobes joined(const TrackedLobes& lobes, const TrackedLobes& more) {
-  TrackedLobes out = lobes;
+FitLobes joined(const FitLobes& lobes, const FitLobes& more) {
+  FitLobes out = lobes;
   out.model.space.insert(out.model.space.end(), more.model.space.begin(), more.model.space.end());
   const Index rows = rows_of(lobes.model), first = lobes.model.lobe_count(), second = more.model.lobe_count();
   out.x.resize(rows * (first + second));
@@ -119,8 +118,8 @@ constexpr int kSplitSteps = 3;
 constexpr double kSplitTolerance = 1e-3;
 
 /// The half on `side` (1 or -1) of `lobe`, which has a single lobe.
-TrackedLobes half_of(const TrackedLobes& lobe, double side) {
-  TrackedLobes half = lobe;
+FitLobes half_of(const FitLobes& lobe, double side) {
+  FitLobes half = lobe;
   const Index parameters = lobe.model.parameter_count();
   for (Index node = 0; node < lobe.x.size(); node += parameters) {
     const double width = std::exp(-0.5 * std::max(lobe.x[node + P::kLogBandwidth], 0.0));
@@ -137,21 +136,21 @@ TrackedLobes half_of(const TrackedLobes& lobe, double side) {
 /// The halves of a lobe, fitted to the residual of the others.
 struct Split {
   Index lobe;
-  TrackedLobes halves;
+  FitLobes halves;
 
-  void refine_beside(const TrackedProblem& problem, const TrackedLobes& one, int steps) {
-    TrackedProblem left = problem.remainder_with(one.model, one.x);
+  void refine_beside(const FitProblem& problem, const FitLobes& one, int steps) {
+    FitProblem left = problem.remainder_with(one.model, one.x);
     refine(left, halves, steps, kSplitTolerance);
   }
 };
 
 }  // namespace
 
-std::optional<TrackedLobes> with_split_lobe(const TrackedProblem& problem, const TrackedLobes& lobes) {
+std::optional<FitLobes> with_split_lobe(const FitProblem& problem, const FitLobes& lobes) {
   const auto cheaper = [](const Split& a, const Split& b) { return costs_less(a.halves, b.halves); };
   std::vector<Split> splits;
   for (Index j = 0; j < lobes.model.lobe_count(); ++j) {
-    const TrackedLobes one = only_lobe(lobes, j);
+    const FitLobes one = only_lobe(lobes, j);
     splits.push_back({j, joined(half_of(one, 1), half_of(one, -1))});
   }
   const auto refine_all = [&](int steps) {

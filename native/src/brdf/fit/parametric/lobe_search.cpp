@@ -86,7 +86,7 @@ struct Start {
   double gain = 0;
 };
 
-Start start_at(LobeSpace space, const LobeCandidate& candidate, const TrackedView& view) {
+Start start_at(LobeSpace space, const LobeCandidate& candidate, const FitView& view) {
   const float* residual[3] = {view.residual[0].data(), view.residual[1].data(), view.residual[2].data()};
   const Projection p = project_warped(candidate.at(space, view.wv), view.wv, view.samples, residual, kStride);
   Start start;
@@ -100,12 +100,12 @@ Start start_at(LobeSpace space, const LobeCandidate& candidate, const TrackedVie
 }
 
 /// The control values of the new lobe: [node][parameter].
-Eigen::MatrixXd control_values(LobeSpace space, const LobeCandidate& candidate, const std::vector<TrackedView>& views,
+Eigen::MatrixXd control_values(LobeSpace space, const LobeCandidate& candidate, const std::vector<FitView>& views,
                                const P& model) {
   const ViewSpline spline = model.spline();
   std::vector<Start> starts;
   std::array<double, 3> most{};
-  for (const TrackedView& v : views) {
+  for (const FitView& v : views) {
     starts.push_back(start_at(space, candidate, v));
     for (size_t c = 0; c < 3; ++c) most[c] = std::max(most[c], starts.back().coefficient[c]);
   }
@@ -134,8 +134,8 @@ Eigen::MatrixXd control_values(LobeSpace space, const LobeCandidate& candidate, 
 }
 
 /// The model of `lobes` with a single lobe of the given space and control values.
-TrackedLobes alone(const TrackedLobes& lobes, LobeSpace space, const Eigen::MatrixXd& control) {
-  TrackedLobes out = lobes;
+FitLobes alone(const FitLobes& lobes, LobeSpace space, const Eigen::MatrixXd& control) {
+  FitLobes out = lobes;
   out.model.space.assign(1, space);
   out.x = control.reshaped<Eigen::RowMajor>();
   return out;
@@ -161,17 +161,17 @@ std::vector<size_t> most_promising(const std::vector<LobeCandidate>& all, const 
 
 }  // namespace
 
-std::optional<TrackedLobes> with_best_lobe(const TrackedProblem& problem, const TrackedLobes& lobes, LobeSpace space) {
+std::optional<FitLobes> with_best_lobe(const FitProblem& problem, const FitLobes& lobes, LobeSpace space) {
   const std::vector<LobeCandidate> all =
       space == LobeSpace::half ? half_candidates(lobes.model.isotropic) : light_candidates(lobes.model.isotropic);
   std::vector<double> gain(all.size(), 0.0);
   parallel_pieces(all.size(), problem.threads(), problem.progress(), [&](size_t i) {
-    for (const TrackedView& v : problem.views()) gain[i] += start_at(space, all[i], v).gain;
+    for (const FitView& v : problem.views()) gain[i] += start_at(space, all[i], v).gain;
   });
   const std::vector<size_t> tried = most_promising(all, gain);
-  std::vector<TrackedLobes> trials(tried.size());
+  std::vector<FitLobes> trials(tried.size());
   parallel_pieces(tried.size(), problem.threads(), problem.progress(), [&](size_t t) {
-    TrackedProblem remainder = problem.remainder();
+    FitProblem remainder = problem.remainder();
     trials[t] = alone(lobes, space, control_values(space, all[tried[t]], problem.views(), lobes.model));
     refine(remainder, trials[t], kTrySteps, kTryLeast);
   });

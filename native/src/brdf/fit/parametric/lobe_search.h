@@ -11,6 +11,6 @@ namespace velour {
 /// ranked by the gain of each over all views with its best coefficient at each. The few best are fitted separately to
 /// the residual of `lobes`, and the best of these is added. The problem must hold the residuals of `lobes`. Nothing if
 /// no shape gains anything.
-std::optional<TrackedLobes> with_best_lobe(const TrackedProblem& problem, const TrackedLobes& lobes, LobeSpace space);
+std::optional<FitLobes> with_best_lobe(const FitProblem& problem, const FitLobes& lobes, LobeSpace space);
 
 }  // namespace velour

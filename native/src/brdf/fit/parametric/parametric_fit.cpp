@@ -40,20 +40,20 @@ MeasuredSlices parametric_slices(const Measurement& measurement, const FitOption
   return read_slices(measurement, grid_for(measurement), options, progress);
 }
 
-TrackedFitOptions tracked_options(const Measurement& measurement, const FitOptions& options) {
-  TrackedFitOptions tracked;
-  tracked.isotropic = measurement.isotropic();
-  tracked.cells = measurement.samples().empty() ? kTableCells : kSampleCells;
-  tracked.max_lobes = options.max_lobes;
+GrowthOptions growth_options_of(const Measurement& measurement, const FitOptions& options) {
+  GrowthOptions growth_options;
+  growth_options.isotropic = measurement.isotropic();
+  growth_options.cells = measurement.samples().empty() ? kTableCells : kSampleCells;
+  growth_options.max_lobes = options.max_lobes;
   if (!measurement.samples().empty()) {
-    tracked.max_lobes = std::min(tracked.max_lobes, most_lobes(measurement, tracked.cells));
+    growth_options.max_lobes = std::min(growth_options.max_lobes, most_lobes(measurement, growth_options.cells));
   }
-  tracked.tolerance = options.tolerance;
-  tracked.threads = options.threads;
-  return tracked;
+  growth_options.tolerance = options.tolerance;
+  growth_options.threads = options.threads;
+  return growth_options;
 }
 
-Model parametric_model(const Measurement& measurement, const TrackedFit& fit, const FitOptions& options,
+Model parametric_model(const Measurement& measurement, const GrowthResult& fit, const FitOptions& options,
                        Progress& progress) {
   std::vector<FittedView> views;
   for (size_t i = 0; i < fit.views.size(); ++i) views.push_back({Vec3(fit.views[i]), fit.error[i]});
@@ -71,12 +71,12 @@ Model fit_parametric(const Measurement& measurement, const FitOptions& options, 
   progress.stage("sampling", 0.0, 0.1 * share);
   const MeasuredSlices measured = parametric_slices(measurement, options, progress);
   progress.stage("fitting", 0.1 * share, 0.9 * share);
-  const TrackedFitOptions tracked = tracked_options(measurement, options);
-  TrackedFit fit = fit_tracked(measured.slices, tracked, progress);
+  const GrowthOptions growth_options = growth_options_of(measurement, options);
+  GrowthResult fit = grow_lobes(measured.slices, growth_options, progress);
   progress.stage("checking the model", 0.9 * share, share);
   fit.brdf.symmetric = options.symmetric;
   const bool limited = options.limit_albedo && limit_albedo(fit.brdf, options.threads, progress);
-  if (limited || options.symmetric) judge_again(measured.slices, tracked, fit, progress);
+  if (limited || options.symmetric) judge_again(measured.slices, growth_options, fit, progress);
   Model model = parametric_model(measurement, fit, options, progress);
   warn_of_slices(measured, model.fit.warnings);
   progress.check();

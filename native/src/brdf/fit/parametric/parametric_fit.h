@@ -19,9 +19,9 @@ Model fit_parametric(const Measurement& measurement, const FitOptions& options, 
 /// The slices that a parametric fit reads.
 MeasuredSlices parametric_slices(const Measurement& measurement, const FitOptions& options, Progress& progress);
 /// Options of the fit to all views.
-TrackedFitOptions tracked_options(const Measurement& measurement, const FitOptions& options);
+GrowthOptions growth_options_of(const Measurement& measurement, const FitOptions& options);
 /// The model of `fit` with its record, except for the time and the warnings about slices.
-Model parametric_model(const Measurement& measurement, const TrackedFit& fit, const FitOptions& options,
+Model parametric_model(const Measurement& measurement, const GrowthResult& fit, const FitOptions& options,
                        Progress& progress);
 
 }  // namespace velour

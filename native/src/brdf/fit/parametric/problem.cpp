@@ -29,12 +29,12 @@ void for_each_triple(const ViewSpline& spline, const Use& use) {
 
 }  // namespace
 
-TrackedProblem::TrackedProblem(const std::vector<MeasuredSlice>& slices, const ViewSpline& spline,
-                               const std::function<double(const MeasuredSlice&)>& goal, bool seen_evenly, int threads,
-                               const Progress& progress)
+FitProblem::FitProblem(const std::vector<MeasuredSlice>& slices, const ViewSpline& spline,
+                       const std::function<double(const MeasuredSlice&)>& goal, bool seen_evenly, int threads,
+                       const Progress& progress)
     : threads_(threads), progress_(progress) {
   for (const MeasuredSlice& slice : slices) {
-    TrackedView view(slice, spline, goal(slice) / std::sqrt(slice.weight));
+    FitView view(slice, spline, goal(slice) / std::sqrt(slice.weight));
     if (!(view.energy > 0)) continue;
     // Samples of a goniometer have a weight of one each, and nothing between them was measured.
     if (seen_evenly && !slice.interpolated && !(slice.energy > 0)) {
@@ -45,50 +45,49 @@ TrackedProblem::TrackedProblem(const std::vector<MeasuredSlice>& slices, const V
   }
 }
 
-double TrackedProblem::cost(const ParametricBrdf& model, const Eigen::VectorXd& x) const {
+double FitProblem::cost(const ParametricBrdf& model, const Eigen::VectorXd& x) const {
   double sum = x.dot(smoothness_gradient(model, x));
-  for (const TrackedView& v : views_) {
+  for (const FitView& v : views_) {
     const double plain = v.error / v.goal, pictures = v.picture_error / kPictureGoal;
     sum += v.weight * plain * plain + pictures * pictures + kHiding * v.excess;
   }
   return sum;
 }
 
-void TrackedProblem::weigh_for_pictures() {
-  for (TrackedView& v : views_) v.weigh_for_pictures();
+void FitProblem::weigh_for_pictures() {
+  for (FitView& v : views_) v.weigh_for_pictures();
 }
 
-TrackedProblem TrackedProblem::remainder() const {
-  TrackedProblem out = *this;
-  for (TrackedView& v : out.views_) {
+FitProblem FitProblem::remainder() const {
+  FitProblem out = *this;
+  for (FitView& v : out.views_) {
     for (int c = 0; c < 3; ++c) v.samples.replace_target(c, v.residual[c]);
   }
   return out;
 }
 
-TrackedProblem TrackedProblem::remainder_with(const ParametricBrdf& model, const Eigen::VectorXd& x) const {
-  TrackedProblem out = remainder();
+FitProblem FitProblem::remainder_with(const ParametricBrdf& model, const Eigen::VectorXd& x) const {
+  FitProblem out = remainder();
   parallel_pieces(views_.size(), threads_, progress_, [&](size_t i) { add_to_targets(model, x, out.views_[i]); });
   return out;
 }
 
-double TrackedProblem::evaluate(const ParametricBrdf& model, const Eigen::VectorXd& x) {
+double FitProblem::evaluate(const ParametricBrdf& model, const Eigen::VectorXd& x) {
   parallel_pieces(views_.size(), threads_, progress_, [&](size_t i) { leave_residual(model, x, views_[i]); });
   return cost(model, x);
 }
 
-double TrackedProblem::linearize(const ParametricBrdf& model, const Eigen::VectorXd& x,
-                                 std::vector<LocalNormal>& local) {
+double FitProblem::linearize(const ParametricBrdf& model, const Eigen::VectorXd& x, std::vector<LocalNormal>& local) {
   local.resize(views_.size());
   parallel_pieces(views_.size(), threads_, progress_, [&](size_t i) { local[i] = linearized(model, x, views_[i]); });
   return cost(model, x);
 }
 
-double reported_error(const std::vector<TrackedView>& views, const TrackedView& view) {
+double reported_error(const std::vector<FitView>& views, const FitView& view) {
   if (view.energy <= view.samples.luminance_energy()) return view.error;
-  const auto degrees = [](const TrackedView& v) { return std::atan2(v.wv.x, v.wv.z) * 180 / kPiD; };
+  const auto degrees = [](const FitView& v) { return std::atan2(v.wv.x, v.wv.z) * 180 / kPiD; };
   double sum = 0;
-  for (const TrackedView& v : views) {
+  for (const FitView& v : views) {
     if (!v.guide && std::abs(degrees(v) - degrees(view)) <= kHeldOutGroup) sum += v.error * v.error * v.energy;
   }
   return std::sqrt(sum / view.energy);
@@ -107,7 +106,7 @@ Eigen::VectorXd smoothness_gradient(const ParametricBrdf& model, const Eigen::Ve
   return out;
 }
 
-Eigen::VectorXd spline_through(const std::vector<TrackedView>& views, const ViewSpline& spline,
+Eigen::VectorXd spline_through(const std::vector<FitView>& views, const ViewSpline& spline,
                                const std::vector<double>& value, bool odd) {
   constexpr double kPull = 1e-3, kRidge = 1e-6;
   const Index nodes = spline.node_count();

@@ -18,16 +18,16 @@ inline constexpr double kSmoothness = 1e-4;
 /// cost(x) = sum over the views of weight (error / goal)^2 + kHiding excess + kSmoothness x the squared second
 /// differences of the control values; after weigh_for_pictures() also (picture_error / kPictureGoal)^2 of each view.
 /// The unknowns x are the control values of a model, in its own order (ParametricBrdf::index).
-class TrackedProblem {
+class FitProblem {
  public:
   /// `goal` returns the error goal of a view. Black views are left out. `threads` 0: all. `seen_evenly`: the weights of
   /// table samples are their solid angles alone, which determine the picture weights and the minimum width of lobes.
-  TrackedProblem(const std::vector<MeasuredSlice>& slices, const ViewSpline& spline,
-                 const std::function<double(const MeasuredSlice&)>& goal, bool seen_evenly, int threads,
-                 const Progress& progress);
+  FitProblem(const std::vector<MeasuredSlice>& slices, const ViewSpline& spline,
+             const std::function<double(const MeasuredSlice&)>& goal, bool seen_evenly, int threads,
+             const Progress& progress);
 
-  std::vector<TrackedView>& views() { return views_; }
-  const std::vector<TrackedView>& views() const { return views_; }
+  std::vector<FitView>& views() { return views_; }
+  const std::vector<FitView>& views() const { return views_; }
   /// Adds the picture error to the cost of views with picture weights. To be called again after view weights change.
   void weigh_for_pictures();
   /// Whether the samples determine how narrow a lobe may be. With few irregular ones, freely moving lobes follow noise.
@@ -38,29 +38,29 @@ class TrackedProblem {
   /// Returns the cost; stores errors and residuals in the views. `model` gives the lobes' spaces and the order of x.
   double evaluate(const ParametricBrdf& model, const Eigen::VectorXd& x);
   /// The problem whose targets are the residuals of the last evaluate() or linearize().
-  TrackedProblem remainder() const;
+  FitProblem remainder() const;
   /// remainder() with some of the lobes, those of `x`, added back.
-  TrackedProblem remainder_with(const ParametricBrdf& model, const Eigen::VectorXd& x) const;
+  FitProblem remainder_with(const ParametricBrdf& model, const Eigen::VectorXd& x) const;
   /// Same as evaluate(), and computes the matrices of the views.
   double linearize(const ParametricBrdf& model, const Eigen::VectorXd& x, std::vector<LocalNormal>& local);
 
  private:
   double cost(const ParametricBrdf& model, const Eigen::VectorXd& x) const;
 
-  std::vector<TrackedView> views_;
+  std::vector<FitView> views_;
   int threads_;
   const Progress& progress_;
 };
 
 /// Error of a view as reported: for bins of irregular samples, that of all bins within kHeldOutGroup together.
-double reported_error(const std::vector<TrackedView>& views, const TrackedView& view);
+double reported_error(const std::vector<FitView>& views, const FitView& view);
 
 /// Half the gradient of the smoothness penalty, which is linear in x.
 Eigen::VectorXd smoothness_gradient(const ParametricBrdf& model, const Eigen::VectorXd& x);
 
 /// Control values of a spline of one parameter that approximates `value` at the views: least squares with slight
 /// smoothing. `odd`: for components along the view's azimuth.
-Eigen::VectorXd spline_through(const std::vector<TrackedView>& views, const ViewSpline& spline,
+Eigen::VectorXd spline_through(const std::vector<FitView>& views, const ViewSpline& spline,
                                const std::vector<double>& value, bool odd);
 
 }  // namespace velour

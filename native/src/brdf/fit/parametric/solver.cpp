@@ -20,7 +20,7 @@ constexpr double kMaxStep = 1;  // maximum change of a control value: a factor o
 
 int parameter_of(const P& model, Index i) { return static_cast<int>(i / model.lobe_count()) % model.parameter_count(); }
 
-Eigen::VectorXd stepped(const TrackedLobes& lobes, const Eigen::VectorXd& step) {
+Eigen::VectorXd stepped(const FitLobes& lobes, const Eigen::VectorXd& step) {
   Eigen::VectorXd x = lobes.x;
   for (Index i = 0; i < x.size(); ++i) {
     const int p = parameter_of(lobes.model, i);
@@ -31,7 +31,7 @@ Eigen::VectorXd stepped(const TrackedLobes& lobes, const Eigen::VectorXd& step) 
 
 /// 1 for unknowns that may move, otherwise 0. Unknowns at a bound that a step would cross are held, because the step of
 /// the others would rely on a move that the bound prevents.
-Eigen::VectorXd free_to_move(const TrackedLobes& lobes, const Eigen::VectorXd& gradient, Free free) {
+Eigen::VectorXd free_to_move(const FitLobes& lobes, const Eigen::VectorXd& gradient, Free free) {
   Eigen::VectorXd out = Eigen::VectorXd::Ones(lobes.x.size());
   for (Index i = 0; i < out.size(); ++i) {
     const int p = parameter_of(lobes.model, i);
@@ -94,12 +94,12 @@ double upper_bound(int parameter) {
   }
 }
 
-void refine(TrackedProblem& problem, TrackedLobes& lobes, int most, double least, Free free) {
+void refine(FitProblem& problem, FitLobes& lobes, int most, double least, Free free) {
   Damping damping;
   std::vector<LocalNormal> local;
   for (int step = 0; step < most; ++step) {
     lobes.cost = problem.linearize(lobes.model, lobes.x, local);
-    const TrackedNormal normal(lobes.model, problem, std::move(local), lobes.x);
+    const FitNormalEquations normal(lobes.model, problem, std::move(local), lobes.x);
     const Eigen::VectorXd moving = free_to_move(lobes, normal.gradient(), free);
     const double before = lobes.cost;
     for (int trial = 0; trial < kTrials && lobes.cost == before; ++trial) {
@@ -149,9 +149,9 @@ double dot(const Eigen::VectorXf& a, const Eigen::VectorXf& b) { return a.cast<d
 }  // namespace
 
 /// Inverse of the nodes' diagonal blocks, each scaled to a unit diagonal.
-class TrackedNormal::Preconditioner {
+class FitNormalEquations::Preconditioner {
  public:
-  Preconditioner(const TrackedNormal& normal, const Eigen::VectorXf& added, const Eigen::VectorXf& free)
+  Preconditioner(const FitNormalEquations& normal, const Eigen::VectorXf& added, const Eigen::VectorXf& free)
       : normal_(normal),
         scale_((normal.diagonal_ + added).cwiseSqrt().cwiseInverse().cwiseProduct(free)),
         inverse_(normal.block_.size()) {
@@ -178,13 +178,13 @@ class TrackedNormal::Preconditioner {
   }
 
  private:
-  const TrackedNormal& normal_;
+  const FitNormalEquations& normal_;
   Eigen::VectorXf scale_;
   std::vector<Eigen::LLT<Eigen::MatrixXf>> inverse_;
 };
 
 template <class Work>
-void TrackedNormal::for_each(size_t count, const Work& work) const {
+void FitNormalEquations::for_each(size_t count, const Work& work) const {
   const Index block = block_size(model_);
   const size_t runs = block < kMinShared ? 1 : std::min(kRuns, count);
   parallel_pieces(runs, problem_.threads(), problem_.progress(), [&](size_t run) {
@@ -192,10 +192,10 @@ void TrackedNormal::for_each(size_t count, const Work& work) const {
   });
 }
 
-TrackedNormal::TrackedNormal(const ParametricBrdf& model, const TrackedProblem& problem, std::vector<LocalNormal> local,
-                             const Eigen::VectorXd& x)
+FitNormalEquations::FitNormalEquations(const ParametricBrdf& model, const FitProblem& problem,
+                                       std::vector<LocalNormal> local, const Eigen::VectorXd& x)
     : model_(model), problem_(problem), local_(std::move(local)) {
-  const std::vector<TrackedView>& views = problem.views();
+  const std::vector<FitView>& views = problem.views();
   const Index block = block_size(model);
   block_.assign(static_cast<size_t>(model.spline().node_count()), Eigen::MatrixXf::Zero(block, block));
   gradient_ = smoothness_gradient(model, x);
@@ -220,8 +220,8 @@ TrackedNormal::TrackedNormal(const ParametricBrdf& model, const TrackedProblem& 
   }
 }
 
-Eigen::VectorXf TrackedNormal::product(const Eigen::VectorXf& x) const {
-  const std::vector<TrackedView>& views = problem_.views();
+Eigen::VectorXf FitNormalEquations::product(const Eigen::VectorXf& x) const {
+  const std::vector<FitView>& views = problem_.views();
   const Index block = block_size(model_);
   Eigen::MatrixXf curved(block, static_cast<Index>(views.size()));
   for_each(views.size(), [&](size_t v) {
@@ -243,7 +243,7 @@ Eigen::VectorXf TrackedNormal::product(const Eigen::VectorXf& x) const {
   return out;
 }
 
-Eigen::VectorXd TrackedNormal::step(double damping, const Eigen::VectorXd& free) const {
+Eigen::VectorXd FitNormalEquations::step(double damping, const Eigen::VectorXd& free) const {
   const Eigen::VectorXf allowed = free.cast<float>();
   const float ridge = kNormalRidge * diagonal_.mean() + 1e-12f;
   const Eigen::VectorXf added = (static_cast<float>(damping) * diagonal_).array() + ridge;
@@ -267,7 +267,7 @@ Eigen::VectorXd TrackedNormal::step(double damping, const Eigen::VectorXd& free)
   return step.cast<double>();
 }
 
-double TrackedNormal::promised(const Eigen::VectorXd& step) const {
+double FitNormalEquations::promised(const Eigen::VectorXd& step) const {
   return -step.dot(2 * gradient_ + product(step.cast<float>()).cast<double>());
 }
 

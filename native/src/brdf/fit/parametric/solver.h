@@ -12,11 +12,11 @@ namespace velour {
 // spline are weakly coupled, so about twenty iterations suffice, whatever the condition of a block. Computed in float,
 // like the residuals: a step is judged by the resulting cost, not by its last digits.
 
-class TrackedNormal {
+class FitNormalEquations {
  public:
   /// `local` are the views' matrices at `x`. Keeps references to `model` and `problem`.
-  TrackedNormal(const ParametricBrdf& model, const TrackedProblem& problem, std::vector<LocalNormal> local,
-                const Eigen::VectorXd& x);
+  FitNormalEquations(const ParametricBrdf& model, const FitProblem& problem, std::vector<LocalNormal> local,
+                     const Eigen::VectorXd& x);
 
   /// Solves (H + damping diag H) step = -gradient for the unknowns where `free` is 1; the others stay fixed.
   Eigen::VectorXd step(double damping, const Eigen::VectorXd& free) const;
@@ -33,7 +33,7 @@ class TrackedNormal {
   void for_each(size_t count, const Work& work) const;
 
   const ParametricBrdf& model_;
-  const TrackedProblem& problem_;
+  const FitProblem& problem_;
   std::vector<LocalNormal> local_;       // matrices in units of the cost
   std::vector<Eigen::VectorXf> weight_;  // tap weights of all views, [parameter][lobe]
   std::vector<size_t> first_tap_;        // first tap of each view in weight_
@@ -43,7 +43,7 @@ class TrackedNormal {
 };
 
 /// Lobes during a fit: a ParametricBrdf with its control values in double.
-struct TrackedLobes {
+struct FitLobes {
   ParametricBrdf model;  // spaces and order; its `control` is empty
   Eigen::VectorXd x;
   double cost = 0;
@@ -54,7 +54,7 @@ enum class Free { all, colors };
 
 /// Takes at most `most` steps, until one lowers the cost by less than `least` of it. Never worse than the start.
 /// Deterministic for any thread count.
-void refine(TrackedProblem& problem, TrackedLobes& lobes, int most, double least, Free free = Free::all);
+void refine(FitProblem& problem, FitLobes& lobes, int most, double least, Free free = Free::all);
 
 /// Bounds of the control values of a lobe, all of them half floats. They also bound its parameters at any view.
 double lower_bound(int parameter);

@@ -52,8 +52,7 @@ struct Linear {
   Eigen::VectorXd excess;        // excess of each lobe's log bandwidth
   Eigen::MatrixXd excess_slope;  // [slope][lobe]; zero without excess
 
-  Linear(const P& model, const Eigen::VectorXd& x, const TrackedView& view, bool slopes)
-      : columns(view.samples.padded()) {
+  Linear(const P& model, const Eigen::VectorXd& x, const FitView& view, bool slopes) : columns(view.samples.padded()) {
     const Index lobes = model.lobe_count();
     const int per_lobe = slopes ? slopes_of(model) : 0;
     const Eigen::MatrixXd parameters = parameters_at(model, x, view.taps);
@@ -78,14 +77,14 @@ struct Linear {
 };
 
 /// The view's residual: its targets less `coefficient` times the columns of the lobes.
-void subtract_lobes(const Linear& linear, const Eigen::MatrixXd& coefficient, TrackedView& view) {
+void subtract_lobes(const Linear& linear, const Eigen::MatrixXd& coefficient, FitView& view) {
   const float* const target[3] = {view.samples.target(0), view.samples.target(1), view.samples.target(2)};
   float* const residual[3] = {view.residual[0].data(), view.residual[1].data(), view.residual[2].data()};
   subtract_columns(linear.columns.first(static_cast<size_t>(coefficient.rows())), coefficient, target,
                    view.samples.padded(), residual);
 }
 
-void leave_residual(const Linear& linear, TrackedView& view) {
+void leave_residual(const Linear& linear, FitView& view) {
   subtract_lobes(linear, linear.coefficient, view);
   double plain = 0, pictures = 0;
   for (int c = 0; c < 3; ++c) {
@@ -98,7 +97,7 @@ void leave_residual(const Linear& linear, TrackedView& view) {
   view.excess = linear.excess.squaredNorm();
 }
 
-LocalNormal local_normal(const P& model, const Linear& linear, const TrackedView& view) {
+LocalNormal local_normal(const P& model, const Linear& linear, const FitView& view) {
   const Index lobes = model.lobe_count();
   const int slopes = slopes_of(model);
   const auto columns = linear.columns.first(static_cast<size_t>(lobes * (1 + slopes)));
@@ -161,7 +160,7 @@ LocalNormal local_normal(const P& model, const Linear& linear, const TrackedView
 
 }  // namespace
 
-TrackedView::TrackedView(const MeasuredSlice& slice, const ViewSpline& spline, double error_goal)
+FitView::FitView(const MeasuredSlice& slice, const ViewSpline& spline, double error_goal)
     : wv(glm::normalize(Vec3d(slice.wv))),
       taps(spline.at(wv)),
       fade(spline.isotropic() ? pole_fade(wv) : 1.0),
@@ -174,7 +173,7 @@ TrackedView::TrackedView(const MeasuredSlice& slice, const ViewSpline& spline, d
   for (int c = 0; c < 3; ++c) residual[c].assign(samples.target(c), samples.target(c) + samples.padded());
 }
 
-void TrackedView::weigh_for_pictures() {
+void FitView::weigh_for_pictures() {
   if (picture_weight.empty()) return;
   const auto ratio = static_cast<float>(picture_share());
   std::vector<float> factors(samples.count());
@@ -186,23 +185,23 @@ void TrackedView::weigh_for_pictures() {
   samples.scale_weights(factors);
 }
 
-void leave_residual(const ParametricBrdf& model, const Eigen::VectorXd& x, TrackedView& view) {
+void leave_residual(const ParametricBrdf& model, const Eigen::VectorXd& x, FitView& view) {
   leave_residual(Linear(model, x, view, false), view);
 }
 
-LocalNormal linearized(const ParametricBrdf& model, const Eigen::VectorXd& x, TrackedView& view) {
+LocalNormal linearized(const ParametricBrdf& model, const Eigen::VectorXd& x, FitView& view) {
   const Linear linear(model, x, view, true);
   leave_residual(linear, view);
   return local_normal(model, linear, view);
 }
 
-void add_to_targets(const ParametricBrdf& model, const Eigen::VectorXd& x, TrackedView& view) {
+void add_to_targets(const ParametricBrdf& model, const Eigen::VectorXd& x, FitView& view) {
   const Linear linear(model, x, view, false);
   subtract_lobes(linear, -linear.coefficient, view);
   for (int c = 0; c < 3; ++c) view.samples.replace_target(c, view.residual[c]);
 }
 
-double error_of(const ParametricBrdf& brdf, const TrackedView& view) {
+double error_of(const ParametricBrdf& brdf, const FitView& view) {
   const SliceSamples& samples = view.samples;
   const std::vector<WarpedLobe> lobes = lobes_at(brdf, view.wv);
   double sum = 0;

@@ -34,7 +34,7 @@ inline constexpr double kLuminanceShare[3] = {0.2126, 0.7152, 0.0722};
 
 /// A view of the fit. `error` is the relative L2 error of its f cos with channels weighted as in luminance, which is
 /// never below that of the luminance.
-struct TrackedView {
+struct FitView {
   Vec3d wv;
   ViewTaps taps;
   double fade;  // factor of the stretch
@@ -51,7 +51,7 @@ struct TrackedView {
   std::vector<float> picture_weight;     // empty: no picture error
   std::optional<SampleSpacing> spacing;  // none: any bandwidth is allowed
 
-  TrackedView(const MeasuredSlice& slice, const ViewSpline& spline, double error_goal);
+  FitView(const MeasuredSlice& slice, const ViewSpline& spline, double error_goal);
   /// Adds the picture weights to those of the samples, so that scale() times the squared residuals is weight (error /
   /// goal)^2 + (picture_error / kPictureGoal)^2. To be called again after `weight` changes.
   void weigh_for_pictures();
@@ -69,13 +69,13 @@ struct LocalNormal {
 };
 
 /// Stores in the view the error and residuals of the lobes of `model` with the control values `x`.
-void leave_residual(const ParametricBrdf& model, const Eigen::VectorXd& x, TrackedView& view);
+void leave_residual(const ParametricBrdf& model, const Eigen::VectorXd& x, FitView& view);
 /// Same as leave_residual(), and returns the view's matrices.
-LocalNormal linearized(const ParametricBrdf& model, const Eigen::VectorXd& x, TrackedView& view);
+LocalNormal linearized(const ParametricBrdf& model, const Eigen::VectorXd& x, FitView& view);
 /// Adds the values of the lobes to the view's targets. Overwrites its residuals.
-void add_to_targets(const ParametricBrdf& model, const Eigen::VectorXd& x, TrackedView& view);
+void add_to_targets(const ParametricBrdf& model, const Eigen::VectorXd& x, FitView& view);
 
-/// TrackedView::error of any model, including symmetric ones: the scalar reference.
-double error_of(const ParametricBrdf& brdf, const TrackedView& view);
+/// FitView::error of any model, including symmetric ones: the scalar reference.
+double error_of(const ParametricBrdf& brdf, const FitView& view);
 
 }  // namespace velour

@@ -11,7 +11,7 @@ namespace velour {
 
 namespace {
 
-constexpr uint64_t kLobeBytes = ScatteredBrdf::kLobeBytes, kViewBytes = ScatteredBrdf::kViewBytes;
+constexpr uint64_t kLobeBytes = PerViewBrdf::kLobeBytes, kViewBytes = PerViewBrdf::kViewBytes;
 
 double relative_l2(const Material& material, const MeasuredSlice& slice) {
   std::vector<Vec3> wl;
@@ -57,12 +57,12 @@ uint64_t parameter_bytes(const FittedSlices& fitted) {
   return lobes * kLobeBytes + fitted.paths.size() * kViewBytes;
 }
 
-std::shared_ptr<ScatteredBrdf> assemble(const FittedSlices& fitted, bool isotropic, const FitOptions& options) {
-  auto brdf = std::make_shared<ScatteredBrdf>();
+std::shared_ptr<PerViewBrdf> assemble(const FittedSlices& fitted, bool isotropic, const FitOptions& options) {
+  auto brdf = std::make_shared<PerViewBrdf>();
   brdf->kernel = options.kernel;
   brdf->isotropic = isotropic;
   brdf->align_views = options.align_views;
-  brdf->default_neighbors = ScatteredBrdf::usual_neighbors(isotropic);
+  brdf->default_neighbors = PerViewBrdf::usual_neighbors(isotropic);
   brdf->first_lobe.push_back(0);
   for (size_t i = 0; i < fitted.slices.size(); ++i) {
     const SliceFit& fit = fitted.paths[i].path.back();
@@ -79,8 +79,8 @@ std::shared_ptr<ScatteredBrdf> assemble(const FittedSlices& fitted, bool isotrop
   return brdf;
 }
 
-double error_over_slices(std::shared_ptr<const ScatteredBrdf> brdf, const std::vector<MeasuredSlice>& slices) {
-  const auto material = make_scattered_material(std::move(brdf), 0);
+double error_over_slices(std::shared_ptr<const PerViewBrdf> brdf, const std::vector<MeasuredSlice>& slices) {
+  const auto material = make_per_view_material(std::move(brdf), 0);
   double sum = 0, weights = 0;
   for (const MeasuredSlice& slice : slices) {
     sum += slice.wv.z * relative_l2(*material, slice);

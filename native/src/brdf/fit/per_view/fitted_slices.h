@@ -35,11 +35,11 @@ struct FittedSlices {
 /// Bytes of the parameters of assemble(fitted).
 uint64_t parameter_bytes(const FittedSlices& fitted);
 
-std::shared_ptr<ScatteredBrdf> assemble(const FittedSlices& fitted, bool isotropic, const FitOptions& options);
+std::shared_ptr<PerViewBrdf> assemble(const FittedSlices& fitted, bool isotropic, const FitOptions& options);
 
 /// Relative L2 error of `brdf` at the samples of `slices`, as a mean over the views weighted by cos(theta_v). At views
 /// that the model does not have, this judges its interpolation.
-double error_over_slices(std::shared_ptr<const ScatteredBrdf> brdf, const std::vector<MeasuredSlice>& slices);
+double error_over_slices(std::shared_ptr<const PerViewBrdf> brdf, const std::vector<MeasuredSlice>& slices);
 
 /// The subset of `all` whose parameters take at most `max_bytes` (at least those of one view without lobes) and whose
 /// model is closest to the samples of all views. Several numbers of evenly spread views are tried, each with the lobes

@@ -39,47 +39,47 @@ Model reported(const Measurement& measurement, const FittedSlices& all, const Fi
     views.push_back({fitted.slices[i].wv, fitted.paths[i].path.back().relative_l2});
   }
   Model model;
-  model.fit = report_fit(measurement, *make_scattered_material(brdf, 0), options, views, {}, progress);
+  model.fit = report_fit(measurement, *make_per_view_material(brdf, 0), options, views, {}, progress);
   model.fit.order = order_of_slices(all, fitted, options.tolerance);
   model.body = *brdf;
   model.source = {measurement.provenance().name, measurement.provenance().format, measurement.provenance().sha256};
   return model;
 }
 
-uint64_t size_of_scattered(const Model& model, const FitOptions& options) {
-  return options.size_of ? options.size_of(model) : std::get<ScatteredBrdf>(model.body).parameter_bytes();
+uint64_t size_of_per_view(const Model& model, const FitOptions& options) {
+  return options.size_of ? options.size_of(model) : std::get<PerViewBrdf>(model.body).parameter_bytes();
 }
 
 /// Best model of `all` within options.max_bytes, in a few tries: its size is known only once it is encoded.
 Model bounded_model(const Measurement& measurement, const FittedSlices& all, const FitOptions& options,
                     Progress& progress) {
   const uint64_t whole = parameter_bytes(all);
-  for (uint64_t budget = std::max(ScatteredBrdf::kViewBytes, std::min(options.max_bytes, whole));;) {
+  for (uint64_t budget = std::max(PerViewBrdf::kViewBytes, std::min(options.max_bytes, whole));;) {
     progress.check();
     const FittedSlices fitted = within(budget, all, measurement.isotropic(), options);
     Model model = reported(measurement, all, fitted, options, progress);
     if (budget < whole) {
       model.fit.warnings.push_back("the bound of " + std::to_string(options.max_bytes) + " bytes leaves " +
                                    std::to_string(fitted.slices.size()) + " views and " +
-                                   std::to_string(std::get<ScatteredBrdf>(model.body).lobe_count()) + " lobes");
+                                   std::to_string(std::get<PerViewBrdf>(model.body).lobe_count()) + " lobes");
     }
-    const uint64_t size = size_of_scattered(model, options);
+    const uint64_t size = size_of_per_view(model, options);
     if (size <= options.max_bytes) return model;
-    if (budget == ScatteredBrdf::kViewBytes) {
+    if (budget == PerViewBrdf::kViewBytes) {
       throw Error(Status::invalid_argument, "The fit's max_bytes is " + std::to_string(options.max_bytes) +
                                                 ", but the smallest model of this measurement takes " +
                                                 std::to_string(size) + " bytes. Raise the maximum size.");
     }
-    const uint64_t excess = size - options.max_bytes + ScatteredBrdf::kLobeBytes;
-    budget = budget > excess + ScatteredBrdf::kViewBytes ? budget - excess : ScatteredBrdf::kViewBytes;
+    const uint64_t excess = size - options.max_bytes + PerViewBrdf::kLobeBytes;
+    budget = budget > excess + PerViewBrdf::kViewBytes ? budget - excess : PerViewBrdf::kViewBytes;
   }
 }
 
 }  // namespace
 
-Model fit_scattered(const Measurement& measurement, const FitOptions& options, Progress& progress) {
+Model fit_per_view(const Measurement& measurement, const FitOptions& options, Progress& progress) {
   const auto start = std::chrono::steady_clock::now();
-  check_options(options, LobeMixture::kCapacity / ScatteredBrdf::usual_neighbors(measurement.isotropic()));
+  check_options(options, LobeMixture::kCapacity / PerViewBrdf::usual_neighbors(measurement.isotropic()));
   progress.stage("sampling", 0.0, 0.1);
   MeasuredSlices measured = read_slices(measurement, kGrid, options, progress);
   std::vector<std::string> warnings;
@@ -115,7 +115,7 @@ OrderPoint point_at(const FittedSlices& fitted, size_t lobes, double tolerance) 
     const size_t kept = std::min(lobes, view.path.size() - 1);
     const double error = view.path[kept].relative_l2;
     const double theta_v = std::acos(std::min(fitted.slices[i].wv.z, 1.0f));
-    point.parameter_bytes += ScatteredBrdf::kViewBytes + kept * ScatteredBrdf::kLobeBytes;
+    point.parameter_bytes += PerViewBrdf::kViewBytes + kept * PerViewBrdf::kLobeBytes;
     point.worst = std::max(point.worst, error / tolerance_at(tolerance, theta_v));
     sum += view.importance * error;
     weights += view.importance;

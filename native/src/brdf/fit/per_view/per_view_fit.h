@@ -10,7 +10,7 @@ namespace velour {
 
 /// Each view's slice of f cos(theta_l) is fitted by greedy insertion and joint refinement with non-negative
 /// coefficients until the tolerance or the bound is reached. Deterministic for any thread count.
-Model fit_scattered(const Measurement& measurement, const FitOptions& options, Progress& progress);
+Model fit_per_view(const Measurement& measurement, const FitOptions& options, Progress& progress);
 
 // The order curve of a per-view fit, from the greedy paths of its views, without refitting.
 

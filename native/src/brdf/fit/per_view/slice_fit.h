@@ -25,7 +25,7 @@ std::vector<SliceFit> fit_slice(const SliceSamples& samples, const SliceFitOptio
 
 // Converts the solver's lobes to those of a model.
 
-/// A lobe as ScatteredBrdf stores it: coefficient times kernel_value(kernel, bandwidth, d).
+/// A lobe as PerViewBrdf stores it: coefficient times kernel_value(kernel, bandwidth, d).
 struct StoredLobe {
   Vec3 center;
   float bandwidth;

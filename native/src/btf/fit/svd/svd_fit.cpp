@@ -96,28 +96,28 @@ bool SvdFitter::take_kept_bases(const std::string& stage, Eigen::Index columns) 
 }
 
 /// Computes the response of every view to the basis; if `onward`, also its image, which becomes the next basis.
-void SvdFitter::pass(bool onward) {
-  for (Sketch& s : sketch_) s.image.setZero(s.basis.rows(), onward ? s.basis.cols() : 0);
+void SvdFitter::pass(bool continuation) {
+  for (Sketch& s : sketch_) s.image.setZero(s.basis.rows(), continuation ? s.basis.cols() : 0);
   for (uint32_t v = 0; v < views_.views(); ++v) {
     progress_.check();
     views_.read(v, f_);
     views_.planes(f_, measurement_.grid().texels(), planes_);
-    for (size_t a = 0; a < 3; ++a) respond(sketch_[a], planes_[a], v, onward);
+    for (size_t a = 0; a < 3; ++a) respond(sketch_[a], planes_[a], v, continuation);
     progress_.update(static_cast<double>(v + 1) / views_.views());
   }
-  if (!onward) return;
+  if (!continuation) return;
   for (Sketch& s : sketch_) {
     s.basis = s.image;
     s.basis = orthonormal(s.basis);
   }
 }
 
-void SvdFitter::respond(Sketch& s, const RowMatrix& plane, uint32_t view, bool onward) const {
+void SvdFitter::respond(Sketch& s, const RowMatrix& plane, uint32_t view, bool continuation) const {
   const auto first = static_cast<Eigen::Index>(measurement_.layout().first(view));
   for_blocks(plane.rows(), kBlockRows, options_.threads, progress_, [&](Eigen::Index row, Eigen::Index count) {
     s.response.middleRows(first + row, count).noalias() = plane.middleRows(row, count) * s.basis;
   });
-  if (!onward) return;
+  if (!continuation) return;
   const auto response = s.response.middleRows(first, plane.rows());
   for_blocks(plane.cols(), kBlockColumns, options_.threads, progress_, [&](Eigen::Index column, Eigen::Index count) {
     s.image.middleRows(column, count).noalias() += plane.middleCols(column, count).transpose() * response;

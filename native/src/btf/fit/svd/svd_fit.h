@@ -28,8 +28,8 @@ class SvdFitter final : public FactoredFitter {
   void sketch(uint64_t components, double begin, double end);
   void start(Sketch& sketch, Eigen::Index columns, size_t axis) const;
   bool take_kept_bases(const std::string& stage, Eigen::Index columns);
-  void pass(bool onward);
-  void respond(Sketch& sketch, const RowMatrix& plane, uint32_t view, bool onward) const;
+  void pass(bool continuation);
+  void respond(Sketch& sketch, const RowMatrix& plane, uint32_t view, bool continuation) const;
   std::vector<Component> found() const;
   bool reaches(double error) const;
 

@@ -12,7 +12,7 @@ namespace velour {
 namespace {
 
 std::shared_ptr<const Material> glossy() {
-  return make_scattered_material(std::make_shared<const ScatteredBrdf>(test::isotropic_model()), 0);
+  return make_per_view_material(std::make_shared<const PerViewBrdf>(test::isotropic_model()), 0);
 }
 
 double integral(const WeightedLights& lights, const auto& f) {
@@ -47,14 +47,14 @@ TEST(CloseLights, SeeLobesOfEveryWidthAboutTheMirrorDirectionAndTheView) {
 
 TEST(CloseLights, SeeTheLobesOfTheMaterialWhereverTheyAre) {
   const Vec3 aside = direction(1.0f, 2.0f);
-  ScatteredBrdf brdf;
+  PerViewBrdf brdf;
   brdf.views = {{0, 0, 1}};
   brdf.first_lobe = {0, 1};
   brdf.center = {aside};
   brdf.bandwidth = {1e6f};
   brdf.coefficient = {Rgb(1)};
   brdf.isotropic = brdf.align_views = false;
-  const auto material = make_scattered_material(std::make_shared<const ScatteredBrdf>(brdf), 1);
+  const auto material = make_per_view_material(std::make_shared<const PerViewBrdf>(brdf), 1);
   const auto lobe = [&](const Vec3& w) {
     return kernel_value(Kernel::gaussian, 1e6, one_minus_dot(Vec3d(w), Vec3d(aside)));
   };

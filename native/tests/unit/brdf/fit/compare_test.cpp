@@ -32,12 +32,12 @@ class FormulaMaterial : public Material {
 /// A scattered measurement whose samples are given.
 class Samples : public AnalyticMeasurement {
  public:
-  explicit Samples(std::vector<ScatteredSample> samples)
+  explicit Samples(std::vector<IrregularSample> samples)
       : AnalyticMeasurement(test::lambert), samples_(std::move(samples)) {}
-  std::span<const ScatteredSample> samples() const override { return samples_; }
+  std::span<const IrregularSample> samples() const override { return samples_; }
 
  private:
-  std::vector<ScatteredSample> samples_;
+  std::vector<IrregularSample> samples_;
 };
 
 AnalyticMeasurement::Formula scaled(float by) {
@@ -133,8 +133,8 @@ TEST(Compare, NoiseOfASkewedMeasurementIsSeen) {
   EXPECT_NEAR(c.noise_by_view_angle.at("30").value(), expected, 0.01);
 }
 
-TEST(Compare, ScatteredSamplesCountOnlyWhenHeldOut) {
-  std::vector<ScatteredSample> samples;
+TEST(Compare, IrregularSamplesCountOnlyWhenHeldOut) {
+  std::vector<IrregularSample> samples;
   const Vec3 wv = direction(radians_from(32.0f), 0);
   for (uint64_t i = 0; i < 800; ++i) {
     // The others are wrong on purpose: they must not be looked at.

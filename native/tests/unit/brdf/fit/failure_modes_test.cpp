@@ -37,12 +37,12 @@ std::vector<FitKind> fit_kinds() {
     FitOptions own = options;
     own.kernel = Kernel::abel_poisson;
     own.max_lobes = 3;  // never reaches the tolerance on Gaussians: more only takes time
-    return fit_scattered(measurement, own, progress);
+    return fit_per_view(measurement, own, progress);
   };
   const auto parametric = [](const Measurement& measurement, const FitOptions& options, Progress& progress) {
     return fit_parametric(measurement, options, progress);
   };
-  return {{"scattered", fit_scattered}, {"scattered_abel_poisson", abel_poisson}, {"parametric", parametric}};
+  return {{"scattered", fit_per_view}, {"scattered_abel_poisson", abel_poisson}, {"parametric", parametric}};
 }
 
 // Seconds. A fit of these takes about one, ten with the sanitizers, and machines are shared; a hang takes longer.

@@ -39,7 +39,7 @@ Model fitted(int count, bool all_data = false) {
   options.max_lobes = 6;
   options.all_data = all_data;
   Progress progress;
-  return fit_scattered(*cornell_of(count), options, progress);
+  return fit_per_view(*cornell_of(count), options, progress);
 }
 
 std::string refusal(const auto& call) {

@@ -19,7 +19,7 @@ TEST(FitModel, TheKindIsWhatWasAskedFor) {
   FitOptions options;
   options.max_lobes = 2;
   Progress progress;
-  EXPECT_EQ(std::string(model_kind(fit_model(ModelKind::scattered, glossy(), options, progress))), "scattered");
+  EXPECT_EQ(std::string(model_kind(fit_model(ModelKind::per_view, glossy(), options, progress))), "scattered");
   EXPECT_EQ(std::string(model_kind(fit_model(ModelKind::parametric, glossy(), options, progress))), "parametric");
 }
 

@@ -149,18 +149,18 @@ TEST(SliceSampling, TheFoldIsWhatMirrorImagesDifferBy) {
   }
 }
 
-TEST(TrackedGrowth, FitsThatShareTheirGrowthAreThoseOfTheirOwn) {
+TEST(LobeGrowth, FitsThatShareTheirGrowthAreThoseOfTheirOwn) {
   Progress progress;
   const SliceGrid grid{16, 16, true};
   const std::vector<MeasuredSlice> slices =
       sample_slices(AnalyticMeasurement(test::ggx(0.3f, 0.3f)), grid, true, 1, progress).slices;
-  TrackedFitOptions options;
+  GrowthOptions options;
   options.cells = 2;
   options.tolerance = 0.002;
-  TrackedGrowth growth(slices, options, progress);
+  LobeGrowth growth(slices, options, progress);
   for (const int most : {1, 3, 4, 5, 6}) {
     options.max_lobes = most;
-    const TrackedFit shared = growth.fit(most), own = fit_tracked(slices, options, progress);
+    const GrowthResult shared = growth.fit(most), own = grow_lobes(slices, options, progress);
     EXPECT_EQ(shared.brdf.lobe_count(), most);
     EXPECT_EQ(shared.brdf.control, own.brdf.control);
     EXPECT_EQ(shared.order, own.order);

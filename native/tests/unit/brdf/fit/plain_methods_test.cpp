@@ -43,11 +43,11 @@ WeightedLights even_lights() { return {hemisphere_fibonacci(4096), std::vector<d
 
 TEST(PlainMethod, EvenDirectionsTakeAMirrorWithoutItsHighlightForExact) {
   const auto base_alone = [](const DirectionPair&) { return Rgb(0.02f / kPi); };
-  ScatteredBrdf base;
+  PerViewBrdf base;
   base.views = {{0, 0, 1}};
   base.first_lobe = {0, 0};
   base.diffuse = {Rgb(0.02f / kPi)};
-  const auto without_highlight = make_scattered_material(std::make_shared<const ScatteredBrdf>(base), 1);
+  const auto without_highlight = make_per_view_material(std::make_shared<const PerViewBrdf>(base), 1);
   const Vec3 wv = view_at(60);
   EXPECT_LT(error_on(even_lights(), wv, test::near_mirror(1e6), base_alone), 1e-3);
   EXPECT_GT(error_on(close_lights(*without_highlight, wv), wv, test::near_mirror(1e6), base_alone), 0.99);
@@ -140,8 +140,8 @@ TEST(PlainMethod, DividingByTheCosineAtTheHorizonIsInfinite) {
   const float at_horizon = 0;
   EXPECT_TRUE(std::isinf(0.1f / at_horizon));
   EXPECT_GT(1 / std::cos(radians_from(89.9)), 570) << "what lobes of f in place of f cos would have to follow";
-  const auto model = std::make_shared<const ScatteredBrdf>(test::isotropic_model());
-  const auto material = make_scattered_material(model, 0);
+  const auto model = std::make_shared<const PerViewBrdf>(test::isotropic_model());
+  const auto material = make_per_view_material(model, 0);
   for (const float z : {1e-3f, 1e-10f, 1e-30f, 0.0f, -0.1f}) {
     const auto [f, pdf] = test::eval_one(*material, {{std::sqrt(1 - z * z), 0, z}, view_at(89.9f)});
     EXPECT_TRUE(std::isfinite(f.r * z) && std::isfinite(f.r) && std::isfinite(pdf)) << z;
@@ -153,7 +153,7 @@ TEST(PlainMethod, TheHalfVectorOfOpposedDirectionsIsNoNumber) {
   EXPECT_TRUE(std::isnan(glm::normalize(wv - wv).x));
   const HalfDiff angles = half_diff(-wv, wv);
   EXPECT_TRUE(std::isfinite(angles.theta_h + angles.phi_h + angles.theta_d + angles.phi_d));
-  const auto material = make_scattered_material(std::make_shared<const ScatteredBrdf>(test::isotropic_model()), 0);
+  const auto material = make_per_view_material(std::make_shared<const PerViewBrdf>(test::isotropic_model()), 0);
   EXPECT_EQ(test::eval_one(*material, {-wv, wv}).f, Rgb(0));
 }
 
@@ -229,7 +229,7 @@ PlainAndOurs holes_as_black_and_as_holes(const std::string& name) {
   FitOptions options;
   options.max_lobes = 4;
   Progress progress;
-  return {fit_scattered(black, options, progress).fit, fit_scattered(*hostile->given, options, progress).fit};
+  return {fit_per_view(black, options, progress).fit, fit_per_view(*hostile->given, options, progress).fit};
 }
 
 TEST(PlainMethod, HolesTakenForBlackAreFittedAsBlack) {
@@ -249,7 +249,7 @@ TEST(PlainMethod, ARelativeErrorIsBlindToTheScale) {
   Progress progress;
   const auto error_at = [&](float scale) {
     const AnalyticMeasurement measurement(test::scaled(test::ggx(0.3f, 0.3f), scale));
-    return fit_scattered(measurement, options, progress).fit.relative_l2;
+    return fit_per_view(measurement, options, progress).fit.relative_l2;
   };
   EXPECT_NEAR(error_at(1500), error_at(1), 1e-4);
 }
@@ -276,7 +276,7 @@ TEST(PlainMethod, LightGrowsFromBounceToBounceOnAnAlbedoAboveOne) {
   FitOptions options;
   options.max_lobes = 3;
   Progress progress;
-  const double albedo = fit_scattered(*bright->given, options, progress).fit.albedo_max;
+  const double albedo = fit_per_view(*bright->given, options, progress).fit.albedo_max;
   EXPECT_GT(std::pow(albedo, 50), 1e6);
 }
 

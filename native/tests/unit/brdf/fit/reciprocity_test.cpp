@@ -43,12 +43,12 @@ TEST(Reciprocity, UncoveredPairsDoNotCount) {
 }
 
 TEST(Reciprocity, OfAModelIsThatOfItsValues) {
-  ScatteredBrdf diffuse;
+  PerViewBrdf diffuse;
   diffuse.views = {{0, 0, 1}};
   diffuse.first_lobe = {0, 0};
   diffuse.diffuse = {Rgb(0.2f)};
-  const auto error = [](const ScatteredBrdf& brdf) {
-    return reciprocity_error(*make_scattered_material(std::make_shared<const ScatteredBrdf>(brdf), 0), Progress());
+  const auto error = [](const PerViewBrdf& brdf) {
+    return reciprocity_error(*make_per_view_material(std::make_shared<const PerViewBrdf>(brdf), 0), Progress());
   };
   EXPECT_LT(error(diffuse), 1e-6);
   EXPECT_GT(error(test::isotropic_model()), 0.05) << "its lobes do not depend on the view as reciprocity asks";

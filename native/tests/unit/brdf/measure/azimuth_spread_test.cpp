@@ -25,8 +25,8 @@ Brdf brushed(float across, float along) {
   };
 }
 
-std::vector<ScatteredSample> samples_of(const Brdf& f, float noise) {
-  std::vector<ScatteredSample> samples;
+std::vector<IrregularSample> samples_of(const Brdf& f, float noise) {
+  std::vector<IrregularSample> samples;
   RandomStream random(5, 0, 0);
   for (const auto& [wl, wv] : test::random_pairs(8000, 11, 0.05f)) {
     samples.push_back({wl, wv, Rgb(f(wl, wv) * (1.0f + noise * (random.next() - 0.5f)))});
@@ -51,7 +51,7 @@ TEST(AzimuthSpread, TellsBrushedSurfacesFromOthers) {
 }
 
 TEST(AzimuthSpread, FewSamplesDoNotTell) {
-  const std::vector<ScatteredSample> samples = samples_of(brushed(0.15f, 0.45f), 0.0f);
+  const std::vector<IrregularSample> samples = samples_of(brushed(0.15f, 0.45f), 0.0f);
   EXPECT_FALSE(azimuth_spread(std::span(samples).first(500)).has_value());
 }
 

@@ -143,13 +143,13 @@ class Krylon : public ::testing::Test {
     double relative_l2, log_rms;  // of f cos, luminance; log(1 + f cos / 0.01)
   };
   /// Every sample predicted from all others.
-  static LeftOut leave_one_out(const std::vector<ScatteredSample>& samples) {
+  static LeftOut leave_one_out(const std::vector<IrregularSample>& samples) {
     std::vector<double> got, truth;
     double log_error = 0;
     for (size_t i = 0; i < samples.size(); ++i) {
       auto others = samples;
       others.erase(others.begin() + static_cast<std::ptrdiff_t>(i));
-      const auto f = ScatteredInterpolant(others).f(samples[i].wl, samples[i].wv);
+      const auto f = IrregularInterpolant(others).f(samples[i].wl, samples[i].wv);
       EXPECT_TRUE(f.has_value());
       got.push_back(double{luminance(f.value_or(Rgb(0.0f))) * samples[i].wv.z});
       truth.push_back(double{luminance(samples[i].f) * samples[i].wv.z});
@@ -163,7 +163,7 @@ TEST_F(Krylon, InterpolationPredictsHeldOutSamples) {
   VELOUR_NEED_DATA(path, "brdf/krylon_blue.brdf");
   const auto measurement = load_measurement(path);
   ASSERT_EQ(measurement->samples().size(), 1439u);
-  const std::vector<ScatteredSample> samples(measurement->samples().begin(), measurement->samples().end());
+  const std::vector<IrregularSample> samples(measurement->samples().begin(), measurement->samples().end());
   const auto [l2, log_rms] = leave_one_out(samples);
   RecordProperty("relative_l2", std::to_string(l2));
   RecordProperty("log_rms", std::to_string(log_rms));
@@ -178,7 +178,7 @@ TEST_F(Krylon, InterpolationPredictsHeldOutSamples) {
 TEST_F(Krylon, TheTableAddsLittle) {
   VELOUR_NEED_DATA(path, "brdf/krylon_blue.brdf");
   const auto measurement = load_measurement(path);
-  const ScatteredInterpolant interpolant(measurement->samples());
+  const IrregularInterpolant interpolant(measurement->samples());
   std::vector<double> got, truth;
   for (const auto& [wl, wv] : test::random_pairs(4000, 13, 0.1f)) {
     const auto exact = interpolant.f(wl, wv);

@@ -61,24 +61,24 @@ std::vector<MeasuredSlice> slices_of(const Lobes& lobes) {
   return slices;
 }
 
-class Tracked : public testing::TestWithParam<bool> {
+class ParametricProblem : public testing::TestWithParam<bool> {
  protected:
   Lobes truth_ = two_lobes(GetParam(), 0.0), start_ = two_lobes(GetParam(), 0.3);
   Progress progress_;
-  TrackedProblem problem_{slices_of(truth_), truth_.model.spline(), [](const MeasuredSlice&) { return 0.02; }, true, 1,
-                          progress_};
+  FitProblem problem_{slices_of(truth_), truth_.model.spline(), [](const MeasuredSlice&) { return 0.02; }, true, 1,
+                      progress_};
 };
 
-TEST_P(Tracked, TheTruthHasNoErrorButThePenalty) {
+TEST_P(ParametricProblem, TheTruthHasNoErrorButThePenalty) {
   const double cost = problem_.evaluate(truth_.model, truth_.x);
   EXPECT_NEAR(cost, truth_.x.dot(smoothness_gradient(truth_.model, truth_.x)), 1e-4);
-  for (const TrackedView& v : problem_.views()) EXPECT_LT(v.error, 1e-4);
+  for (const FitView& v : problem_.views()) EXPECT_LT(v.error, 1e-4);
 }
 
-TEST_P(Tracked, TheStepSolvesTheNormalEquationsOfTheCost) {
+TEST_P(ParametricProblem, TheStepSolvesTheNormalEquationsOfTheCost) {
   std::vector<LocalNormal> local;
   const double here = problem_.linearize(start_.model, start_.x, local);
-  const TrackedNormal normal(start_.model, problem_, local, start_.x);
+  const FitNormalEquations normal(start_.model, problem_, local, start_.x);
   const Eigen::VectorXd step = normal.step(1e-3, Eigen::VectorXd::Ones(start_.x.size()));
   // Gauss-Newton predicts the cost along its step: half the gradient's drop twice, plus the curvature.
   const double slope = (problem_.evaluate(start_.model, start_.x + 1e-4 * step) -
@@ -90,16 +90,16 @@ TEST_P(Tracked, TheStepSolvesTheNormalEquationsOfTheCost) {
   EXPECT_NEAR(problem_.evaluate(start_.model, start_.x + 0.05 * step), here + 0.05 * slope * (1 - 0.025), 0.05 * here);
 }
 
-TEST_P(Tracked, WhatPicturesShowCountsBesideTheErrorAndLeavesItAsItIs) {
+TEST_P(ParametricProblem, WhatPicturesShowCountsBesideTheErrorAndLeavesItAsItIs) {
   std::vector<double> plain;
   const double before = problem_.evaluate(start_.model, start_.x);
-  for (const TrackedView& v : problem_.views()) plain.push_back(v.error);
+  for (const FitView& v : problem_.views()) plain.push_back(v.error);
   for (int time = 0; time < 2; ++time) {  // called again, it starts from the weights of the samples
     problem_.weigh_for_pictures();
     double pictures = 0;
     const double cost = problem_.evaluate(start_.model, start_.x);
     for (size_t i = 0; i < plain.size(); ++i) {
-      const TrackedView& v = problem_.views()[i];
+      const FitView& v = problem_.views()[i];
       EXPECT_NEAR(v.error, plain[i], 1e-5 * plain[i]);
       pictures += std::pow(v.picture_error / kPictureGoal, 2);
     }
@@ -108,7 +108,7 @@ TEST_P(Tracked, WhatPicturesShowCountsBesideTheErrorAndLeavesItAsItIs) {
   }
 }
 
-TEST_P(Tracked, TheGradientIsThatOfTheCost) {
+TEST_P(ParametricProblem, TheGradientIsThatOfTheCost) {
   // Sharp enough to fall between the samples: the bound of the bandwidth speaks as well.
   Eigen::VectorXd x = start_.x;
   for (int node = 0; node < start_.model.spline().node_count(); ++node) {
@@ -118,7 +118,7 @@ TEST_P(Tracked, TheGradientIsThatOfTheCost) {
   std::vector<LocalNormal> local;
   problem_.linearize(start_.model, x, local);
   double excess = 0;
-  for (const TrackedView& v : problem_.views()) excess += v.excess;
+  for (const FitView& v : problem_.views()) excess += v.excess;
   EXPECT_GT(excess, 0);
   Eigen::VectorXd along = Eigen::VectorXd::Zero(x.size());
   for (int node = 0; node < start_.model.spline().node_count(); ++node) {
@@ -131,11 +131,11 @@ TEST_P(Tracked, TheGradientIsThatOfTheCost) {
   const double slope =
       (problem_.evaluate(start_.model, x + kStep * along) - problem_.evaluate(start_.model, x - kStep * along)) /
       (2 * kStep);
-  const Eigen::VectorXd gradient = TrackedNormal(start_.model, problem_, local, x).gradient();
+  const Eigen::VectorXd gradient = FitNormalEquations(start_.model, problem_, local, x).gradient();
   EXPECT_NEAR(2 * gradient.dot(along), slope, 2e-3 * std::abs(slope));
 }
 
-TEST_P(Tracked, HeldParametersDoNotMove) {
+TEST_P(ParametricProblem, HeldParametersDoNotMove) {
   std::vector<LocalNormal> local;
   problem_.linearize(start_.model, start_.x, local);
   Eigen::VectorXd free = Eigen::VectorXd::Zero(start_.x.size());
@@ -144,7 +144,7 @@ TEST_P(Tracked, HeldParametersDoNotMove) {
       for (int j = 0; j < 2; ++j) free[static_cast<Eigen::Index>(start_.model.index(node, k, j))] = 1;
     }
   }
-  const Eigen::VectorXd step = TrackedNormal(start_.model, problem_, local, start_.x).step(1e-3, free);
+  const Eigen::VectorXd step = FitNormalEquations(start_.model, problem_, local, start_.x).step(1e-3, free);
   double moved = 0;
   for (int node = 0; node < start_.model.spline().node_count(); ++node) {
     for (int k = 0; k < start_.model.parameter_count(); ++k) {
@@ -158,18 +158,18 @@ TEST_P(Tracked, HeldParametersDoNotMove) {
   EXPECT_GT(moved, 0);
 }
 
-TEST_P(Tracked, TheStepKeepsItsPromise) {
+TEST_P(ParametricProblem, TheStepKeepsItsPromise) {
   std::vector<LocalNormal> local;
   const double here = problem_.linearize(start_.model, start_.x, local);
-  const TrackedNormal normal(start_.model, problem_, local, start_.x);
+  const FitNormalEquations normal(start_.model, problem_, local, start_.x);
   const Eigen::VectorXd step = 1e-3 * normal.step(1e-3, Eigen::VectorXd::Ones(start_.x.size()));
   const double gained = here - problem_.evaluate(start_.model, start_.x + step);
   EXPECT_GT(gained, 0);
   EXPECT_NEAR(gained, normal.promised(step), 0.05 * gained);
 }
 
-TEST_P(Tracked, OnlyColorsMoveWhenAsked) {
-  TrackedLobes lobes{start_.model, start_.x, 0};
+TEST_P(ParametricProblem, OnlyColorsMoveWhenAsked) {
+  FitLobes lobes{start_.model, start_.x, 0};
   refine(problem_, lobes, 3, 0, Free::colors);
   for (Eigen::Index i = 0; i < lobes.x.size(); ++i) {
     const int k = static_cast<int>(i / 2) % start_.model.parameter_count();
@@ -179,8 +179,8 @@ TEST_P(Tracked, OnlyColorsMoveWhenAsked) {
   EXPECT_NE(lobes.x, start_.x);
 }
 
-TEST_P(Tracked, ValuesAtABoundStayWithinIt) {
-  TrackedLobes lobes{start_.model, start_.x, 0};
+TEST_P(ParametricProblem, ValuesAtABoundStayWithinIt) {
+  FitLobes lobes{start_.model, start_.x, 0};
   for (int node = 0; node < lobes.model.spline().node_count(); ++node) {
     lobes.x[static_cast<Eigen::Index>(lobes.model.index(node, P::kTiltX, 0))] = upper_bound(P::kTiltX);
   }
@@ -194,10 +194,10 @@ TEST_P(Tracked, ValuesAtABoundStayWithinIt) {
   }
 }
 
-TEST_P(Tracked, TheRemainderIsWhatTheLobesLeave) {
+TEST_P(ParametricProblem, TheRemainderIsWhatTheLobesLeave) {
   problem_.evaluate(start_.model, start_.x);
-  const std::vector<TrackedView> left = problem_.views();
-  TrackedProblem remainder = problem_.remainder();
+  const std::vector<FitView> left = problem_.views();
+  FitProblem remainder = problem_.remainder();
   P nothing = start_.model;
   nothing.space.clear();
   remainder.evaluate(nothing, Eigen::VectorXd());
@@ -207,30 +207,30 @@ TEST_P(Tracked, TheRemainderIsWhatTheLobesLeave) {
   }
 }
 
-TEST_P(Tracked, RefinementFindsTheTruthAgain) {
-  TrackedLobes lobes{start_.model, start_.x, 0};
+TEST_P(ParametricProblem, RefinementFindsTheTruthAgain) {
+  FitLobes lobes{start_.model, start_.x, 0};
   const double before = problem_.evaluate(start_.model, start_.x);
   refine(problem_, lobes, 60, 1e-6);
   EXPECT_LT(lobes.cost, 0.01 * before);
-  for (const TrackedView& v : problem_.views()) EXPECT_LT(v.error, 2e-3);
+  for (const FitView& v : problem_.views()) EXPECT_LT(v.error, 2e-3);
 }
 
-TEST_P(Tracked, RefinementIsNeverWorseThanItsStart) {
-  TrackedLobes lobes{truth_.model, truth_.x, 0};
+TEST_P(ParametricProblem, RefinementIsNeverWorseThanItsStart) {
+  FitLobes lobes{truth_.model, truth_.x, 0};
   const double before = problem_.evaluate(truth_.model, truth_.x);
   refine(problem_, lobes, 5, 0);
   EXPECT_LE(lobes.cost, before);
 }
 
-INSTANTIATE_TEST_SUITE_P(Symmetries, Tracked, testing::Bool());
+INSTANTIATE_TEST_SUITE_P(Symmetries, ParametricProblem, testing::Bool());
 
 TEST(SplineThrough, PassesNearSmoothValues) {
   const Lobes lobes = two_lobes(true, 0);
   Progress progress;
-  const TrackedProblem problem(
+  const FitProblem problem(
       slices_of(lobes), ViewSpline(true, 4), [](const MeasuredSlice&) { return 0.02; }, true, 1, progress);
   std::vector<double> wanted;
-  for (const TrackedView& v : problem.views()) wanted.push_back(std::cos(std::acos(v.wv.z)));
+  for (const FitView& v : problem.views()) wanted.push_back(std::cos(std::acos(v.wv.z)));
   const Eigen::VectorXd control = spline_through(problem.views(), ViewSpline(true, 4), wanted, false);
   for (size_t i = 0; i < wanted.size(); ++i) {
     const ViewTaps& taps = problem.views()[i].taps;

@@ -14,8 +14,8 @@ namespace {
 using test::eval_one;
 using test::mirror;
 
-std::shared_ptr<const Material> material_of(const ScatteredBrdf& brdf, int neighbors = 0) {
-  return make_scattered_material(std::make_shared<ScatteredBrdf>(brdf), neighbors);
+std::shared_ptr<const Material> material_of(const PerViewBrdf& brdf, int neighbors = 0) {
+  return make_per_view_material(std::make_shared<PerViewBrdf>(brdf), neighbors);
 }
 
 float largest_difference(const Rgb& a, const Rgb& b) {
@@ -24,7 +24,7 @@ float largest_difference(const Rgb& a, const Rgb& b) {
 }
 
 /// f cos of one slice of the model, in double and without any neighbors.
-Rgb slice_value(const ScatteredBrdf& brdf, size_t view, const Vec3& wl) {
+Rgb slice_value(const PerViewBrdf& brdf, size_t view, const Vec3& wl) {
   Vec3d sum = Vec3d(brdf.diffuse[view]) * static_cast<double>(std::max(wl.z, 0.0f));
   for (uint32_t j = brdf.first_lobe[view]; j < brdf.first_lobe[view + 1]; ++j) {
     sum += kernel_value(brdf.kernel, brdf.bandwidth[j], one_minus_dot(Vec3d(wl), Vec3d(brdf.center[j]))) *
@@ -33,8 +33,8 @@ Rgb slice_value(const ScatteredBrdf& brdf, size_t view, const Vec3& wl) {
   return Rgb(sum);
 }
 
-TEST(ScatteredMaterial, IsTheSliceAtItsViews) {
-  for (const ScatteredBrdf& brdf :
+TEST(PerViewMaterial, IsTheSliceAtItsViews) {
+  for (const PerViewBrdf& brdf :
        {test::isotropic_model(), test::isotropic_model(Kernel::abel_poisson), test::anisotropic_model()}) {
     const auto material = material_of(brdf);
     for (size_t i = 0; i < brdf.views.size(); i += 7) {
@@ -48,7 +48,7 @@ TEST(ScatteredMaterial, IsTheSliceAtItsViews) {
   }
 }
 
-TEST(ScatteredMaterial, IsZeroBelowTheHorizonAndFiniteEverywhere) {
+TEST(PerViewMaterial, IsZeroBelowTheHorizonAndFiniteEverywhere) {
   const auto material = material_of(test::isotropic_model());
   for (const float theta_v : {0.0f, 0.8f, 1.5f, 1.5707f}) {
     PreparedBrdf point;
@@ -70,7 +70,7 @@ TEST(ScatteredMaterial, IsZeroBelowTheHorizonAndFiniteEverywhere) {
   }
 }
 
-TEST(ScatteredMaterial, IsotropicModelsTurnWithBothDirections) {
+TEST(PerViewMaterial, IsotropicModelsTurnWithBothDirections) {
   const auto material = material_of(test::isotropic_model());
   ASSERT_TRUE(material->isotropic());
   for (const Vec3& wv : hemisphere_fibonacci(20)) {
@@ -85,7 +85,7 @@ TEST(ScatteredMaterial, IsotropicModelsTurnWithBothDirections) {
   }
 }
 
-TEST(ScatteredMaterial, TheViewAtThePoleHasAnAzimuth) {
+TEST(PerViewMaterial, TheViewAtThePoleHasAnAzimuth) {
   const auto material = material_of(test::isotropic_model());
   const Vec3 wl = direction(0.4f, 1);
   const auto at_pole = eval_one(*material, {.wl = wl, .wv = {0, 0, 1}});
@@ -95,8 +95,8 @@ TEST(ScatteredMaterial, TheViewAtThePoleHasAnAzimuth) {
 }
 
 /// One highlight exactly at each mirror direction.
-ScatteredBrdf mirror_model(bool isotropic, bool align) {
-  ScatteredBrdf brdf;
+PerViewBrdf mirror_model(bool isotropic, bool align) {
+  PerViewBrdf brdf;
   brdf.isotropic = isotropic;
   brdf.align_views = align;
   brdf.default_neighbors = isotropic ? 2 : 4;
@@ -113,7 +113,7 @@ ScatteredBrdf mirror_model(bool isotropic, bool align) {
 
 // The failure this cures: slices mixed as they are show a sharp highlight at each sampled view's mirror direction, and
 // nothing at the query's own.
-TEST(ScatteredMaterial, AlignedSlicesKeepOneHighlight) {
+TEST(PerViewMaterial, AlignedSlicesKeepOneHighlight) {
   for (const bool isotropic : {true, false}) {
     for (const Vec3& wv : {direction(radians_from(42.5f), 0.7f), direction(radians_from(67.5f), -2.0f)}) {
       const float aligned = eval_one(*material_of(mirror_model(isotropic, true)), {.wl = mirror(wv), .wv = wv}).f.g;
@@ -124,7 +124,7 @@ TEST(ScatteredMaterial, AlignedSlicesKeepOneHighlight) {
   }
 }
 
-TEST(ScatteredMaterial, BeyondTheLastViewTheEndSliceFollowsTheMirror) {
+TEST(PerViewMaterial, BeyondTheLastViewTheEndSliceFollowsTheMirror) {
   const auto material = material_of(mirror_model(true, true));
   for (const float degrees : {86.0f, 89.0f, 89.9f}) {
     const Vec3 wv = direction(radians_from(degrees), 1.1f);
@@ -132,9 +132,9 @@ TEST(ScatteredMaterial, BeyondTheLastViewTheEndSliceFollowsTheMirror) {
   }
 }
 
-TEST(ScatteredMaterial, ChangesContinuouslyWithTheView) {
+TEST(PerViewMaterial, ChangesContinuouslyWithTheView) {
   for (const int neighbors : {1, 2, 3, 4}) {
-    for (const ScatteredBrdf& brdf : {test::isotropic_model(), test::anisotropic_model()}) {
+    for (const PerViewBrdf& brdf : {test::isotropic_model(), test::anisotropic_model()}) {
       if (neighbors == 1) continue;  // the nearest view alone must jump
       const auto material = material_of(brdf, neighbors);
       constexpr int kSteps = 4000;
@@ -154,8 +154,8 @@ TEST(ScatteredMaterial, ChangesContinuouslyWithTheView) {
   }
 }
 
-TEST(ScatteredMaterial, RefusesMoreLobesThanCanBeMixed) {
-  ScatteredBrdf brdf = test::isotropic_model();
+TEST(PerViewMaterial, RefusesMoreLobesThanCanBeMixed) {
+  PerViewBrdf brdf = test::isotropic_model();
   for (const int neighbors : {-1, 9, 1000}) {
     EXPECT_THROW(material_of(brdf, neighbors), Error) << neighbors;
   }
@@ -170,8 +170,8 @@ TEST(ScatteredMaterial, RefusesMoreLobesThanCanBeMixed) {
 }
 
 /// Luminance of f cos over the sphere, of the model's lobes and of the few that stand for them.
-TEST(ScatteredMaterial, ProposesFewLobesOfTheSameEnergyAndDirection) {
-  for (const ScatteredBrdf& brdf :
+TEST(PerViewMaterial, ProposesFewLobesOfTheSameEnergyAndDirection) {
+  for (const PerViewBrdf& brdf :
        {test::isotropic_model(), test::isotropic_model(Kernel::abel_poisson), test::anisotropic_model()}) {
     const auto material = material_of(brdf);
     for (size_t i = 0; i < brdf.views.size(); i += 5) {
@@ -201,8 +201,8 @@ TEST(ScatteredMaterial, ProposesFewLobesOfTheSameEnergyAndDirection) {
   }
 }
 
-TEST(ScatteredMaterial, ProposalsFollowTheViewsMirror) {
-  ScatteredBrdf brdf = test::isotropic_model();
+TEST(PerViewMaterial, ProposalsFollowTheViewsMirror) {
+  PerViewBrdf brdf = test::isotropic_model();
   brdf.align_views = true;
   const auto material = material_of(brdf);
   PreparedBrdf point;
@@ -222,7 +222,7 @@ TEST(ScatteredMaterial, ProposalsFollowTheViewsMirror) {
 }
 
 /// The density of a slice alone [T09 7.9], with the cosine's share for what lobes miss.
-double slice_density(const ScatteredBrdf& brdf, size_t view, const Vec3& wl) {
+double slice_density(const PerViewBrdf& brdf, size_t view, const Vec3& wl) {
   double mass = kPiD * static_cast<double>(luminance(brdf.diffuse[view])), sum = 0;
   const double cosine = static_cast<double>(std::max(wl.z, 0.0f));
   for (uint32_t j = brdf.first_lobe[view]; j < brdf.first_lobe[view + 1]; ++j) {
@@ -235,7 +235,7 @@ double slice_density(const ScatteredBrdf& brdf, size_t view, const Vec3& wl) {
 }
 
 TEST(InterpolatedViews, AtAViewAreItsOwnDensity) {
-  for (const ScatteredBrdf& brdf :
+  for (const PerViewBrdf& brdf :
        {test::isotropic_model(), test::isotropic_model(Kernel::abel_poisson), test::anisotropic_model()}) {
     const auto material = material_of(brdf);
     PreparedBrdf point;
@@ -252,10 +252,10 @@ TEST(InterpolatedViews, AtAViewAreItsOwnDensity) {
 
 /// Four on any set of views, or as many as are asked for, each by its weight.
 TEST(InterpolatedViews, AreTheFourNearest) {
-  for (const ScatteredBrdf& brdf : {test::isotropic_model(), test::anisotropic_model()}) {
+  for (const PerViewBrdf& brdf : {test::isotropic_model(), test::anisotropic_model()}) {
     const Vec3 wv = glm::normalize(brdf.views[9] + 0.3f * brdf.views[10]);
     for (const int asked : {0, 3}) {
-      const auto placed = ScatteredLobes(brdf, asked).place_nearest(wv);
+      const auto placed = PerViewLobes(brdf, asked).place_nearest(wv);
       ASSERT_EQ(placed.views.count, asked == 0 ? 4 : asked);
       std::vector<float> angle;
       for (const Vec3& view : brdf.views) angle.push_back(std::acos(std::min(glm::dot(view, wv), 1.0f)));
@@ -269,9 +269,9 @@ TEST(InterpolatedViews, AreTheFourNearest) {
   }
 }
 
-TEST(ScatteredMaterial, WithoutLobesSamplesTheCosine) {
+TEST(PerViewMaterial, WithoutLobesSamplesTheCosine) {
   for (const bool isotropic : {true, false}) {
-    ScatteredBrdf brdf;
+    PerViewBrdf brdf;
     brdf.isotropic = isotropic;
     brdf.first_lobe = {0};
     const auto material = material_of(brdf);

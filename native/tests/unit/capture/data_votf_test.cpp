@@ -39,8 +39,8 @@ struct CapturedTile {
   }
 
   /// Share of texel centers and unseen views whose visibility the volume gets wrong.
-  double wrong(const OcclusionVolume& volume) const {
-    const ShellField field(std::make_shared<const OcclusionVolume>(volume));
+  double wrong(const VotfVolume& volume) const {
+    const ShellField field(std::make_shared<const VotfVolume>(volume));
     const RepeatedTile repeated(*scene, {{0, 0}, tile.period}, 2);
     const TileTexels texels{kTexels, kTexels, 1};
     const float reference = static_cast<float>(btf->shell()->reference_height) + repeated.bottom();
@@ -60,7 +60,7 @@ struct CapturedTile {
   std::shared_ptr<const BtfMeasurement> btf;
 };
 
-class DataOcclusion : public ::testing::Test {
+class DataVotf : public ::testing::Test {
  protected:
   static void SetUpTestSuite() {
     net = std::make_unique<CapturedTile>("net");
@@ -75,50 +75,50 @@ class DataOcclusion : public ::testing::Test {
   static inline std::unique_ptr<const CapturedTile> net, chainmail, gravel;
 };
 
-OcclusionCapture fused(const BtfMeasurement& btf, int threads = 2) {
+VotfCapture fused(const BtfMeasurement& btf, int threads = 2) {
   Progress progress;
-  return occlusion_of_data(btf, {.check_views = 16, .threads = threads}, progress);
+  return votf_of_data(btf, {.check_views = 16, .threads = threads}, progress);
 }
 
 /// Mean difference of the distances that both find within one and a half pitches of the surface, pitches.
-double difference(const OcclusionVolume& a, const OcclusionVolume& b) {
-  const float pitches = a.reach / a.pitch() / OcclusionVolume::kUnits;
+double difference(const VotfVolume& a, const VotfVolume& b) {
+  const float pitches = a.reach / a.pitch() / VotfVolume::kUnits;
   double sum = 0;
   size_t near = 0;
   for (size_t i = 0; i < a.distance.size(); ++i) {
-    if (pitches * static_cast<float>(std::abs(a.distance[i] - OcclusionVolume::kZero)) > 1.5f) continue;
+    if (pitches * static_cast<float>(std::abs(a.distance[i] - VotfVolume::kZero)) > 1.5f) continue;
     sum += static_cast<double>(pitches * static_cast<float>(std::abs(a.distance[i] - b.distance[i])));
     ++near;
   }
   return sum / static_cast<double>(near);
 }
 
-TEST_F(DataOcclusion, OfANetSeesWhatRaysSee) {
-  const OcclusionCapture c = fused(*net->btf);
+TEST_F(DataVotf, OfANetSeesWhatRaysSee) {
+  const VotfCapture c = fused(*net->btf);
   EXPECT_FALSE(c.volume.closed);
   EXPECT_LT(c.errors->wrong, 0.035) << "of texels of which a fifth is partly covered, by 9 lines each";
   EXPECT_LT(net->wrong(c.volume), 0.026);
   EXPECT_GT(chainmail->wrong(c.volume), 0.2) << "another tile";
-  const OcclusionCapture rings = fused(*chainmail->btf);
+  const VotfCapture rings = fused(*chainmail->btf);
   EXPECT_LT(rings.errors->wrong, 0.01);
   EXPECT_LT(chainmail->wrong(rings.volume), 0.01);
   EXPECT_EQ(c.volume.distance, fused(*net->btf, 1).volume.distance);
 }
 
-TEST_F(DataOcclusion, OfAClosedTileHasItsRelief) {
-  const OcclusionCapture c = fused(*gravel->btf);
+TEST_F(DataVotf, OfAClosedTileHasItsRelief) {
+  const VotfCapture c = fused(*gravel->btf);
   EXPECT_TRUE(c.volume.closed);
   EXPECT_EQ(gravel->wrong(c.volume), 0.0);
   Progress progress;
-  OcclusionCaptureOptions options;
+  VotfCaptureOptions options;
   options.place.period = gravel->tile.period;
   options.texels = kTexels;
   options.reference_height = 0;
-  const OcclusionCapture exact = capture_occlusion(*gravel->scene, options, progress);
+  const VotfCapture exact = capture_votf(*gravel->scene, options, progress);
   ASSERT_EQ(exact.volume.depth, c.volume.depth);
   EXPECT_LT(difference(exact.volume, c.volume), 0.3);
-  OcclusionVolume flat = c.volume;  // what would be left of it without heights
-  std::ranges::fill(flat.distance, uint8_t{OcclusionVolume::kZero});
+  VotfVolume flat = c.volume;  // what would be left of it without heights
+  std::ranges::fill(flat.distance, uint8_t{VotfVolume::kZero});
   EXPECT_GT(difference(exact.volume, flat), 0.5);
 }
 
@@ -144,10 +144,10 @@ std::string pictures(const CapturedTile& captured, const std::string& folder, in
   return path;
 }
 
-TEST_F(DataOcclusion, OfPicturesWithAlphaIsTheirVisualHull) {
+TEST_F(DataVotf, OfPicturesWithAlphaIsTheirVisualHull) {
   const test::ScratchFolder folder("data_occlusion_pictures");
   const auto btf = load_btf(pictures(*net, folder.path() + "/alpha", 4));
-  const OcclusionCapture c = fused(*btf);
+  const VotfCapture c = fused(*btf);
   EXPECT_FALSE(c.volume.closed);
   EXPECT_LT(c.errors->wrong, 0.03);
   EXPECT_LT(net->wrong(c.volume), 0.025);
@@ -162,15 +162,15 @@ TEST_F(DataOcclusion, OfPicturesWithAlphaIsTheirVisualHull) {
   }
 }
 
-TEST_F(DataOcclusion, OfClosedPicturesIsRefused) {
+TEST_F(DataVotf, OfClosedPicturesIsRefused) {
   const test::ScratchFolder folder("data_occlusion_closed");
   EXPECT_THROW(fused(*load_btf(pictures(*gravel, folder.path(), 4))), Error);
 }
 
-TEST_F(DataOcclusion, CanBeCancelled) {
+TEST_F(DataVotf, CanBeCancelled) {
   Progress progress;
   progress.cancel();
-  EXPECT_THROW(occlusion_of_data(*net->btf, {}, progress), Error);
+  EXPECT_THROW(votf_of_data(*net->btf, {}, progress), Error);
 }
 
 }  // namespace

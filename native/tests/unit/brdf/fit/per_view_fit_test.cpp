@@ -17,10 +17,10 @@ namespace {
 
 using test::AnalyticMeasurement;
 
-const ScatteredBrdf& lobes_of(const Model& model) { return std::get<ScatteredBrdf>(model.body); }
+const PerViewBrdf& lobes_of(const Model& model) { return std::get<PerViewBrdf>(model.body); }
 
 void expect_sound(const Model& model) {
-  const ScatteredBrdf& b = lobes_of(model);
+  const PerViewBrdf& b = lobes_of(model);
   ASSERT_EQ(b.first_lobe.size(), b.views.size() + 1);
   EXPECT_EQ(b.first_lobe.back(), b.center.size());
   for (size_t j = 0; j < b.center.size(); ++j) {
@@ -32,13 +32,13 @@ void expect_sound(const Model& model) {
   EXPECT_TRUE(std::isfinite(model.fit.relative_l2));
 }
 
-class ScatteredFit : public testing::TestWithParam<Kernel> {};
+class PerViewFit : public testing::TestWithParam<Kernel> {};
 
-TEST_P(ScatteredFit, ADiffuseMaterialMeetsTheTolerance) {
+TEST_P(PerViewFit, ADiffuseMaterialMeetsTheTolerance) {
   FitOptions options;
   options.kernel = GetParam();
   Progress progress;
-  const Model model = fit_scattered(AnalyticMeasurement(test::lambert), options, progress);
+  const Model model = fit_per_view(AnalyticMeasurement(test::lambert), options, progress);
   expect_sound(model);
   EXPECT_TRUE(model.fit.warnings.empty()) << model.fit.warnings.front();
   for (const auto& [view, error] : model.fit.by_view_angle)
@@ -47,35 +47,35 @@ TEST_P(ScatteredFit, ADiffuseMaterialMeetsTheTolerance) {
   EXPECT_EQ(progress.fraction(), 1);
 }
 
-TEST_P(ScatteredFit, AGlossyMaterialMeetsTheToleranceAwayFromGrazing) {
+TEST_P(PerViewFit, AGlossyMaterialMeetsTheToleranceAwayFromGrazing) {
   FitOptions options;
   options.kernel = GetParam();
   Progress progress;
-  const Model model = fit_scattered(AnalyticMeasurement(test::ggx(0.3f, 0.3f)), options, progress);
+  const Model model = fit_per_view(AnalyticMeasurement(test::ggx(0.3f, 0.3f)), options, progress);
   expect_sound(model);
   // The tails of Abel-Poisson are too heavy for GGX: a few percent are its limit.
   const double limit = GetParam() == Kernel::gaussian ? 0.02 : 0.045;
   for (const char* view : {"5", "30", "60"}) EXPECT_LE(model.fit.by_view_angle.at(view).value(), limit) << view;
 }
 
-INSTANTIATE_TEST_SUITE_P(Kernels, ScatteredFit, testing::Values(Kernel::gaussian, Kernel::abel_poisson));
+INSTANTIATE_TEST_SUITE_P(Kernels, PerViewFit, testing::Values(Kernel::gaussian, Kernel::abel_poisson));
 
-TEST(ScatteredFitRules, TheSameBitsForAnyThreadCount) {
+TEST(PerViewFitRules, TheSameBitsForAnyThreadCount) {
   const AnalyticMeasurement glossy(test::ggx(0.2f, 0.2f));
   FitOptions options;
   options.max_lobes = 4;
   Progress progress;
   options.threads = 1;
-  const Model one = fit_scattered(glossy, options, progress);
+  const Model one = fit_per_view(glossy, options, progress);
   options.threads = 4;
-  const Model four = fit_scattered(glossy, options, progress);
+  const Model four = fit_per_view(glossy, options, progress);
   EXPECT_EQ(lobes_of(one).center, lobes_of(four).center);
   EXPECT_EQ(lobes_of(one).bandwidth, lobes_of(four).bandwidth);
   EXPECT_EQ(lobes_of(one).coefficient, lobes_of(four).coefficient);
   EXPECT_EQ(one.fit.by_view_angle, four.fit.by_view_angle);
 }
 
-TEST(ScatteredFitRules, HeldOutViewsAreNotRead) {
+TEST(PerViewFitRules, HeldOutViewsAreNotRead) {
   std::atomic<bool> checking{false}, read{false};
   AnalyticMeasurement watched(test::lambert);
   Progress progress;
@@ -89,24 +89,24 @@ TEST(ScatteredFitRules, HeldOutViewsAreNotRead) {
   });
   FitOptions options;
   options.max_lobes = 2;
-  fit_scattered(watched, options, progress);
+  fit_per_view(watched, options, progress);
   EXPECT_TRUE(checking);
   EXPECT_FALSE(read);
 }
 
-TEST(ScatteredFitRules, AllDataReadsThem) {
+TEST(PerViewFitRules, AllDataReadsThem) {
   FitOptions options;
   options.max_lobes = 1;
   options.all_data = true;
   Progress progress;
-  const Model model = fit_scattered(AnalyticMeasurement(test::lambert), options, progress);
+  const Model model = fit_per_view(AnalyticMeasurement(test::lambert), options, progress);
   EXPECT_TRUE(model.fit.all_data);
   bool found = false;
   for (const Vec3& v : lobes_of(model).views) found |= glm::distance(v, direction(radians_from(30.0f), 0)) < 1e-5f;
   EXPECT_TRUE(found);
 }
 
-TEST(ScatteredFitRules, CancelStopsWithinATenthOfASecond) {
+TEST(PerViewFitRules, CancelStopsWithinATenthOfASecond) {
   const AnalyticMeasurement glossy(test::ggx(0.1f, 0.1f));
   for (const int milliseconds : {0, 5, 30, 100}) {
     Progress progress;
@@ -119,28 +119,28 @@ TEST(ScatteredFitRules, CancelStopsWithinATenthOfASecond) {
     FitOptions options;
     options.max_lobes = 64;
     options.tolerance = 1e-6;
-    EXPECT_THROW(fit_scattered(glossy, options, progress), Error);
+    EXPECT_THROW(fit_per_view(glossy, options, progress), Error);
     const auto ended = std::chrono::steady_clock::now();
     canceller.join();
     EXPECT_LT(std::chrono::duration<double>(ended - asked).count(), 0.1) << milliseconds;
   }
 }
 
-TEST(ScatteredFitRules, ABlackMaterialIsAModelWithoutLobes) {
+TEST(PerViewFitRules, ABlackMaterialIsAModelWithoutLobes) {
   Progress progress;
-  const Model model = fit_scattered(AnalyticMeasurement([](const DirectionPair&) { return Rgb(0); }), {}, progress);
+  const Model model = fit_per_view(AnalyticMeasurement([](const DirectionPair&) { return Rgb(0); }), {}, progress);
   EXPECT_EQ(lobes_of(model).lobe_count(), 0);
   EXPECT_GT(lobes_of(model).views.size(), 0u);
   EXPECT_EQ(model.fit.relative_l2, 0);
   EXPECT_EQ(model.fit.albedo_max, 0);
 }
 
-TEST(ScatteredFitRules, NothingValidIsRefused) {
+TEST(PerViewFitRules, NothingValidIsRefused) {
   AnalyticMeasurement nothing(test::lambert);
   nothing.set_coverage([](const DirectionPair&) { return false; });
   Progress progress;
   try {
-    fit_scattered(nothing, {}, progress);
+    fit_per_view(nothing, {}, progress);
     FAIL() << "a measurement without valid entries was fitted";
   } catch (const Error& e) {
     EXPECT_EQ(e.status(), Status::bad_data);
@@ -148,25 +148,25 @@ TEST(ScatteredFitRules, NothingValidIsRefused) {
   }
 }
 
-TEST(ScatteredFitRules, NotANumberIsLeftOut) {
+TEST(PerViewFitRules, NotANumberIsLeftOut) {
   const AnalyticMeasurement broken([](const DirectionPair& p) {
     return p.wl.x > 0.9f ? Rgb(std::numeric_limits<float>::quiet_NaN()) : test::lambert(p);
   });
   FitOptions options;
   options.max_lobes = 3;
   Progress progress;
-  const auto fit = [&] { return fit_scattered(broken, options, progress); };
-  const ScatteredBrdf brdf = lobes_of(fit());
+  const auto fit = [&] { return fit_per_view(broken, options, progress); };
+  const PerViewBrdf brdf = lobes_of(fit());
   for (const Rgb& c : brdf.coefficient) EXPECT_TRUE(std::isfinite(c.r + c.g + c.b));
 }
 
-TEST(ScatteredFitRules, UncoveredViewsAreLeftOutAndNamed) {
+TEST(PerViewFitRules, UncoveredViewsAreLeftOutAndNamed) {
   AnalyticMeasurement half(test::lambert);
   half.set_coverage([](const DirectionPair& p) { return p.wv.z > std::cos(radians_from(70.0f)); });
   FitOptions options;
   options.max_lobes = 4;
   Progress progress;
-  const Model model = fit_scattered(half, options, progress);
+  const Model model = fit_per_view(half, options, progress);
   for (const Vec3& v : lobes_of(model).views) EXPECT_GT(v.z, std::cos(radians_from(70.0f)));
   EXPECT_FALSE(model.fit.by_view_angle.at("75").has_value());
   std::string all;
@@ -174,23 +174,23 @@ TEST(ScatteredFitRules, UncoveredViewsAreLeftOutAndNamed) {
   EXPECT_NE(all.find("view 75 degrees: the measurement does not cover it"), std::string::npos) << all;
 }
 
-TEST(ScatteredFitRules, ViewsThatMissTheToleranceAreNamed) {
+TEST(PerViewFitRules, ViewsThatMissTheToleranceAreNamed) {
   FitOptions options;
   options.max_lobes = 1;
   options.tolerance = 0.001;
   Progress progress;
-  const Model model = fit_scattered(AnalyticMeasurement(test::ggx(0.3f, 0.3f)), options, progress);
+  const Model model = fit_per_view(AnalyticMeasurement(test::ggx(0.3f, 0.3f)), options, progress);
   ASSERT_FALSE(model.fit.warnings.empty());
   EXPECT_EQ(model.fit.warnings[0].find("view 5 degrees: relative L2 "), 0u);
   EXPECT_NE(model.fit.warnings[4].find("exceeds the tolerance 0.002"), std::string::npos);
 }
 
-TEST(ScatteredFitRules, OfManyViewsThatMissTheToleranceTwelveAreNamed) {
+TEST(PerViewFitRules, OfManyViewsThatMissTheToleranceTwelveAreNamed) {
   FitOptions options;
   options.max_lobes = 1;
   options.tolerance = 0.001;
   Progress progress;
-  const Model model = fit_scattered(AnalyticMeasurement(test::ggx(0.3f, 0.3f)), options, progress);
+  const Model model = fit_per_view(AnalyticMeasurement(test::ggx(0.3f, 0.3f)), options, progress);
   const auto& warnings = model.fit.warnings;
   const auto found = std::ranges::find_if(warnings, [](auto& w) { return w.starts_with("fitted views that miss"); });
   ASSERT_NE(found, warnings.end());
@@ -199,35 +199,35 @@ TEST(ScatteredFitRules, OfManyViewsThatMissTheToleranceTwelveAreNamed) {
   EXPECT_NE(names.find(" more of "), std::string::npos) << names;
 }
 
-TEST(ScatteredFitRules, TheBoundInBytesHolds) {
+TEST(PerViewFitRules, TheBoundInBytesHolds) {
   const AnalyticMeasurement glossy(test::ggx(0.2f, 0.2f));
   for (const uint64_t bytes : {24u, 500u, 4000u}) {
     FitOptions options;
     options.max_lobes = 5;
     options.max_bytes = bytes;
     Progress progress;
-    const Model model = fit_scattered(glossy, options, progress);
+    const Model model = fit_per_view(glossy, options, progress);
     expect_sound(model);
     EXPECT_LE(lobes_of(model).parameter_bytes(), bytes);
     EXPECT_NE(model.fit.warnings.back().find("the bound of"), std::string::npos);
   }
 }
 
-TEST(ScatteredFitRules, TheBoundIsOfWhateverTheCallerCounts) {
+TEST(PerViewFitRules, TheBoundIsOfWhateverTheCallerCounts) {
   FitOptions options;
   options.max_lobes = 5;
   options.max_bytes = 2000;
   options.size_of = [](const Model& model) { return lobes_of(model).parameter_bytes() + 1500; };
   Progress progress;
-  const Model model = fit_scattered(AnalyticMeasurement(test::ggx(0.2f, 0.2f)), options, progress);
+  const Model model = fit_per_view(AnalyticMeasurement(test::ggx(0.2f, 0.2f)), options, progress);
   EXPECT_LE(options.size_of(model), 2000u);
   EXPECT_GE(options.size_of(model), 1700u) << "most of the bound is used";
 }
 
-TEST(ScatteredFitRules, TheOrderCurveFallsToTheModel) {
+TEST(PerViewFitRules, TheOrderCurveFallsToTheModel) {
   FitOptions options;
   Progress progress;
-  const Model model = fit_scattered(AnalyticMeasurement(test::ggx(0.3f, 0.3f)), options, progress);
+  const Model model = fit_per_view(AnalyticMeasurement(test::ggx(0.3f, 0.3f)), options, progress);
   const OrderCurve& order = model.fit.order;
   ASSERT_GE(order.points.size(), 3u);
   EXPECT_EQ(order.points[0].lobes, 1);
@@ -244,13 +244,13 @@ TEST(ScatteredFitRules, TheOrderCurveFallsToTheModel) {
   EXPECT_LE(order.points.back().worst, 1);
 }
 
-TEST(ScatteredFitRules, ABoundedModelStandsOnTheCurveOfTheWholeOne) {
+TEST(PerViewFitRules, ABoundedModelStandsOnTheCurveOfTheWholeOne) {
   FitOptions options;
   Progress progress;
   const AnalyticMeasurement glossy(test::ggx(0.3f, 0.3f));
-  const Model whole = fit_scattered(glossy, options, progress);
+  const Model whole = fit_per_view(glossy, options, progress);
   options.max_bytes = lobes_of(whole).parameter_bytes() / 2;
-  const Model bounded = fit_scattered(glossy, options, progress);
+  const Model bounded = fit_per_view(glossy, options, progress);
   const OrderCurve& order = bounded.fit.order;
   EXPECT_EQ(order.points.back(), whole.fit.order.points.back());
   ASSERT_TRUE(order.chosen);
@@ -258,25 +258,25 @@ TEST(ScatteredFitRules, ABoundedModelStandsOnTheCurveOfTheWholeOne) {
   EXPECT_LT(*order.chosen, order.points.size() - 1);
 }
 
-TEST(ScatteredFitRules, AnisotropicMaterialsHaveViewsOverTheHemisphere) {
+TEST(PerViewFitRules, AnisotropicMaterialsHaveViewsOverTheHemisphere) {
   FitOptions options;
   options.max_lobes = 3;
   options.tolerance = 0.2;
   Progress progress;
-  const Model model = fit_scattered(AnalyticMeasurement(test::ggx(0.5f, 0.25f), false), options, progress);
+  const Model model = fit_per_view(AnalyticMeasurement(test::ggx(0.5f, 0.25f), false), options, progress);
   expect_sound(model);
   EXPECT_FALSE(lobes_of(model).isotropic);
   EXPECT_LE(model.fit.by_view_angle.at("30").value(), 0.25);
 }
 
-TEST(ScatteredFitRules, OptionsOutOfRangeAreRefused) {
+TEST(PerViewFitRules, OptionsOutOfRangeAreRefused) {
   const AnalyticMeasurement diffuse(test::lambert);
   const auto status_of = [&](auto change) {
     FitOptions options;
     change(options);
     Progress progress;
     try {
-      fit_scattered(diffuse, options, progress);
+      fit_per_view(diffuse, options, progress);
     } catch (const Error& e) {
       return e.status();
     }

@@ -17,29 +17,29 @@ std::unique_ptr<Scene> scene_of(const std::string& kind) {
                        std::make_shared<test::Lambert>(0.5f));
 }
 
-OcclusionCapture captured(const std::string& kind, uint32_t texels) {
+VotfCapture captured(const std::string& kind, uint32_t texels) {
   const Tile tile = make_tile({.kind = kind});
   Progress progress;
-  OcclusionCaptureOptions options;
+  VotfCaptureOptions options;
   options.place.period = tile.period;
   options.texels = texels;
   options.reference_height = 0;
   options.check_views = 16;
-  return capture_occlusion(*scene_of(kind), options, progress);
+  return capture_votf(*scene_of(kind), options, progress);
 }
 
 class OfTiles : public ::testing::TestWithParam<const char*> {};
 
 TEST_P(OfTiles, SeesWhatRaysSee) {
-  const OcclusionCapture c = captured(GetParam(), 128);
+  const VotfCapture c = captured(GetParam(), 128);
   EXPECT_TRUE(c.warnings.empty());
   EXPECT_LT(c.errors->wrong, 0.01);
 }
 
-TEST(OcclusionCapture, ANetCoversFromAboveWhatItsClosedFormSays) {
+TEST(VotfCapture, ANetCoversFromAboveWhatItsClosedFormSays) {
   const Tile tile = make_tile({.kind = "net"});
-  const OcclusionCapture c = captured("net", 128);
-  const ShellField field(std::make_shared<const OcclusionVolume>(c.volume));
+  const VotfCapture c = captured("net", 128);
+  const ShellField field(std::make_shared<const VotfVolume>(c.volume));
   constexpr int kSide = 256;
   int met = 0;
   for (int i = 0; i < kSide * kSide; ++i) {
@@ -50,43 +50,43 @@ TEST(OcclusionCapture, ANetCoversFromAboveWhatItsClosedFormSays) {
   EXPECT_NEAR(static_cast<double>(met) / (kSide * kSide), 1 - *tile.parts.open_area, 0.005);
 }
 
-TEST(OcclusionCapture, AClosedTileIsMetFromEverywhere) {
-  const OcclusionCapture c = captured("corduroy", 32);
+TEST(VotfCapture, AClosedTileIsMetFromEverywhere) {
+  const VotfCapture c = captured("corduroy", 32);
   EXPECT_TRUE(c.volume.closed);
   EXPECT_EQ(c.errors->coverage, 1.0);
   EXPECT_EQ(c.errors->wrong, 0.0);
 }
 
-TEST(OcclusionCapture, ASheetWithAHoleBecomesThinWithAWarning) {
+TEST(VotfCapture, ASheetWithAHoleBecomesThinWithAWarning) {
   const auto scene = test::tile_of(test::Corners().rectangle(0, 0, 1, 0.5f, 0.3f).rectangle(0, 0.9f, 0.1f, 1).mesh(),
                                    std::make_shared<test::Lambert>(0.5f));
   Progress progress;
-  OcclusionCaptureOptions options;
+  VotfCaptureOptions options;
   options.place.period = {1, 1};
   options.texels = 32;
   options.reference_height = 0.3;
-  const OcclusionCapture c = capture_occlusion(*scene, options, progress);
+  const VotfCapture c = capture_votf(*scene, options, progress);
   ASSERT_FALSE(c.warnings.empty());  // of the seam as well
   EXPECT_NE(c.warnings.back().find("without thickness"), std::string::npos);
-  const ShellField field(std::make_shared<const OcclusionVolume>(c.volume));
+  const ShellField field(std::make_shared<const VotfVolume>(c.volume));
   EXPECT_TRUE(line_meets(field, {0.5f, 0.25f}, {0, 0, 1}));
   EXPECT_FALSE(line_meets(field, {0.5f, 0.75f}, {0, 0, 1}));
   EXPECT_GT(field.distance({0.5f, 0.25f, 0.1f}), 0) << "nothing is solid under it";
 }
 
-TEST(OcclusionCapture, SizesThatMakeNoGridAreRefused) {
+TEST(VotfCapture, SizesThatMakeNoGridAreRefused) {
   const auto scene = test::tile_of(test::sawtooth(), std::make_shared<test::Lambert>(0.5f));
   Progress progress;
   for (const uint32_t texels : {0u, 3u, 5000u}) {
-    EXPECT_THROW(capture_occlusion(*scene, {.place = {}, .texels = texels}, progress), Error) << texels;
+    EXPECT_THROW(capture_votf(*scene, {.place = {}, .texels = texels}, progress), Error) << texels;
   }
   const auto tower =
       test::tile_of(test::Corners().rectangle(0, 0, 1, 1).quad({0, 0, 0}, {0, 1, 0}, {0, 1, 500}, {0, 0, 500}).mesh(),
                     std::make_shared<test::Lambert>(0.5f));
-  EXPECT_THROW(capture_occlusion(*tower, {.place = {{0, 0}, {1, 1}}, .texels = 128}, progress), Error);
+  EXPECT_THROW(capture_votf(*tower, {.place = {{0, 0}, {1, 1}}, .texels = 128}, progress), Error);
 }
 
-INSTANTIATE_TEST_SUITE_P(OcclusionCapture, OfTiles,
+INSTANTIATE_TEST_SUITE_P(VotfCapture, OfTiles,
                          ::testing::Values("net", "chainmail", "weave", "twill", "gravel", "corduroy"));
 
 }  // namespace

@@ -11,8 +11,8 @@ namespace velour {
 namespace {
 
 /// More than two blocks, the last one not full: energies over eight decades.
-SkyPoints points() {
-  SkyPoints p;
+EnvironmentPoints points() {
+  EnvironmentPoints p;
   RandomStream random(2, 2, 2);
   for (const Vec3& w : sphere_fibonacci(150)) {
     p.x.push_back(w.x);
@@ -26,8 +26,8 @@ SkyPoints points() {
   return p;
 }
 
-SkyLobes lobes() {
-  SkyLobes l;
+EnvironmentLobes lobes() {
+  EnvironmentLobes l;
   const auto centers = sphere_fibonacci(7);
   for (size_t k = 0; k < centers.size(); ++k) {
     l.x.push_back(centers[k].x);
@@ -40,17 +40,17 @@ SkyLobes lobes() {
   return l;
 }
 
-double kernel(const SkyPoints& p, size_t i, const Vec3d& center, float bandwidth) {
+double kernel(const EnvironmentPoints& p, size_t i, const Vec3d& center, float bandwidth) {
   const Vec3d offset = Vec3d(p.direction(i)) - center;
   return std::exp(-0.5 * static_cast<double>(bandwidth) * glm::dot(offset, offset));
 }
 
-Vec3d center_of(const SkyLobes& l, size_t k) { return {l.x[k], l.y[k], l.z[k]}; }
+Vec3d center_of(const EnvironmentLobes& l, size_t k) { return {l.x[k], l.y[k], l.z[k]}; }
 
 /// As environment_kernels.h defines the moments.
-std::vector<SkyMoments> reference(const SkyPoints& p, size_t first, const SkyLobes& l) {
-  std::vector<SkyMoments> moments(l.size());
-  for (size_t i = first; i < std::min(first + kSkyBlock, p.size()); ++i) {
+std::vector<EnvironmentMoments> reference(const EnvironmentPoints& p, size_t first, const EnvironmentLobes& l) {
+  std::vector<EnvironmentMoments> moments(l.size());
+  for (size_t i = first; i < std::min(first + kEnvironmentBlock, p.size()); ++i) {
     std::vector<double> value(l.size());
     double total = 1e-30;
     for (size_t k = 0; k < l.size(); ++k) {
@@ -73,19 +73,19 @@ std::vector<SkyMoments> reference(const SkyPoints& p, size_t first, const SkyLob
 /// `scale` bounds the terms of the sum.
 void expect_near(double found, double expected, double scale) { EXPECT_NEAR(found, expected, 3e-5 * scale + 1e-20); }
 
-TEST(SkyKernels, MomentsMatchTheScalarReferenceOnEveryTarget) {
-  const SkyPoints p = points();
-  const SkyLobes l = lobes();
-  std::vector<float> scratch(kSkyBlock * l.size());
+TEST(EnvironmentKernels, MomentsMatchTheScalarReferenceOnEveryTarget) {
+  const EnvironmentPoints p = points();
+  const EnvironmentLobes l = lobes();
+  std::vector<float> scratch(kEnvironmentBlock * l.size());
   test::on_every_simd_target([&] {
-    for (size_t first = 0; first < p.size(); first += kSkyBlock) {
-      std::vector<SkyMoments> found(l.size());
-      add_sky_block(p, first, l, scratch.data(), found.data());
-      add_sky_block(p, first, l, scratch.data(), found.data());  // it adds
-      const std::vector<SkyMoments> expected = reference(p, first, l);
+    for (size_t first = 0; first < p.size(); first += kEnvironmentBlock) {
+      std::vector<EnvironmentMoments> found(l.size());
+      add_environment_block(p, first, l, scratch.data(), found.data());
+      add_environment_block(p, first, l, scratch.data(), found.data());  // it adds
+      const std::vector<EnvironmentMoments> expected = reference(p, first, l);
       for (size_t k = 0; k < l.size(); ++k) {
         SCOPED_TRACE(k);
-        const SkyMoments &a = found[k], &b = expected[k];
+        const EnvironmentMoments &a = found[k], &b = expected[k];
         expect_near(a.energy, 2 * b.energy, b.energy);
         expect_near(a.dx, 2 * b.dx, b.energy);
         expect_near(a.dy, 2 * b.dy, b.energy);
@@ -105,8 +105,8 @@ TEST(SkyKernels, MomentsMatchTheScalarReferenceOnEveryTarget) {
   });
 }
 
-TEST(SkyKernels, SmoothingMatchesTheScalarReferenceOnEveryTarget) {
-  const SkyPoints p = points();
+TEST(EnvironmentKernels, SmoothingMatchesTheScalarReferenceOnEveryTarget) {
+  const EnvironmentPoints p = points();
   test::on_every_simd_target([&] {
     for (const float bandwidth : {0.0f, 1.0f, 200.0f, 1e4f}) {
       for (const Vec3& w : {Vec3(0, 0, 1), p.direction(17), direction(2.2f, -1)}) {
@@ -114,7 +114,7 @@ TEST(SkyKernels, SmoothingMatchesTheScalarReferenceOnEveryTarget) {
         for (size_t i = 0; i < p.size(); ++i) {
           expected += static_cast<double>(p.energy[i]) * kernel(p, i, Vec3d(w), bandwidth);
         }
-        EXPECT_NEAR(smoothed_sky(p, w, bandwidth), expected, 1e-5 * expected + 1e-35) << bandwidth;
+        EXPECT_NEAR(smoothed_environment(p, w, bandwidth), expected, 1e-5 * expected + 1e-35) << bandwidth;
       }
     }
   });

@@ -32,9 +32,9 @@ Environment image_of(const F& radiance, const Mat3& turn = Mat3(1.0f), int width
   return Environment::image({width, height, 3, rgb}, 1, turn);
 }
 
-SkyMixture fitted(const Environment& environment, const std::string& folder = {}) {
+EnvironmentMixture fitted(const Environment& environment, const std::string& folder = {}) {
   const Progress progress;
-  return sky_mixture(environment, {}, folder, progress);
+  return mixture_of_environment(environment, {}, folder, progress);
 }
 
 const Vec3 kFirst = glm::normalize(Vec3(1, 0.5f, 0.7f)), kSecond = glm::normalize(Vec3(-0.6f, 0.7f, -0.2f));
@@ -44,7 +44,7 @@ Rgb two_lobes(const Vec3& w) {
          Rgb(0.1f, 0.3f, 1) * std::exp(8 * (glm::dot(w, kSecond) - 1));
 }
 
-Rgb energy(const SkyMixture& sky) {
+Rgb energy(const EnvironmentMixture& sky) {
   Rgb total(0);
   for (size_t k = 0; k < sky.size(); ++k) {
     total += static_cast<float>(kernel_integral(Kernel::gaussian, static_cast<double>(sky.bandwidth[k]))) *
@@ -53,8 +53,8 @@ Rgb energy(const SkyMixture& sky) {
   return total;
 }
 
-TEST(SkyMixture, FindsAKnownMixture) {
-  const SkyMixture sky = fitted(image_of(two_lobes));
+TEST(EnvironmentMixture, FindsAKnownMixture) {
+  const EnvironmentMixture sky = fitted(image_of(two_lobes));
   EXPECT_LT(sky.relative_l2, 0.03f);
   double error = 0, norm = 0;
   for (int i = 0; i < 4000; ++i) {
@@ -72,10 +72,10 @@ TEST(SkyMixture, FindsAKnownMixture) {
 }
 
 /// Whoever lights or turns a picture anew finds its fit in the cache.
-TEST(SkyMixture, OfAPictureThatIsPlacedAnewIsTheSame) {
+TEST(EnvironmentMixture, OfAPictureThatIsPlacedAnewIsTheSame) {
   const Mat3 turn(Vec3(0, 1, 0), Vec3(-1, 0, 0), Vec3(0, 0, 1));
   const Environment environment = image_of(two_lobes, Mat3(1.0f), 64, 32);
-  const SkyMixture sky = fitted(environment), placed = fitted(environment.placed(2.5f, turn));
+  const EnvironmentMixture sky = fitted(environment), placed = fitted(environment.placed(2.5f, turn));
   ASSERT_EQ(placed.size(), sky.size());
   for (size_t k = 0; k < sky.size(); ++k) {
     EXPECT_LT(glm::distance(turn * placed.center[k], sky.center[k]), 1e-6f);
@@ -83,40 +83,40 @@ TEST(SkyMixture, OfAPictureThatIsPlacedAnewIsTheSame) {
   }
 }
 
-SkyMixture even() {
-  SkyMixture sky;
+EnvironmentMixture even() {
+  EnvironmentMixture sky;
   sky.center = {{0, 0, 1}};
   sky.bandwidth = {0};
   sky.coefficient = {Rgb(1.0f)};
   return sky;
 }
 
-TEST(SkyMisfit, IsChiSquare) {
+TEST(EnvironmentMisfit, IsChiSquare) {
   const auto cap = [](float z) { return image_of([z](const Vec3& w) { return Rgb(w.z > z ? 1.0f : 0.0f); }); };
-  EXPECT_NEAR(sky_misfit(Environment::constant(Rgb(2.0f)), even()), 0, 1e-5);
-  EXPECT_NEAR(sky_misfit(cap(0), even()), 1, 0.01);     // half of the sphere
-  EXPECT_NEAR(sky_misfit(cap(0.5f), even()), 3, 0.03);  // a quarter
+  EXPECT_NEAR(misfit_of_environment(Environment::constant(Rgb(2.0f)), even()), 0, 1e-5);
+  EXPECT_NEAR(misfit_of_environment(cap(0), even()), 1, 0.01);     // half of the sphere
+  EXPECT_NEAR(misfit_of_environment(cap(0.5f), even()), 3, 0.03);  // a quarter
 }
 
-TEST(SkyMisfit, TellsEdgesFromSlopes) {
+TEST(EnvironmentMisfit, TellsEdgesFromSlopes) {
   const Environment soft = image_of(two_lobes);
-  EXPECT_LT(sky_misfit(soft, fitted(soft)), 0.03);
+  EXPECT_LT(misfit_of_environment(soft, fitted(soft)), 0.03);
   const Environment lamps = image_of([](const Vec3& w) {
     const float phi = 8 * std::atan2(w.y, w.x) / kPi;  // sixteen of them around
     const bool lit = std::abs(phi - std::round(phi)) < 0.2f && std::abs(w.z - 0.5f) < 0.06f;
     return Rgb(lit ? 50.0f : 0.05f);
   });
-  EXPECT_GT(sky_misfit(lamps, fitted(lamps)), 0.2);
-  SkyMixture dimmed = fitted(soft);
+  EXPECT_GT(misfit_of_environment(lamps, fitted(lamps)), 0.2);
+  EnvironmentMixture dimmed = fitted(soft);
   for (size_t k = 0; k < dimmed.size(); ++k) {
     if (glm::dot(dimmed.center[k], kSecond) > 0.5f) dimmed.coefficient[k] *= 0.01f;
   }
-  EXPECT_GT(sky_misfit(soft, dimmed), 1);  // light that the mixture hardly has
+  EXPECT_GT(misfit_of_environment(soft, dimmed), 1);  // light that the mixture hardly has
 }
 
-TEST(SkyMixture, KeepsTheEnergyOfEveryChannelAndIsNeverNegative) {
+TEST(EnvironmentMixture, KeepsTheEnergyOfEveryChannelAndIsNeverNegative) {
   const Environment environment = image_of(two_lobes);
-  const SkyMixture sky = fitted(environment);
+  const EnvironmentMixture sky = fitted(environment);
   const Rgb kept = energy(sky), exact(2 * kPi * (3 / 40.0f * Rgb(1, 0.5f, 0.2f) + 1 / 8.0f * Rgb(0.1f, 0.3f, 1)));
   for (int c = 0; c < 3; ++c) EXPECT_NEAR(kept[c] / exact[c], 1, 0.002) << c;
   for (size_t k = 0; k < sky.size(); ++k) {
@@ -125,7 +125,7 @@ TEST(SkyMixture, KeepsTheEnergyOfEveryChannelAndIsNeverNegative) {
   }
 }
 
-TEST(SkyMixture, ASmallSunSurvives) {
+TEST(EnvironmentMixture, ASmallSunSurvives) {
   // Half a degree across with nine tenths of the energy, over an uneven sky.
   const Vec3 sun = glm::normalize(Vec3(0.4f, -0.8f, 0.5f));
   const float disk = 2 * kPi * (1 - std::cos(radians_from(0.25f)));
@@ -134,7 +134,7 @@ TEST(SkyMixture, ASmallSunSurvives) {
     const bool inside = glm::distance(w, sun) < 2 * std::sin(radians_from(0.125f));
     return inside ? sky + Rgb(9 * 0.5f * 4 * kPi / disk) : sky;
   };
-  const SkyMixture sky = fitted(image_of(radiance, Mat3(1.0f), 2048, 1024));
+  const EnvironmentMixture sky = fitted(image_of(radiance, Mat3(1.0f), 2048, 1024));
   // Energy of the lobes within a quarter of a degree of the sun's center, in closed form for a lobe about it: lobes
   // elsewhere add less than the sky's own millionth.
   double near = 0;
@@ -157,9 +157,9 @@ TEST(SkyMixture, ASmallSunSurvives) {
   EXPECT_NEAR(whole / total / 0.9, 1, 0.05);
 }
 
-TEST(SkyMixture, IsTheSameForAnyNumberOfThreads) {
+TEST(EnvironmentMixture, IsTheSameForAnyNumberOfThreads) {
   const Environment environment = image_of(two_lobes);
-  std::vector<SkyMixture> skies;
+  std::vector<EnvironmentMixture> skies;
   for (const int threads : {1, 2}) {
     tbb::task_arena arena(threads);
     arena.execute([&] { skies.push_back(fitted(environment)); });
@@ -169,17 +169,17 @@ TEST(SkyMixture, IsTheSameForAnyNumberOfThreads) {
   EXPECT_EQ(skies[0].coefficient, skies[1].coefficient);
 }
 
-TEST(SkyMixture, TurnsWithTheWorld) {
+TEST(EnvironmentMixture, TurnsWithTheWorld) {
   const Mat3 turn({0, 1, 0}, {-1, 0, 0}, {0, 0, 1});
-  const SkyMixture straight = fitted(image_of(two_lobes)), turned = fitted(image_of(two_lobes, turn));
+  const EnvironmentMixture straight = fitted(image_of(two_lobes)), turned = fitted(image_of(two_lobes, turn));
   ASSERT_EQ(straight.size(), turned.size());
   for (size_t k = 0; k < turned.size(); ++k) {
     EXPECT_LT(glm::distance(turn * turned.center[k], straight.center[k]), 1e-5f);
   }
 }
 
-TEST(SkyMixture, ConstantAndBlackSkies) {
-  const SkyMixture constant = fitted(Environment::constant({1, 2, 3}));
+TEST(EnvironmentMixture, ConstantAndBlackSkies) {
+  const EnvironmentMixture constant = fitted(Environment::constant({1, 2, 3}));
   ASSERT_EQ(constant.size(), 1u);
   EXPECT_EQ(constant.bandwidth[0], 0);
   EXPECT_EQ(constant.coefficient[0], Rgb(1, 2, 3));
@@ -187,10 +187,10 @@ TEST(SkyMixture, ConstantAndBlackSkies) {
   EXPECT_EQ(fitted(image_of([](const Vec3&) { return Rgb(0); })).size(), 0u);
 }
 
-TEST(SkyMixture, StopsWhenCancelled) {
+TEST(EnvironmentMixture, StopsWhenCancelled) {
   Progress progress;
   progress.cancel();
-  EXPECT_THROW(sky_mixture(image_of(two_lobes), {}, {}, progress), Error);
+  EXPECT_THROW(mixture_of_environment(image_of(two_lobes), {}, {}, progress), Error);
 }
 
 std::filesystem::path only_file(const std::filesystem::path& folder) {
@@ -198,10 +198,10 @@ std::filesystem::path only_file(const std::filesystem::path& folder) {
   return std::filesystem::directory_iterator(folder)->path();
 }
 
-TEST(SkyCache, GivesBackTheSameMixture) {
+TEST(EnvironmentCache, GivesBackTheSameMixture) {
   const auto folder = test::scratch_folder() / "made";
   const Environment environment = image_of(two_lobes);
-  const SkyMixture first = fitted(environment, folder), second = fitted(environment, folder);
+  const EnvironmentMixture first = fitted(environment, folder), second = fitted(environment, folder);
   EXPECT_FALSE(first.cached);
   EXPECT_TRUE(second.cached);
   EXPECT_EQ(first.bandwidth, second.bandwidth);
@@ -212,15 +212,15 @@ TEST(SkyCache, GivesBackTheSameMixture) {
   EXPECT_FALSE(fitted(image_of([](const Vec3& w) { return 2.0f * two_lobes(w); }), folder).cached);
 }
 
-TEST(SkyCache, RefitsWhatIsCorrupt) {
+TEST(EnvironmentCache, RefitsWhatIsCorrupt) {
   const auto folder = test::scratch_folder() / "made";
   const Environment environment = image_of(two_lobes);
-  const SkyMixture exact = fitted(environment, folder);
+  const EnvironmentMixture exact = fitted(environment, folder);
   const auto file = only_file(folder);
   const auto size = std::filesystem::file_size(file);
   for (const uint64_t kept : {uint64_t{0}, uint64_t{7}, size / 2, size - 1}) {
     std::filesystem::resize_file(file, kept);
-    const SkyMixture again = fitted(environment, folder);
+    const EnvironmentMixture again = fitted(environment, folder);
     EXPECT_FALSE(again.cached) << kept;
     EXPECT_EQ(again.bandwidth, exact.bandwidth);
     EXPECT_EQ(std::filesystem::file_size(file), size);
@@ -230,7 +230,7 @@ TEST(SkyCache, RefitsWhatIsCorrupt) {
   EXPECT_TRUE(fitted(environment, folder).cached);
 }
 
-TEST(SkyCache, AFolderThatCannotBeIsNoError) {
+TEST(EnvironmentCache, AFolderThatCannotBeIsNoError) {
   const auto folder = test::scratch_folder();
   std::ofstream(folder / "file") << "x";
   EXPECT_GT(fitted(image_of(two_lobes), folder / "file").size(), 0u);
