@@ -7,7 +7,18 @@ import pytest
 from command_line import refused, velour
 from velour.native import Scene, Tile, VelourError, render_job
 
-NAMES = ["weave", "twill", "net", "chainmail", "gravel", "corduroy"]
+NAMES = [
+    "weave",
+    "twill",
+    "net",
+    "chainmail",
+    "gravel",
+    "corduroy",
+    "satin",
+    "knit",
+    "velvet",
+    "leather",
+]
 
 
 def test_kinds_with_their_defaults():

@@ -11,6 +11,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 
 METALS, PAINTS, PLAIN, CLOTHS = "Metals", "Paints", "Plastics and Papers", "Cloths"
+MATT, HIDES = "Matt Whites and Clays", "Leathers"
 
 # Catalogs of Blender's asset browser. Users' files contain these ids: never change one.
 CATALOGS = {
@@ -18,6 +19,8 @@ CATALOGS = {
     PAINTS: "0c6f1b0e-6a35-4a4e-8a3c-3f0c1f6c7b02",
     PLAIN: "b1a9b6c8-4c83-4d9d-8a0e-5d2e8a3b9c03",
     CLOTHS: "e7c2d9f4-90b1-4f53-9b1d-0a4d7c6f2e04",
+    MATT: "3b8d2c5e-71f6-4c0a-9a57-d2c4e6f80a05",
+    HIDES: "94a0f7d1-2e6b-4d38-8c19-7b5e3f1d6c06",
 }
 
 
@@ -67,6 +70,11 @@ class Preset:
         return self.name.lower().replace(" ", "_")
 
 
+def matt(albedo, roughness) -> Surface:
+    """A rough surface without a clear interface."""
+    return Surface(roughness, base_albedo=albedo, base_share=1.0)
+
+
 def _metal(name, surface, description, *tags) -> Preset:
     return Preset(name, METALS, surface, description, (surface.metal, *tags))
 
@@ -96,6 +104,9 @@ PRESETS = (
         "Door hardware, brushed along v",
         "brushed",
         "anisotropic",
+    ),
+    _metal(
+        "Brushed Brass", Surface(0.22, "brass", 2.5), "Yellow brass, brushed along v", "brushed", "anisotropic"
     ),
     Preset("Red Enamel", PAINTS, coat((0.55, 0.015, 0.01), 0.06), "Gloss enamel", ("gloss", "red")),
     Preset(
@@ -140,6 +151,9 @@ PRESETS = (
         ("satin", "orange"),
     ),
     Preset(
+        "Black Rubber", PLAIN, coat((0.018, 0.018, 0.019), 0.42, 1.52), "Moulded rubber", ("matt", "black")
+    ),
+    Preset(
         "Office Paper", PLAIN, coat((0.86, 0.87, 0.88), 0.7, 1.47), "Uncoated white paper", ("matt", "white")
     ),
     Preset(
@@ -148,6 +162,15 @@ PRESETS = (
         coat((0.47, 0.3, 0.16), 0.6, 1.47),
         "Unbleached wrapping paper",
         ("matt", "brown"),
+    ),
+)
+
+PRESETS += (
+    Preset("Diffuse White", MATT, matt((0.92, 0.92, 0.92), 0.2), "Sintered white standard", ("matt", "white")),
+    Preset("Plaster", MATT, matt((0.78, 0.75, 0.7), 0.5), "Dry plaster of Paris", ("matt", "white")),
+    Preset("Terracotta", MATT, matt((0.5, 0.19, 0.09), 0.45), "Unglazed fired clay", ("matt", "clay")),
+    Preset(
+        "Glazed Porcelain", MATT, coat((0.8, 0.79, 0.76), 0.05, 1.5), "White clay below a glaze", ("gloss",)
     ),
 )
 
@@ -216,5 +239,56 @@ PRESETS += (
         Weave("corduroy", (_yarn((0.27, 0.13, 0.05), 0.7),)),
         "Cotton, some seven wales a centimetre",
         ("ribs", "brown", "cotton"),
+    ),
+)
+
+PRESETS += (
+    Preset(
+        "Ivory Satin",
+        CLOTHS,
+        Weave(
+            "satin",
+            (_yarn((0.78, 0.7, 0.55), _SILK, 1.56), _yarn((0.74, 0.66, 0.52), 0.35, 1.56)),
+            {"size": 0.0015, "thickness": 0.15, "irregularity": 0.08},
+        ),
+        "Warp-faced satin of silk",
+        ("shiny", "silk", "white"),
+    ),
+    Preset(
+        "Crimson Velvet",
+        CLOTHS,
+        Weave("velvet", (_yarn((0.09, 0.004, 0.01), 0.6), _yarn((0.42, 0.012, 0.04), 0.3)), {"irregularity": 0.6}),
+        "Cut pile on a woven ground",
+        ("pile", "red"),
+    ),
+    Preset(
+        "Knitted Wool",
+        CLOTHS,
+        Weave("knit", (_yarn((0.55, 0.5, 0.42), 0.7, 1.55),), {"irregularity": 0.25}, repeats=16),
+        "Plain knit of three-ply wool, undyed",
+        ("knit", "wool", "natural"),
+    ),
+    Preset(
+        "Steel Mail",
+        METALS,
+        Weave("chainmail", (Surface(0.22, "iron"),), {"size": 0.02}, repeats=16),
+        "European four-in-one chain mail",
+        ("open", "iron"),
+    ),
+    Preset(
+        "Brown Leather",
+        HIDES,
+        Weave("leather", (coat((0.2, 0.075, 0.03), 0.3, 1.5),), {"size": 0.008}, repeats=16),
+        "Full-grain leather, waxed",
+        ("leather", "brown", "satin"),
+    ),
+    Preset(
+        "Black Leather",
+        HIDES,
+        Weave(
+            "leather", (coat((0.012, 0.012, 0.013), 0.22, 1.5),), {"size": 0.006, "thickness": 0.15}, repeats=16
+        ),
+        "Finely grained leather, polished",
+        ("leather", "black", "shiny"),
     ),
 )

@@ -270,7 +270,7 @@ typedef struct vlr_microsurface_options {
   uint32_t threads;     /* 0: all */
   double roughness;     /* Beckmann alpha = sqrt(2) x RMS slope along x; 0.01..1 */
   double anisotropy;    /* alpha_x / alpha_y >= 1; 1: isotropic, MERL layout */
-  const char* metal;    /* "nickel", "gold", "copper", "aluminium", "silver", "iron", "chromium", "titanium" */
+  const char* metal;    /* "nickel", "gold", "copper", "aluminium", "silver", "iron", "chromium", "titanium", "brass" */
   float base_albedo[3]; /* diffuse base below the metal flakes; 0 0 0: bare metal */
   double base_share;    /* share of the surface that is diffuse base; 0..1 */
   /* Refractive index of a clear surface, 1.05..3; 0: none. Roughness and anisotropy are then its own; base and
@@ -673,8 +673,8 @@ VLR_API vlr_status vlr_scene_add_shader_material(vlr_scene* scene, const vlr_sha
 
 /* ---- tiles: procedural mesostructure ------------------------------------------------------------------------- */
 
-/* One period of a small structure, repeated infinitely in x and y: plain weave, twill, net, chain mail, gravel,
- * corduroy. The cell is [0, period x] x [0, period y], meters, +z up. Parts that cross its border are there once,
+/* One period of a small structure, repeated infinitely in x and y: weaves, knit, net, chain mail, gravel, corduroy,
+ * velvet, leather (vlr_tile_kinds_json). The cell is [0, period x] x [0, period y], meters, +z up. Parts that cross its border are there once,
  * whole, and stick out; copies shifted by the period complete the structure. The same options give the same arrays.
  *
  * The pitch, size / count, is the distance between neighboring yarns, cords, rings or wales (for pebbles, about). */

@@ -8,6 +8,8 @@
 #include "base/error.h"
 #include "capture/tile/chainmail.h"
 #include "capture/tile/gravel.h"
+#include "capture/tile/knit.h"
+#include "capture/tile/sheets.h"
 #include "capture/tile/woven.h"
 
 namespace velour {
@@ -38,6 +40,14 @@ constexpr std::array kKinds = {
              make_gravel},
     TileKind{"corduroy", "ribs of pile with grooves between them", shape_of(6e-3, 4, 32, 0.45, 0.12, 0.25), 1, 0.02,
              2.0, true, make_corduroy},
+    TileKind{"satin", "five-end satin: warp over four, under one", shape_of(1.5e-3, 5, 16, 0.2, 0.06, 0.1), 5, 0.04,
+             0.6, true, make_satin},
+    TileKind{"knit", "plain knit of three-ply yarn", shape_of(9e-3, 3, 18, 0.24, kNoGap, 0.1), 3, kNoGap, kThickestYarn,
+             true, make_knit},
+    TileKind{"velvet", "upright fibers on a ground", shape_of(2e-3, 28, 8, 6, 0.35, 0.3), 1, 0.2, 20.0, true,
+             make_velvet},
+    TileKind{"leather", "grained leather: cushions between creases", shape_of(8e-3, 7, 16, 0.2, 0.35, 0.8), 1, 0.05,
+             1.0, true, make_leather},
 };
 
 template <typename T>

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <utility>
 #include "capture/tile/mesh_builder.h"
-#include "math/sphere/random.h"
+#include "capture/tile/periodic_noise.h"
 
 namespace velour {
 
@@ -15,6 +15,8 @@ using Pattern = bool (*)(int weft, int warp);
 
 bool plain(int weft, int warp) { return (weft + warp) % 2 == 0; }
 bool twill_2_2(int weft, int warp) { return (warp + 4 - weft % 4) % 4 < 2; }
+/// Five-end satin, warp-faced, with a step of two between the crossings of neighboring wefts.
+bool satin_5(int weft, int warp) { return (warp + 3 * weft) % 5 == 0; }
 
 /// One set of yarns of a cloth; `s` counts pitches along a yarn from its first crossing.
 class Yarns {
@@ -114,67 +116,13 @@ TileParts make_twill(const TileShape& shape) {
                     {yarn("warp", {0.02f, 0.045f, 0.14f}, 0.6f), yarn("weft", {0.6f, 0.58f, 0.52f}, 0.6f)});
 }
 
+TileParts make_satin(const TileShape& shape) {
+  return make_cloth(shape, satin_5,
+                    {yarn("warp", {0.62f, 0.5f, 0.38f}, 0.25f), yarn("weft", {0.55f, 0.42f, 0.32f}, 0.35f)});
+}
+
 TileParts make_net(const TileShape& shape) {
   return make_cloth(shape, plain, {yarn("cord", {0.45f, 0.3f, 0.14f}, 0.6f)});
-}
-
-namespace {
-
-constexpr int kTuftsAcross = 4;  // per pitch
-constexpr int kTuftsAlong = 6;   // per pitch
-
-/// Profile across one wale at `t` in [0, 1): x in [0, 1) from the left edge of the rib to that of the next, and height
-/// in rib heights. The last step of the grid crosses the groove.
-glm::dvec2 wale(double t, double groove_step, double gap) {
-  const double angle = kPiD * t / (1 - groove_step);
-  const double half_width = 0.5 * (1 - gap);
-  const double across = std::cos(std::min(angle, kPiD));  // dense lines where the rib is steep
-  return {half_width * (1 - across), 1 - across * across};
-}
-
-}  // namespace
-
-TileParts make_corduroy(const TileShape& shape) {
-  const double pitch = shape.pitch();
-  const int cells = shape.count * shape.resolution;
-  const PeriodicNoise tufts{shape.seed, 0, glm::ivec2(kTuftsAcross, kTuftsAlong) * shape.count};
-  MeshBuilder builder;
-  const MeshBuilder::Grid grid{.cells_u = cells,
-                               .cells_v = cells,
-                               .end_u = GridEnd::repeat({shape.size, 0, 0}),
-                               .end_v = GridEnd::repeat({0, shape.size, 0}),
-                               .slot = 0};
-  builder.add_grid(grid, [&](double u, double v) {
-    const double wales = u * shape.count, number = std::floor(wales + 1e-9);
-    const glm::dvec2 profile = wale(wales - number, 1.0 / shape.resolution, shape.gap);
-    const double share = 1 - shape.irregularity * tufts({u, v});
-    const double x = (number + 0.5 * shape.gap + profile.x) * pitch;
-    return Vec3d(x, v * shape.size, shape.thickness * pitch * profile.y * share);
-  });
-  return {.mesh = builder.finish(),
-          .materials = {{"pile", {.base_color = {0.36f, 0.16f, 0.05f}, .roughness = 0.8f, .specular = 0.2f}}},
-          .open = false,
-          .open_area = 0.0};
-}
-
-namespace {
-
-double smooth(double t) { return t * t * (3 - 2 * t); }
-
-int wrapped(int i, int n) { return ((i % n) + n) % n; }
-
-}  // namespace
-
-double PeriodicNoise::operator()(const glm::dvec2& at) const {
-  const glm::dvec2 place = at * glm::dvec2(cells), corner = glm::floor(place), rest = place - corner;
-  const auto value = [&](int dx, int dy) {
-    const int x = wrapped(int(corner.x) + dx, cells.x), y = wrapped(int(corner.y) + dy, cells.y);
-    return double(
-        RandomStream(seed, stream, static_cast<uint64_t>(y) * static_cast<uint64_t>(cells.x) + static_cast<uint64_t>(x))
-            .next());
-  };
-  const double u = smooth(rest.x), v = smooth(rest.y);
-  return glm::mix(glm::mix(value(0, 0), value(1, 0), u), glm::mix(value(0, 1), value(1, 1), u), v);
 }
 
 }  // namespace velour

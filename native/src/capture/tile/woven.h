@@ -6,8 +6,6 @@
 // middle plane of the cloth, and the lower yarn as far below: the condition for the two not to intersect.
 #pragma once
 
-#include <cstdint>
-#include <glm/glm.hpp>
 #include "capture/tile/tile.h"
 
 namespace velour {
@@ -23,26 +21,9 @@ double yarn_amplitude(double half_width);
 
 TileParts make_weave(const TileShape& shape);
 TileParts make_twill(const TileShape& shape);
+/// Five-end satin: the warp floats over four wefts, so that it covers the face.
+TileParts make_satin(const TileShape& shape);
 /// The plain weave, with cords far apart.
 TileParts make_net(const TileShape& shape);
-
-// Corduroy: ribs of pile.
-
-/// A sheet without holes: ribs along y, parabolas `thickness` high, with flat grooves `gap` wide between them at z = 0.
-/// Irregularity makes tufts of unequal height.
-TileParts make_corduroy(const TileShape& shape);
-
-// Smooth periodic noise.
-
-/// Value noise: uniform random numbers in [0, 1) at the points of a lattice, interpolated with continuous slopes, never
-/// outside [0, 1). Repeats after `cells` lattice cells along each axis.
-struct PeriodicNoise {
-  uint64_t seed = 0;
-  uint64_t stream = 0;  // selects independent noise for the same seed
-  glm::ivec2 cells{1, 1};
-
-  /// `at` in periods: at + (1, 0) and at + (0, 1) give the same value.
-  double operator()(const glm::dvec2& at) const;
-};
 
 }  // namespace velour

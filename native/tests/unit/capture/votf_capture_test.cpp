@@ -87,7 +87,7 @@ TEST(VotfCapture, SizesThatMakeNoGridAreRefused) {
 }
 
 INSTANTIATE_TEST_SUITE_P(VotfCapture, OfTiles,
-                         ::testing::Values("net", "chainmail", "weave", "twill", "gravel", "corduroy"));
+                         ::testing::Values("net", "chainmail", "weave", "twill", "gravel", "corduroy", "knit"));
 
 }  // namespace
 }  // namespace velour

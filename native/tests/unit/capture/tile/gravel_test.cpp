@@ -75,18 +75,5 @@ TEST(Gravel, StonesAreCutFromTheBalls) {
   EXPECT_LT(least, 0.8);
 }
 
-TEST(Corduroy, WithoutIrregularityIsParabolas) {
-  const Tile tile = make_tile({.kind = "corduroy", .irregularity = 0.0});
-  const TileShape& s = tile.shape;
-  const int steps = s.resolution - 1;  // the last one crosses the groove
-  const double a = 0.5 * (1 - s.gap) * s.pitch(), b = s.thickness * s.pitch();
-  double section = 0;
-  for (int i = 0; i < steps; ++i) {
-    const double left = std::cos(kPiD * i / steps), right = std::cos(kPiD * (i + 1) / steps);
-    section += a * (left - right) * b * (1 - 0.5 * (left * left + right * right));
-  }
-  EXPECT_NEAR(volume(tile.parts.mesh, {0}) / (s.count * s.size * section), 1, 1e-5);
-}
-
 }  // namespace
 }  // namespace velour::testing

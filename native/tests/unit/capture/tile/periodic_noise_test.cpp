@@ -1,4 +1,4 @@
-#include "capture/tile/woven.h"
+#include "capture/tile/periodic_noise.h"
 
 #include <gtest/gtest.h>
 

@@ -103,7 +103,9 @@ TEST_P(OpenArea, IsWhatRaysFind) {
 INSTANTIATE_TEST_SUITE_P(Kinds, TileRays, ::testing::ValuesIn(tile_kinds().begin(), tile_kinds().end()),
                          [](const auto& kind) { return std::string(kind.param.name); });
 
-INSTANTIATE_TEST_SUITE_P(Kinds, OpenArea, ::testing::Values("weave", "twill", "net", "gravel", "corduroy"));
+INSTANTIATE_TEST_SUITE_P(Kinds, OpenArea,
+                         ::testing::Values("weave", "twill", "net", "gravel", "corduroy", "satin", "velvet",
+                                           "leather"));
 
 TEST(RaysThroughTiles, YarnsThatAreTooHighForTheirWaveAreFound) {
   // The negative control: the weft sinks by a tenth of the yarns' height.

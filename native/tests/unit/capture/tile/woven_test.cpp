@@ -42,7 +42,7 @@ TEST_P(Cloth, HasTheVolumeOfItsYarns) {
   EXPECT_NEAR(volume(tile.parts.mesh, {0, 1}) / expected, 1, 1e-5);
 }
 
-INSTANTIATE_TEST_SUITE_P(Kinds, Cloth, ::testing::Values("weave", "twill", "net"));
+INSTANTIATE_TEST_SUITE_P(Kinds, Cloth, ::testing::Values("weave", "twill", "satin", "net"));
 
 /// Height of the middle of yarn `yarn` above crossing `crossing`, from the vertices near it.
 double middle(const Tile& tile, bool weft, int yarn, int crossing) {
