@@ -16,8 +16,9 @@ sys.path.insert(0, str(ROOT / "scripts/lib"))
 
 import preset_build
 import preset_preview
-from preset_table import CATALOGS, CLOTHS, METALS, PAINTS, PLAIN, PRESETS, Surface, Weave
-from velour.native import Model, Tile
+from preset_table import CATALOGS, CLOTHS, HIDES, MATT, METALS, PAINTS, PLAIN, PRESETS, Weave
+from velour.core import presets
+from velour.native import Model, Tile, images
 
 SMALL = preset_build.Sizes(
     rays=60_000, yarn_rays=60_000, texels=4, directions=20, samples=1, outline_texels=32
@@ -25,9 +26,10 @@ SMALL = preset_build.Sizes(
 
 
 def test_has_what_it_is_to_have():
-    assert Counter(preset.catalog for preset in PRESETS) == {METALS: 8, PAINTS: 6, PLAIN: 4, CLOTHS: 6}
+    counts = Counter(preset.catalog for preset in PRESETS)
+    assert counts == {METALS: 10, PAINTS: 6, PLAIN: 5, MATT: 4, CLOTHS: 9, HIDES: 2}
     for preset in PRESETS:
-        assert isinstance(preset.made_of, Weave if preset.catalog == CLOTHS else Surface), preset.name
+        assert isinstance(preset.made_of, Weave) or preset.catalog not in (CLOTHS, HIDES), preset.name
         assert preset.description, preset.name
         assert preset.tags, preset.name
 
@@ -43,7 +45,7 @@ def test_numbers_are_those_of_surfaces():
     for preset in PRESETS:
         made_of = preset.made_of
         for surface in made_of.yarns if isinstance(made_of, Weave) else (made_of,):
-            assert all(0 <= albedo < 0.9 for albedo in surface.base_albedo), preset.name
+            assert all(0 <= albedo < 0.95 for albedo in surface.base_albedo), preset.name
             assert surface.ior == 0 or 1.3 < surface.ior < 1.7, preset.name
         if isinstance(made_of, Weave):
             with Tile.create(made_of.kind, **made_of.shape) as tile:
@@ -101,3 +103,25 @@ def test_the_script_refuses_what_is_not_there():
     assert done.returncode == 1
     assert "'mithril'" in done.stderr
     assert "Polished Gold" in done.stderr
+
+
+def test_committed_presets_are_those_of_the_table():
+    """Whoever changes the table runs scripts/presets."""
+    listed = presets.listed(ROOT / "addon/presets")
+    assert [preset.name for preset in listed] == [preset.name for preset in PRESETS]
+    size = sum(path.stat().st_size for path in (ROOT / "addon/presets").iterdir())
+    assert size < presets.MOST_BYTES / 2  # the asset library holds the models once more
+    for entry, preset in zip(listed, PRESETS, strict=True):
+        repeats = preset.made_of.repeats if isinstance(preset.made_of, Weave) else 0
+        assert (entry.catalog, entry.tags, entry.repeats) == (preset.catalog, preset.tags, repeats)
+        assert images.read_picture(entry.picture).shape == (256, 256, 3)
+        with Model.load(entry.model) as model:
+            assert ("texels" in model.info()) == isinstance(preset.made_of, Weave), preset.name
+
+
+def test_a_damaged_index_is_refused_by_name(tmp_path):
+    assert presets.listed(tmp_path) == []
+    for text in ("{", "[]", '{"presets": [{"name": "Paint"}]}'):
+        (tmp_path / presets.INDEX_FILE).write_text(text)
+        with pytest.raises(ValueError, match=r"presets\.json is damaged"):
+            presets.listed(tmp_path)

@@ -1,8 +1,10 @@
-"""scripts/presets, after staging: models, previews and the .blend of the presets."""
+"""scripts/presets, after staging: models and previews of the presets, and the .blend of them."""
 
 from __future__ import annotations
 
 import argparse
+import hashlib
+import shutil
 import sys
 from pathlib import Path
 
@@ -16,16 +18,18 @@ import script
 from preset_build import QUICK, Sizes, Workshop
 from preset_table import CATALOGS, PRESETS, Preset, Weave
 from progress import Progress
-from velour.core import files
+from velour.core import files, presets
 from velour.core.machine import threads
-from velour.core.presets import CATALOG_FILE, LIBRARY_FILE, LICENCE_FILE, MOST_BYTES
+from velour.core.srgb import decoded, encoded
+from velour.core.presets import CATALOG_FILE, INDEX_FILE, LIBRARY_FILE, LICENCE_FILE, MOST_BYTES
 from velour.native import images
 from velour_cli import ROOT
 
+_MODELS = ROOT / "addon/presets"  # in the repository
 _BUILT = ROOT / "build/presets"
+_KEY = "library.key"  # hash of everything that the .blend was made of
 _PICTURE = ROOT / "docs/results/images/presets.png"
 _COST = {True: 10, False: 1}  # relative time of a cloth and of other presets, for the progress
-_COLUMNS = 6  # columns of the sheet of all previews
 _LICENCE = """The materials of this folder are in the public domain: CC0-1.0,
 https://creativecommons.org/publicdomain/zero/1.0/
 """
@@ -33,20 +37,18 @@ https://creativecommons.org/publicdomain/zero/1.0/
 
 def main() -> int:
     args = _arguments()
-    output = args.output or (_BUILT / "quick" if args.quick else _BUILT)
-    chosen = _chosen(args.only)
-    workshop = Workshop(output / "work", QUICK if args.quick else Sizes(), args.threads, args.fresh)
-    _build(workshop, chosen)
-    built = [preset for preset in PRESETS if workshop.report_of(preset)]
-    previews = {preset: _preview(workshop, preset, 8 if args.quick else 1024, args.fresh) for preset in built}
-    sheet = _sheet(list(previews.values()))
-    images.write(output / "work/sheet.png", sheet)
+    models = args.output or (_BUILT / "quick" if args.quick else _MODELS)
+    library = models if args.output or args.quick else _BUILT
+    if not args.library:
+        _build(models, args)
+    listed = presets.listed(models)
     if args.docs:
-        presets_sheet.draw(_PICTURE, {preset.name: np.load(path) for preset, path in previews.items()})
-    write_library(output, workshop, previews)
-    size = sum((output / name).stat().st_size for name in (LIBRARY_FILE, CATALOG_FILE, LICENCE_FILE))
-    print(f"{output / LIBRARY_FILE}: {len(built)} of {len(PRESETS)} presets, {size / 1e6:.2f} MB in all")
-    print(f"{output / 'work/sheet.png'}: their previews")
+        pictures = {preset.name: encoded(images.read_picture(preset.picture)) for preset in listed}
+        presets_sheet.draw(_PICTURE, pictures)
+    write_library(models, library)
+    kept = {path for place in (models, library) for path in place.iterdir() if path.is_file()}
+    size = sum(path.stat().st_size for path in kept)
+    print(f"{library / LIBRARY_FILE}: {len(listed)} of {len(PRESETS)} presets, {size / 1e6:.2f} MB in all")
     if size > MOST_BYTES:
         print(f"presets: that is more than {MOST_BYTES / 1e6:.0f} MB", file=sys.stderr)
         return 1
@@ -57,7 +59,8 @@ def _arguments() -> argparse.Namespace:
     parser = argparse.ArgumentParser(prog="presets")
     parser.add_argument("--only", metavar="NAME[,NAME...]", default="", help="builds no others")
     parser.add_argument("--quick", action="store_true", help="small and coarse, to try the script")
-    parser.add_argument("--fresh", action="store_true", help="builds anew what is kept")
+    parser.add_argument("--fresh", action="store_true", help="rebuilds what is kept")
+    parser.add_argument("--library", action="store_true", help="builds only the .blend, from kept models")
     parser.add_argument("--docs", action="store_true", help=f"writes {_PICTURE.relative_to(ROOT)}, too")
     parser.add_argument("--output", metavar="FOLDER", type=Path)
     parser.add_argument("--threads", metavar="T", type=int, default=threads())
@@ -75,64 +78,76 @@ def _chosen(only: str) -> list[Preset]:
     return [by_name[name] for name in names] or list(PRESETS)
 
 
-def _build(workshop: Workshop, chosen: list[Preset]) -> None:
+def _build(models: Path, args: argparse.Namespace) -> None:
+    """Builds the chosen presets into the folder `models`. Others that are there stay; the index names all."""
+    models.mkdir(parents=True, exist_ok=True)
+    work = _BUILT / "quick/work" if args.quick else _BUILT / "work"
+    workshop = Workshop(work, QUICK if args.quick else Sizes(), args.threads, args.fresh)
+    chosen = _chosen(args.only)
     progress = Progress()
     for preset in chosen:
-        progress.expect(_COST[isinstance(preset.made_of, Weave)])
+        progress.expect(_cost(preset))
     for preset in chosen:
-        cost = _COST[isinstance(preset.made_of, Weave)]
         if workshop.is_built(preset):
-            progress.skip(preset.name, cost)
-            continue
-        with progress.work(preset.name, cost):
-            workshop.build(preset)
+            progress.skip(preset.name, _cost(preset))
+        else:
+            with progress.work(preset.name, _cost(preset)):
+                workshop.build(preset)
+        put(preset, workshop.model_path(preset), models, 8 if args.quick else 1024)
+    there = [entry_of(preset, models) for preset in PRESETS]
+    files.write_text(models / INDEX_FILE, presets.index_text([e for e in there if e.model.is_file()]))
+    files.write_text(models / LICENCE_FILE, _LICENCE)
 
 
-def _preview(workshop: Workshop, preset: Preset, spp: int, fresh: bool) -> Path:
-    """Returns the preview's file, kept beside the model that it shows."""
-    model = workshop.model_path(preset)
-    path = model.with_suffix(".npy")
-    if fresh or not path.is_file() or path.stat().st_mtime < model.stat().st_mtime:
-        pixels = preset_preview.picture(preset, model, spp)
-        files.write_atomic(path, lambda temporary: np.save(temporary, pixels))
-    return path
+def _cost(preset: Preset) -> int:
+    return _COST[isinstance(preset.made_of, Weave)]
 
 
-def _sheet(previews: list[Path]) -> np.ndarray:
-    """All previews, row by row from the top, in the order of the table: linear RGB, row 0 at the bottom."""
-    side = preset_preview.SIDE
-    rows = -(-len(previews) // _COLUMNS)
-    sheet = np.zeros((rows * side, _COLUMNS * side, 3), np.float32)
-    for number, preview in enumerate(previews):
-        bottom = (rows - 1 - number // _COLUMNS) * side
-        left = number % _COLUMNS * side
-        sheet[bottom : bottom + side, left : left + side] = _linear(np.load(preview)[..., :3])
-    return sheet
+def entry_of(preset: Preset, models: Path) -> presets.Preset:
+    return presets.Preset(
+        preset.name,
+        models / f"{preset.file_name}.velour",
+        models / f"{preset.file_name}.png",
+        preset.catalog,
+        preset.description,
+        preset.tags,
+        preset.made_of.repeats if isinstance(preset.made_of, Weave) else 0,
+    )
 
 
-def _linear(encoded: np.ndarray) -> np.ndarray:
-    return np.where(encoded <= 0.04045, encoded / 12.92, ((encoded + 0.055) / 1.055) ** 2.4)
+def put(preset: Preset, model: Path, models: Path, spp: int) -> None:
+    """Copies a built model into the folder of all, with a new preview, unless it is there already."""
+    entry = entry_of(preset, models)
+    if entry.picture.is_file() and entry.model.is_file() and entry.model.read_bytes() == model.read_bytes():
+        return
+    pixels = preset_preview.picture(preset, model, spp)
+    linear = np.ascontiguousarray(decoded(pixels[..., :3]), np.float32)
+    images.write(entry.picture, linear)
+    files.write_atomic(entry.model, lambda temporary: shutil.copyfile(model, temporary))
 
 
-def write_library(folder: Path, workshop: Workshop, previews: dict[Preset, Path]) -> None:
-    """Writes the .blend of the presets in `previews`, its catalogs and license."""
-    presets = [
-        {
-            "name": preset.name,
-            "model": str(workshop.model_path(preset).resolve()),
-            "preview": str(preview.resolve()),
-            "catalog": CATALOGS[preset.catalog],
-            "description": preset.description,
-            "tags": [*preset.tags, "velour"],
-            "repeats": preset.made_of.repeats if isinstance(preset.made_of, Weave) else 0,
-        }
-        for preset, preview in previews.items()
-    ]
-    task = {"path": str((folder / LIBRARY_FILE).resolve()), "presets": presets}
-    headless_blender.run("presets_blend.py", task, workshop.work / "blender.log")
+def write_library(models: Path, folder: Path) -> None:
+    """Writes the .blend of all presets in `models`, its catalogs and license, unless it is up to date."""
+    folder.mkdir(parents=True, exist_ok=True)
+    key, kept = _library_key(models), folder / _KEY
+    if (folder / LIBRARY_FILE).is_file() and kept.is_file() and kept.read_text() == key:
+        return
+    task = {"path": str((folder / LIBRARY_FILE).resolve()), "folder": str(models.resolve())}
+    task["catalogs"] = CATALOGS
+    headless_blender.run("presets_blend.py", task, folder / "blender.log")
     lines = [f"{number}:Velour/{name}:Velour-{name.replace(' ', '-')}" for name, number in CATALOGS.items()]
     files.write_text(folder / CATALOG_FILE, "\n".join(("VERSION 1", "", *lines, "")))
     files.write_text(folder / LICENCE_FILE, _LICENCE)
+    files.write_text(kept, key)
+
+
+def _library_key(models: Path) -> str:
+    """Hash of the models and of the code that turns them into materials."""
+    digest = hashlib.sha256()
+    code = [*(ROOT / "addon/velour").rglob("*.py"), Path(__file__).with_name("presets_blend.py")]
+    for path in (*sorted(models.glob("*.*")), *sorted(code)):
+        digest.update(path.name.encode() + path.read_bytes())
+    return digest.hexdigest()
 
 
 if __name__ == "__main__":

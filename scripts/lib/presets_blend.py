@@ -1,4 +1,4 @@
-"""Runs inside Blender: writes a .blend of materials with packed models, marked as assets."""
+"""Runs inside Blender: writes a .blend of the preset materials with packed models, marked as assets."""
 
 from __future__ import annotations
 
@@ -8,7 +8,10 @@ import sys
 import addon_utils
 import bpy
 import numpy as np
+from velour.core import presets
 from velour.core.presets import AUTHOR, LICENCE
+from velour.core.srgb import encoded
+from velour.native import images
 
 _PLAIN_TEXT = f"{LICENCE}, made by Velour's virtual goniometer"
 
@@ -20,42 +23,29 @@ def main() -> None:
 
 
 def write(task: dict) -> None:
-    """`task`: path of the .blend, and its presets."""
-    for preset in task["presets"]:
-        add(preset)
+    """`task`: path of the .blend, folder of the presets, and the id of each catalog by name."""
+    for preset in presets.listed(task["folder"]):
+        bpy.ops.velour.add_preset(preset=preset.name, directory=task["folder"], assign=False)
+        describe(bpy.data.materials[preset.name], preset, task["catalogs"][preset.catalog])
     bpy.context.preferences.filepaths.save_version = 0
     bpy.ops.wm.save_as_mainfile(filepath=task["path"], compress=True)
 
 
-def add(preset: dict) -> None:
-    before = set(bpy.data.materials)
-    bpy.ops.velour.load_material(filepath=preset["model"], assign=False)
-    (material,) = set(bpy.data.materials) - before
-    material.name = preset["name"]
-    node = next(
-        n for n in material.node_tree.nodes if n.bl_idname == "ShaderNodeTexImage" and n.velour.enabled
-    )
-    node.image.name = f"{preset['name']}.velour"
-    if preset["repeats"]:
-        node.velour.placement.repeats = (preset["repeats"],) * 2
-        bpy.ops.velour.approximate(material=material.name)  # its image is placed like the tiles
-    describe(material, preset)
-
-
-def describe(material: bpy.types.Material, preset: dict) -> None:
+def describe(material: bpy.types.Material, preset: presets.Preset, catalog: str) -> None:
     material.asset_mark()
     asset = material.asset_data
-    asset.catalog_id = preset["catalog"]
+    asset.catalog_id = catalog
     asset.author = AUTHOR
-    asset.description = f"{preset['description']} ({_PLAIN_TEXT})"
+    asset.description = f"{preset.description} ({_PLAIN_TEXT})"
     if hasattr(asset, "license"):  # not in Blender 3.4; the description names the license as well
         asset.license = LICENCE
-    for tag in preset["tags"]:
+    for tag in (*preset.tags, "velour"):
         asset.tags.new(tag, skip_if_exists=True)
-    pixels = np.load(preset["preview"])
+    pixels = encoded(images.read_picture(preset.picture))
+    opaque = np.concatenate([pixels, np.ones((*pixels.shape[:2], 1))], axis=-1)
     preview = material.preview_ensure()
     preview.image_size = pixels.shape[1], pixels.shape[0]
-    preview.image_pixels_float.foreach_set(np.ascontiguousarray(pixels).ravel())
+    preview.image_pixels_float.foreach_set(opaque.astype(np.float32).ravel())
 
 
 def _raise(error):

@@ -8,12 +8,13 @@ from collections.abc import Callable
 import numpy as np
 
 from ..native import Job, Scene, render_job
+from .srgb import encoded
 
 ROWS = 12  # tiles from pole to pole; twice as many around
 _FACETS = 8  # per side of a tile
 _FIELD_OF_VIEW = 0.3  # radians
 _ELEVATION = 0.3  # camera elevation, radians
-_HEIGHT = 256  # rows of the studio's picture
+_ROWS_OF_STUDIO = 256
 
 # Soft boxes: azimuth and elevation of the center (the camera is at azimuth -90), half width and half height,
 # all in degrees; radiance. Metals show nothing else, so they need bright parts, dark parts, and edges.
@@ -28,14 +29,14 @@ _FLOOR = np.array([0.2, 0.165, 0.13])  # wood
 _SKIRTING = 0.12  # share of the wall's light that remains where it meets the floor
 
 
-def studio() -> np.ndarray:
+def studio(rows: int = _ROWS_OF_STUDIO) -> np.ndarray:
     """Equirectangular [rows x columns x 3]: row 0 at the top, +x in the middle, azimuth grows to the left."""
-    elevation = 90 - (np.arange(_HEIGHT)[:, None] + 0.5) * 180 / _HEIGHT
-    azimuth = 180 - (np.arange(2 * _HEIGHT)[None, :] + 0.5) * 180 / _HEIGHT
+    elevation = 90 - (np.arange(rows)[:, None] + 0.5) * 180 / rows
+    azimuth = 180 - (np.arange(2 * rows)[None, :] + 0.5) * 180 / rows
     rise = 1 / (1 + np.exp(-elevation / 2))
     dark = 1 - (1 - _SKIRTING) * np.exp(-np.abs(elevation) / 14)
     room = (_FLOOR + (_WALL - _FLOOR) * rise[..., None]) * dark[..., None]
-    light = np.broadcast_to(room, (_HEIGHT, 2 * _HEIGHT, 3)).copy()
+    light = np.broadcast_to(room, (rows, 2 * rows, 3)).copy()
     for (middle, height, half_width, half_height, radiance), color in zip(_BOXES, _COLORS, strict=True):
         aside = np.abs((azimuth - middle + 180) % 360 - 180)
         inside = _edge(half_width - aside) * _edge(half_height - np.abs(elevation - height))
@@ -107,8 +108,5 @@ def shown(linear: np.ndarray) -> np.ndarray:
     # Colors brighter than white desaturate, as on film.
     pale = np.clip((peak - 1.5) / 8, 0, 0.6)
     color = color * (rolled / np.maximum(peak, 1e-6)) * (1 - pale) + rolled * pale
-    encoded = np.where(
-        color <= 0.0031308, 12.92 * color, 1.055 * np.maximum(color, 0.0031308) ** (1 / 2.4) - 0.055
-    )
     opaque = np.ones((*color.shape[:2], 1))
-    return np.concatenate([np.clip(encoded, 0, 1), opaque], axis=-1).astype(np.float32)
+    return np.concatenate([np.clip(encoded(color), 0, 1), opaque], axis=-1).astype(np.float32)

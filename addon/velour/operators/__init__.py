@@ -7,6 +7,7 @@ from . import approximation_look, repeat_tile, usd_hook
 from .accept_file import VELOUR_OT_accept_file
 from .add_material import VELOUR_OT_add_material
 from .add_mesostructure import VELOUR_OT_add_mesostructure
+from .add_preset import VELOUR_OT_add_preset
 from .add_presets import VELOUR_OT_add_presets
 from .add_votf import VELOUR_OT_add_votf
 from .approximate import VELOUR_OT_approximate
@@ -27,6 +28,7 @@ from .fit import VELOUR_OT_cancel_fit, VELOUR_OT_cancel_waiting, VELOUR_OT_fit
 from .fit_for_scene import VELOUR_OT_fit_for_scene
 from .load_material import VELOUR_OT_load_material
 from .mark_asset import VELOUR_OT_mark_asset
+from .new_look import VELOUR_OT_new_look
 from .open_file import VELOUR_OT_open_measurement, VELOUR_OT_open_model, VELOUR_OT_open_scene_model
 from .placement import VELOUR_OT_describe_placement, VELOUR_OT_keep_uv_density
 from .plots import VELOUR_OT_enlarge_plot, VELOUR_OT_save_plot
@@ -54,7 +56,9 @@ CLASSES = (
     VELOUR_OT_refresh_browser,
     VELOUR_OT_accept_file,
     VELOUR_OT_add_mesostructure,
+    VELOUR_OT_add_preset,
     VELOUR_OT_add_presets,
+    VELOUR_OT_new_look,
     VELOUR_OT_repeat_tile,
     VELOUR_OT_estimate_capture,
     VELOUR_OT_estimate_fit,
@@ -74,11 +78,13 @@ def attach():
     repeat_tile.attach()
     usd_hook.attach()
     bpy.types.TOPBAR_MT_file_import.append(_draw_import)
+    bpy.types.TOPBAR_MT_file_new.append(_draw_new)
     bpy.types.VIEW3D_MT_mesh_add.append(_draw_add_mesh)
 
 
 def detach():
     bpy.types.VIEW3D_MT_mesh_add.remove(_draw_add_mesh)
+    bpy.types.TOPBAR_MT_file_new.remove(_draw_new)
     bpy.types.TOPBAR_MT_file_import.remove(_draw_import)
     usd_hook.detach()
     repeat_tile.detach()
@@ -87,6 +93,11 @@ def detach():
 
 def _draw_import(menu, _context):
     menu.layout.operator(VELOUR_OT_load_material.bl_idname, text=f"Measured Material ({', '.join(SUFFIXES)})")
+
+
+def _draw_new(menu, _context):
+    menu.layout.separator()
+    menu.layout.operator(VELOUR_OT_new_look.bl_idname, icon="MATSPHERE")
 
 
 def _draw_add_mesh(menu, _context):

@@ -23,14 +23,14 @@ class VELOUR_OT_add_presets(bpy.types.Operator):
 
     def invoke(self, context, event):
         """Asks for the folder if the add-on contains no presets."""
-        if self.directory or presets.is_built(presets.folder()):
+        if self.directory or presets.has_library(presets.folder()):
             return self.execute(context)
         context.window_manager.fileselect_add(self)
         return {"RUNNING_MODAL"}
 
     def execute(self, context):
         folder = os.path.normpath(bpy.path.abspath(self.directory) or presets.folder())
-        if not presets.is_built(folder):
+        if not presets.has_library(folder):
             self.report({"ERROR"}, missing(folder))
             return {"CANCELLED"}
         known = library_of(context.preferences, folder)

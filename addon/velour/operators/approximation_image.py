@@ -3,6 +3,7 @@
 import bpy
 import numpy as np
 
+from ..core import srgb
 from ..core.normal_map import encoded
 
 _KEPT_OPAQUE = 0.999  # mean alpha from which on a map counts as opaque except for noise
@@ -10,9 +11,7 @@ _KEPT_OPAQUE = 0.999  # mean alpha from which on a map counts as opaque except f
 
 def add_image(name, pixels):
     """A packed sRGB image of RGBA `pixels` [rows x columns x 4], linear Rec. 709, row 0 at the bottom."""
-    linear = pixels[..., :3]
-    srgb = np.where(linear <= 0.0031308, 12.92 * linear, 1.055 * linear ** (1 / 2.4) - 0.055)
-    return _packed(name, np.dstack([srgb, pixels[..., 3]]), alpha=True)
+    return _packed(name, np.dstack([srgb.encoded(pixels[..., :3]), pixels[..., 3]]), alpha=True)
 
 
 def add_normals(name, normals):

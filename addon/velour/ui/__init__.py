@@ -7,6 +7,7 @@ from . import (
     node_menu,
     placement_summary,
     plot_preview,
+    preset_grid,
     progress,
     stock_panels,
     summaries,
@@ -102,3 +103,4 @@ def detach():
     summaries.forget()
     plot_preview.forget()
     browser.forget()
+    preset_grid.forget()

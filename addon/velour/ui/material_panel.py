@@ -17,6 +17,7 @@ from ..operators.load_material import VELOUR_OT_load_material
 from ..operators.measured import is_btf
 from ..operators.open_file import VELOUR_OT_open_measurement, VELOUR_OT_open_model
 from .draw_btf_fit import draw_btf_fit
+from .preset_grid import draw_presets
 from .progress import draw_progress
 from .summaries import is_changed, measurement_summary, model_summary
 from .text import draw_sentence
@@ -45,8 +46,10 @@ class VELOUR_MATERIAL_PT_measured(MaterialPanel, bpy.types.Panel):
         if node is None:
             row = layout.row()
             row.operator(VELOUR_OT_add_material.bl_idname)
-            if context.object is not None:  # the import goes into its slot
+            if context.object is not None:  # the material goes into its slot
                 row.operator(VELOUR_OT_load_material.bl_idname, text="Import...")
+                if context.material is None:
+                    draw_presets(context, layout)
             return
         settings = node.velour
         layout.template_ID(

@@ -1,0 +1,72 @@
+"""Adds one of the preset materials."""
+
+import bpy
+from bpy.props import BoolProperty, IntProperty, StringProperty
+
+from ..core import presets
+from ..core.files import read_bytes
+from . import measured
+from .slots import SlotTarget
+
+
+class VELOUR_OT_add_preset(bpy.types.Operator):
+    bl_idname = "velour.add_preset"
+    bl_label = "Add Preset Material"
+    bl_description = "Add a preset material and put it into the active slot"
+    bl_options = {"REGISTER", "UNDO"}
+
+    preset: StringProperty(name="Preset", description="Name of the preset material", options={"SKIP_SAVE"})
+    directory: StringProperty(
+        name="Folder",
+        subtype="DIR_PATH",
+        description="Folder of the presets. Empty: the folder of the add-on",
+        options={"SKIP_SAVE"},
+    )
+    assign: BoolProperty(
+        name="Assign", description="Put the material into a slot", default=True, options={"SKIP_SAVE"}
+    )
+    object: StringProperty(
+        name="Object",
+        description="Object that gets the material. Empty: the active one",
+        options={"HIDDEN", "SKIP_SAVE"},
+    )
+    slot: IntProperty(
+        name="Slot", description="Index of the material slot, from 0", min=0, options={"HIDDEN", "SKIP_SAVE"}
+    )
+
+    def execute(self, context):
+        try:
+            material = make(find(self.preset, self.directory))
+        except (OSError, ValueError) as error:
+            self.report({"ERROR"}, str(error))
+            return {"CANCELLED"}
+        target = SlotTarget.asked(context, self)
+        if target is not None:
+            target.put(material, self.report)
+        else:
+            material.use_fake_user = True
+        bpy.ops.velour.approximate("EXEC_DEFAULT", material=material.name)
+        return {"FINISHED"}
+
+
+def find(name, directory=""):
+    """The preset of this name in a folder, by default the add-on's; raises ValueError or OSError."""
+    folder = bpy.path.abspath(directory) or presets.folder()
+    listed = presets.listed(folder)
+    if not listed:
+        raise ValueError(f"{folder} has no {presets.INDEX_FILE}; reinstall Velour or choose another folder.")
+    for preset in listed:
+        if preset.name == name:
+            return preset
+    raise ValueError(f"There is no preset {name!r}; there are {', '.join(p.name for p in listed)}.")
+
+
+def make(preset):
+    """A new material with the model of a preset, without its approximation."""
+    data = read_bytes(preset.model)
+    material = measured.new_material(preset.name)
+    node = measured.ensure_node(material)
+    node.image = measured.packed_model(data, preset.name)
+    if preset.repeats:
+        node.velour.placement.repeats = (preset.repeats,) * 2
+    return material
