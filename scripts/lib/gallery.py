@@ -1,4 +1,4 @@
-"""scripts/gallery, after staging: the pictures of README and docs/results/gallery.md, of presets in a studio."""
+"""scripts/gallery, after staging: pictures of presets for README and docs/results/gallery.md."""
 
 from __future__ import annotations
 
@@ -78,8 +78,8 @@ def _page(work: Path) -> str:
     conditions = next(iter(reports.values()))["conditions"]
     return f"""# Gallery
 
-Presets of Velour in its procedural studio, rendered by `scripts/gallery` at {_SIZE[0]} x {_SIZE[1]} pixels with a
-noise threshold of {_NOISE} and denoising. Seconds include no export.
+Presets of Velour in its procedural studio, rendered by `scripts/gallery` at {_SIZE[0]} x {_SIZE[1]} pixels
+with a noise threshold of {_NOISE} and denoising. Seconds include no export.
 
 {table}
 {provenance.sentence(conditions)}

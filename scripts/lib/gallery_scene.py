@@ -167,7 +167,7 @@ def _knot(place, size: float, turn: float = 20) -> bpy.types.Object:
 
 
 def _draped(form: bpy.types.Object, side: float) -> bpy.types.Object:
-    """A square of cloth fallen over `form` and the floor, by Blender's own simulation; the form stays below."""
+    """A square of cloth that Blender's simulation drops over `form` and the floor; the form stays below."""
     form.modifiers.new("Collision", "COLLISION")
     form.collision.thickness_outer = 0.015
     floor = bpy.data.objects["Ground"]

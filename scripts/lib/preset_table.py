@@ -106,7 +106,11 @@ PRESETS = (
         "anisotropic",
     ),
     _metal(
-        "Brushed Brass", Surface(0.22, "brass", 2.5), "Yellow brass, brushed along v", "brushed", "anisotropic"
+        "Brushed Brass",
+        Surface(0.22, "brass", 2.5),
+        "Yellow brass, brushed along v",
+        "brushed",
+        "anisotropic",
     ),
     Preset("Red Enamel", PAINTS, coat((0.55, 0.015, 0.01), 0.06), "Gloss enamel", ("gloss", "red")),
     Preset(
@@ -166,7 +170,9 @@ PRESETS = (
 )
 
 PRESETS += (
-    Preset("Diffuse White", MATT, matt((0.92, 0.92, 0.92), 0.2), "Sintered white standard", ("matt", "white")),
+    Preset(
+        "Diffuse White", MATT, matt((0.92, 0.92, 0.92), 0.2), "Sintered white standard", ("matt", "white")
+    ),
     Preset("Plaster", MATT, matt((0.78, 0.75, 0.7), 0.5), "Dry plaster of Paris", ("matt", "white")),
     Preset("Terracotta", MATT, matt((0.5, 0.19, 0.09), 0.45), "Unglazed fired clay", ("matt", "clay")),
     Preset(
@@ -257,7 +263,11 @@ PRESETS += (
     Preset(
         "Crimson Velvet",
         CLOTHS,
-        Weave("velvet", (_yarn((0.09, 0.004, 0.01), 0.6), _yarn((0.42, 0.012, 0.04), 0.3)), {"irregularity": 0.6}),
+        Weave(
+            "velvet",
+            (_yarn((0.09, 0.004, 0.01), 0.6), _yarn((0.42, 0.012, 0.04), 0.3)),
+            {"irregularity": 0.6},
+        ),
         "Cut pile on a woven ground",
         ("pile", "red"),
     ),
@@ -286,7 +296,10 @@ PRESETS += (
         "Black Leather",
         HIDES,
         Weave(
-            "leather", (coat((0.012, 0.012, 0.013), 0.22, 1.5),), {"size": 0.006, "thickness": 0.15}, repeats=16
+            "leather",
+            (coat((0.012, 0.012, 0.013), 0.22, 1.5),),
+            {"size": 0.006, "thickness": 0.15},
+            repeats=16,
         ),
         "Finely grained leather, polished",
         ("leather", "black", "shiny"),

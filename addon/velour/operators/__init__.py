@@ -33,6 +33,7 @@ from .open_file import VELOUR_OT_open_measurement, VELOUR_OT_open_model, VELOUR_
 from .placement import VELOUR_OT_describe_placement, VELOUR_OT_keep_uv_density
 from .plots import VELOUR_OT_enlarge_plot, VELOUR_OT_save_plot
 from .repeat_tile import VELOUR_OT_repeat_tile
+from .sampling_preset import VELOUR_OT_sampling_preset
 from .save_model import VELOUR_OT_save_model
 
 CLASSES = (
@@ -70,6 +71,7 @@ CLASSES = (
     VELOUR_OT_keep_uv_density,
     VELOUR_OT_check_scene,
     VELOUR_OT_copy_cycles_settings,
+    VELOUR_OT_sampling_preset,
 )
 
 

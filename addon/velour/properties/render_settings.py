@@ -1,5 +1,7 @@
 """Render settings of a scene."""
 
+import logging
+
 import bpy
 from bpy.props import BoolProperty, EnumProperty, FloatProperty, IntProperty, StringProperty
 
@@ -13,6 +15,58 @@ def _redraw_viewports(_settings, context):
         for area in window.screen.areas:
             if area.type == "VIEW_3D":
                 area.tag_redraw()
+
+
+# Numbers of samples are stored as light directions a pixel. The panels show camera rays a pixel, as other engines do.
+
+_shown_sets = 0  # above 0: a property of the panels sets a stored number
+_is_told = False
+
+
+def _told(_settings, _context):
+    """Tells scripts once which unit a stored number has."""
+    global _is_told
+    if _shown_sets or _is_told:
+        return
+    _is_told = True
+    logging.getLogger("velour").warning(
+        "scene.velour.samples, viewport_samples and preview_samples count light directions a pixel;"
+        " camera_samples, viewport_camera_samples and preview_camera_samples count camera rays."
+    )
+
+
+def _store(settings, **numbers):
+    global _shown_sets
+    _shown_sets += 1
+    try:
+        for name, number in numbers.items():
+            setattr(settings, name, number)
+    finally:
+        _shown_sets -= 1
+
+
+def _camera_samples(stored, name, description, least=1):
+    """Property of the camera rays a pixel whose light directions are in the property `stored`."""
+    return IntProperty(
+        name=name,
+        description=description,
+        min=least,
+        soft_max=4096,
+        max=1 << 20,
+        get=lambda settings: -(-getattr(settings, stored) // settings.split),
+        set=lambda settings, rays: _store(settings, **{stored: min(rays * settings.split, _MOST[stored])}),
+        options={"SKIP_SAVE"},
+        override=_OVERRIDE,
+    )
+
+
+_MOST = {"samples": 1 << 20, "preview_samples": 1 << 16, "viewport_samples": 1 << 20}
+
+
+def _set_light_samples(settings, split):
+    """Sets the light directions a camera ray and keeps the numbers of camera rays."""
+    rays = {name: -(-getattr(settings, name) // settings.split) for name in _MOST}
+    _store(settings, split=split, **{name: min(rays[name] * split, _MOST[name]) for name in _MOST})
 
 
 class VelourRenderSettings(bpy.types.PropertyGroup):
@@ -96,23 +150,45 @@ class VelourRenderSettings(bpy.types.PropertyGroup):
         precision=4,
         override=_OVERRIDE,
     )
+    camera_samples: _camera_samples("samples", "Samples", "Number of camera rays per pixel")
+    viewport_camera_samples: _camera_samples(
+        "viewport_samples",
+        "Viewport Samples",
+        "Number of camera rays per pixel in the rendered viewport. 0: unlimited",
+        least=0,
+    )
+    preview_camera_samples: _camera_samples(
+        "preview_samples", "Preview Samples", "Number of camera rays per pixel in material previews"
+    )
+    light_samples: IntProperty(
+        name="Light Directions",
+        description="Number of light directions per camera ray. Higher is faster, lower smooths edges",
+        min=1,
+        max=48,
+        get=lambda settings: settings.split,
+        set=_set_light_samples,
+        options={"SKIP_SAVE"},
+        override=_OVERRIDE,
+    )
     samples: IntProperty(
-        name="Samples",
-        description="Number of light directions per pixel",
+        name="Light Directions per Pixel",
+        description="Number of light directions per pixel, for scripts; panels show Samples",
         default=256,
         min=1,
         soft_max=4096,
-        max=1 << 20,
+        max=_MOST["samples"],
         override=_OVERRIDE,
+        update=_told,
     )
     preview_samples: IntProperty(
-        name="Preview Samples",
-        description="Number of light directions per pixel in material previews",
+        name="Preview Light Directions",
+        description="Number of light directions per pixel in material previews, for scripts",
         default=32,
         min=1,
         soft_max=256,
-        max=1 << 16,
+        max=_MOST["preview_samples"],
         override=_OVERRIDE,
+        update=_told,
     )
     viewport_mode: EnumProperty(
         name="Viewport",
@@ -131,13 +207,14 @@ class VelourRenderSettings(bpy.types.PropertyGroup):
         update=_redraw_viewports,
     )
     viewport_samples: IntProperty(
-        name="Viewport Samples",
-        description="Number of light directions per pixel in the rendered viewport. 0: unlimited",
+        name="Viewport Light Directions",
+        description="Number of light directions per pixel in the viewport, for scripts. 0: unlimited",
         default=1024,
         min=0,
         soft_max=4096,
-        max=1 << 20,
+        max=_MOST["viewport_samples"],
         override=_OVERRIDE,
+        update=_told,
     )
     split: IntProperty(
         name="Split",

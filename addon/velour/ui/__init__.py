@@ -35,13 +35,14 @@ from .plot_panel import VELOUR_MATERIAL_PT_plots
 from .preferences import VelourPreferences
 from .render_panel import (
     VELOUR_RENDER_PT_check,
-    VELOUR_RENDER_PT_denoise,
     VELOUR_RENDER_PT_film,
     VELOUR_RENDER_PT_library,
     VELOUR_RENDER_PT_light_paths,
     VELOUR_RENDER_PT_newer,
     VELOUR_RENDER_PT_performance,
     VELOUR_RENDER_PT_sampling,
+    VELOUR_RENDER_PT_sampling_advanced,
+    VELOUR_RENDER_PT_viewport,
     VELOUR_RENDER_PT_simplify,
 )
 from .scene_model_panel import VELOUR_MATERIAL_PT_scene_model
@@ -54,7 +55,8 @@ CLASSES = (
     VELOUR_RENDER_PT_library,
     VELOUR_RENDER_PT_newer,
     VELOUR_RENDER_PT_sampling,
-    VELOUR_RENDER_PT_denoise,
+    VELOUR_RENDER_PT_sampling_advanced,
+    VELOUR_RENDER_PT_viewport,
     VELOUR_RENDER_PT_light_paths,
     VELOUR_RENDER_PT_simplify,
     VELOUR_RENDER_PT_film,

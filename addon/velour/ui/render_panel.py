@@ -7,6 +7,7 @@ from ..engine.engine import VelourRenderEngine
 from ..handlers.saved_files import newer_sentence
 from ..operators.check_scene import VELOUR_OT_check_scene
 from ..operators.copy_cycles_settings import VELOUR_OT_copy_cycles_settings
+from ..operators.sampling_preset import PRESETS, VELOUR_OT_sampling_preset
 from . import library_state
 from .text import draw_sentence
 
@@ -61,47 +62,64 @@ class VELOUR_RENDER_PT_sampling(_RenderPanel, bpy.types.Panel):
 
     def draw(self, context):
         layout, settings = self.layout, context.scene.velour
+        row = layout.row(align=True)
+        for name, label, _description in PRESETS:
+            row.operator(VELOUR_OT_sampling_preset.bl_idname, text=label).preset = name
         layout.use_property_split = True
         layout.use_property_decorate = True
-        layout.prop(settings, "strategy")
-        if settings.strategy == "MIS":
-            column = layout.column(align=True)
-            column.prop(settings, "share")
-            column.prop(settings, "heuristic")
-        layout.prop(settings, "sequence")
+        layout.prop(settings, "camera_samples")
         row = layout.row(heading="Noise Threshold")
         row.prop(settings, "use_noise_target", text="")
         value = row.row()
         value.active = settings.use_noise_target
         value.prop(settings, "noise_target", text="")
-        if settings.strategy == "PRODUCT":
-            layout.prop(settings, "use_cache")
-        layout.prop(settings, "viewport_mode")
-        column = layout.column(align=True)
-        column.prop(settings, "samples")
-        row = column.row()
-        row.active = settings.viewport_mode == "RAY_TRACED"
-        row.prop(settings, "viewport_samples", text="Viewport")
-        column.prop(settings, "preview_samples", text="Preview")
-        column.prop(settings, "split")
-        layout.prop(settings, "bounces")
-        layout.prop(settings, "seed")
         layout.prop(settings, "time_limit")
-
-
-class VELOUR_RENDER_PT_denoise(_RenderPanel, bpy.types.Panel):
-    bl_label = "Denoise"
-
-    def draw(self, context):
-        layout, settings = self.layout, context.scene.velour
-        layout.use_property_split = True
-        column = layout.column(heading="Denoise")
-        column.prop(settings, "use_denoising", text="Render")
-        column.prop(settings, "use_viewport_denoising", text="Viewport")
+        layout.column(heading="Denoise").prop(settings, "use_denoising", text="Render")
         if reason := denoising.missing():
             draw_sentence(context, layout, reason, icon="ERROR")
         elif error := denoising.last_errors.get(context.scene.name):
             draw_sentence(context, layout, error, icon="INFO")
+        layout.prop(settings, "bounces")
+        column = layout.column(align=True)
+        column.prop(settings, "clamp_direct", text="Clamp Direct")
+        column.prop(settings, "clamp_indirect", text="Indirect")
+
+
+class VELOUR_RENDER_PT_sampling_advanced(_RenderPanel, bpy.types.Panel):
+    bl_label = "Advanced"
+    bl_parent_id = "VELOUR_RENDER_PT_sampling"
+    bl_options = {"DEFAULT_CLOSED"}
+
+    def draw(self, context):
+        layout, settings = self.layout, context.scene.velour
+        layout.use_property_split = True
+        layout.use_property_decorate = True
+        layout.prop(settings, "light_samples")
+        layout.prop(settings, "seed")
+        layout.prop(settings, "strategy")
+        if settings.strategy == "MIS":
+            column = layout.column(align=True)
+            column.prop(settings, "share")
+            column.prop(settings, "heuristic")
+        if settings.strategy == "PRODUCT":
+            layout.prop(settings, "use_cache")
+        layout.prop(settings, "sequence")
+
+
+class VELOUR_RENDER_PT_viewport(_RenderPanel, bpy.types.Panel):
+    bl_label = "Viewport"
+    bl_options = {"DEFAULT_CLOSED"}
+
+    def draw(self, context):
+        layout, settings = self.layout, context.scene.velour
+        layout.use_property_split = True
+        layout.use_property_decorate = True
+        layout.prop(settings, "viewport_mode", text="Mode")
+        column = layout.column()
+        column.active = settings.viewport_mode == "RAY_TRACED"
+        column.prop(settings, "viewport_camera_samples", text="Samples")
+        column.column(heading="Denoise").prop(settings, "use_viewport_denoising", text="Viewport")
+        layout.prop(settings, "preview_camera_samples")
 
 
 class VELOUR_RENDER_PT_light_paths(_RenderPanel, bpy.types.Panel):
@@ -112,9 +130,6 @@ class VELOUR_RENDER_PT_light_paths(_RenderPanel, bpy.types.Panel):
         layout, settings = self.layout, context.scene.velour
         layout.use_property_split = True
         layout.use_property_decorate = True
-        column = layout.column(align=True)
-        column.prop(settings, "clamp_direct", text="Clamp Direct")
-        column.prop(settings, "clamp_indirect", text="Indirect")
         layout.prop(settings, "filter_glossy")
         layout.prop(settings, "use_reflective_caustics")
         if hasattr(context.scene, "cycles"):

@@ -12,7 +12,11 @@ _SHAPE = ("size", "count", "resolution", "thickness", "gap", "irregularity", "se
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("kind", metavar="KIND", help="weave, twill, satin, knit, net, chainmail, gravel, corduroy, velvet or leather")
+    parser.add_argument(
+        "kind",
+        metavar="KIND",
+        help="weave, twill, satin, knit, net, chainmail, gravel, corduroy, velvet or leather",
+    )
     parser.add_argument(
         "-o",
         "--output",
