@@ -20,8 +20,8 @@ from preset_table import CATALOGS, PRESETS, Preset, Weave
 from progress import Progress
 from velour.core import files, presets
 from velour.core.machine import threads
-from velour.core.srgb import decoded, encoded
 from velour.core.presets import CATALOG_FILE, INDEX_FILE, LIBRARY_FILE, LICENCE_FILE, MOST_BYTES
+from velour.core.srgb import decoded, encoded
 from velour.native import images
 from velour_cli import ROOT
 

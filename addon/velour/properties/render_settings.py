@@ -17,7 +17,7 @@ def _redraw_viewports(_settings, context):
                 area.tag_redraw()
 
 
-# Numbers of samples are stored as light directions a pixel. The panels show camera rays a pixel, as other engines do.
+# Numbers of samples are stored as light directions a pixel. The panels show camera rays, as other engines do.
 
 _shown_sets = 0  # above 0: a property of the panels sets a stored number
 _is_told = False

@@ -42,8 +42,8 @@ from .render_panel import (
     VELOUR_RENDER_PT_performance,
     VELOUR_RENDER_PT_sampling,
     VELOUR_RENDER_PT_sampling_advanced,
-    VELOUR_RENDER_PT_viewport,
     VELOUR_RENDER_PT_simplify,
+    VELOUR_RENDER_PT_viewport,
 )
 from .scene_model_panel import VELOUR_MATERIAL_PT_scene_model
 from .tile_panel import VELOUR_COLLECTION_PT_tile, VELOUR_OBJECT_PT_tile
