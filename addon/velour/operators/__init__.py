@@ -35,6 +35,7 @@ from .plots import VELOUR_OT_enlarge_plot, VELOUR_OT_save_plot
 from .repeat_tile import VELOUR_OT_repeat_tile
 from .sampling_preset import VELOUR_OT_sampling_preset
 from .save_model import VELOUR_OT_save_model
+from .use_as_tile import VELOUR_OT_use_as_tile
 
 CLASSES = (
     VELOUR_OT_add_material,
@@ -72,6 +73,7 @@ CLASSES = (
     VELOUR_OT_check_scene,
     VELOUR_OT_copy_cycles_settings,
     VELOUR_OT_sampling_preset,
+    VELOUR_OT_use_as_tile,
 )
 
 
@@ -82,9 +84,11 @@ def attach():
     bpy.types.TOPBAR_MT_file_import.append(_draw_import)
     bpy.types.TOPBAR_MT_file_new.append(_draw_new)
     bpy.types.VIEW3D_MT_mesh_add.append(_draw_add_mesh)
+    bpy.types.OUTLINER_MT_collection.append(_draw_collection)
 
 
 def detach():
+    bpy.types.OUTLINER_MT_collection.remove(_draw_collection)
     bpy.types.VIEW3D_MT_mesh_add.remove(_draw_add_mesh)
     bpy.types.TOPBAR_MT_file_new.remove(_draw_new)
     bpy.types.TOPBAR_MT_file_import.remove(_draw_import)
@@ -107,3 +111,9 @@ def _draw_add_mesh(menu, _context):
     menu.layout.operator_menu_enum(
         VELOUR_OT_add_mesostructure.bl_idname, "type", text="Mesostructure", icon="TEXTURE"
     )
+
+
+def _draw_collection(menu, context):
+    menu.layout.separator()
+    operator = menu.layout.operator(VELOUR_OT_use_as_tile.bl_idname, icon="TEXTURE")
+    operator.collection = context.collection.name if context.collection else ""

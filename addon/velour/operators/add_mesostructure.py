@@ -18,6 +18,10 @@ _TYPES = (
     ("CHAINMAIL", "Chain Mail", "Wire rings, each linked with four others", 3),
     ("GRAVEL", "Gravel", "Bed of pebbles on a floor", 4),
     ("CORDUROY", "Corduroy", "Ribs of pile with grooves between them", 5),
+    ("SATIN", "Satin", "Each warp yarn passes over four, then under one", 6),
+    ("KNIT", "Knit", "Loops of a three-ply yarn, each hanging in the next", 7),
+    ("VELVET", "Velvet", "Upright fibers on a ground", 8),
+    ("LEATHER", "Leather", "Cushions with creases between them", 9),
 )
 _SHAPE = ("size", "count", "thickness", "gap", "irregularity", "resolution", "seed")
 
@@ -47,7 +51,8 @@ class VELOUR_OT_add_mesostructure(bpy.types.Operator, AddObjectHelper):
     )
     count: IntProperty(
         name="Count",
-        description="Number of yarns, cords, rings or ribs along a side. Gravel: rough number of pebbles",
+        description="Number of yarns, cords, rings, ribs, wales, fibers or cushions along a side."
+        " Gravel: rough number of pebbles",
         min=1,
         max=170,
         default=4,
@@ -55,10 +60,10 @@ class VELOUR_OT_add_mesostructure(bpy.types.Operator, AddObjectHelper):
     )
     thickness: FloatProperty(
         name="Thickness",
-        description="Thickness of a yarn, cord, wire or rib, as a share of the distance between neighbors."
-        " Gravel: depth of the bed in pebbles",
+        description="Thickness of a yarn, cord, wire, rib or cushion, as a share of the distance between"
+        " neighbors. Gravel, velvet: depth of the bed or pile in pebbles or fibers",
         min=0.01,
-        max=8.0,
+        max=20.0,
         default=0.3,
         options={"SKIP_SAVE"},
     )
@@ -72,7 +77,7 @@ class VELOUR_OT_add_mesostructure(bpy.types.Operator, AddObjectHelper):
     )
     irregularity: FloatProperty(
         name="Irregularity",
-        description="Random shrinkage of the parts from their ideal shape",
+        description="Random deviation of the parts from their ideal shape",
         min=0.0,
         max=1.0,
         default=0.1,
@@ -119,6 +124,7 @@ class VELOUR_OT_add_mesostructure(bpy.types.Operator, AddObjectHelper):
         for material in info["materials"]:
             data.materials.append(_material(name, material))
         obj = object_data_add(context, data, operator=self)
+        obj.velour.is_tile = True
         obj.velour.period = [side / unit for side in info["period"]]
         self._fill_in(info["shape"], unit)
         return {"FINISHED"}

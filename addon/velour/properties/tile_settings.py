@@ -26,6 +26,11 @@ class VelourTileSettings(BtfFitSettings, bpy.types.PropertyGroup):
     """`object.velour`, `collection.velour`; includes the settings of the BTF fit."""
 
     saved_by: saved_by()
+    is_tile: BoolProperty(
+        name="Mesostructure",
+        description="Show the settings of a mesostructure: one tile, its capture as a BTF and its material",
+        override=_OVERRIDABLE,
+    )
     period: FloatVectorProperty(
         name="Period",
         size=2,
@@ -43,6 +48,10 @@ class VelourTileSettings(BtfFitSettings, bpy.types.PropertyGroup):
         options={"HIDDEN"},
         override=_OVERRIDABLE,
     )
+
+    def is_shown(self):
+        """Whether its panel is shown: on request, or because settings of a tile have been made."""
+        return self.is_tile or any(self.period) or bool(self.directory) or self.model is not None
 
     # Marks of jobs with results for the tile, separated by blanks.
     jobs: StringProperty(options={"HIDDEN", "SKIP_SAVE"})

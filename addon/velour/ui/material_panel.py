@@ -8,6 +8,7 @@ from ..export.measured_materials import gain
 from ..export.newer import has_nodes
 from ..export.nodes import active_output, velour_node
 from ..export.notes import Notes
+from ..export.objects import GEOMETRY
 from ..export.shaders import surface_layers
 from ..operators.accept_file import VELOUR_OT_accept_file
 from ..operators.add_material import VELOUR_OT_add_material
@@ -16,6 +17,7 @@ from ..operators.fit import VELOUR_OT_fit
 from ..operators.load_material import VELOUR_OT_load_material
 from ..operators.measured import is_btf
 from ..operators.open_file import VELOUR_OT_open_measurement, VELOUR_OT_open_model
+from ..operators.use_as_tile import VELOUR_OT_use_as_tile
 from .draw_btf_fit import draw_btf_fit
 from .preset_grid import draw_presets
 from .progress import draw_progress
@@ -48,6 +50,8 @@ class VELOUR_MATERIAL_PT_measured(MaterialPanel, bpy.types.Panel):
             row.operator(VELOUR_OT_add_material.bl_idname)
             if context.object is not None:  # the material goes into its slot
                 row.operator(VELOUR_OT_load_material.bl_idname, text="Import...")
+                if context.object.type in GEOMETRY and not context.object.velour.is_shown():
+                    layout.operator(VELOUR_OT_use_as_tile.bl_idname, icon="TEXTURE")
                 if context.material is None:
                     draw_presets(context, layout)
             return

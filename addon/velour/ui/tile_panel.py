@@ -23,7 +23,6 @@ class TilePanel:
     bl_label = "Mesostructure"
     bl_space_type = "PROPERTIES"
     bl_region_type = "WINDOW"
-    bl_options = {"DEFAULT_CLOSED"}
     COMPAT_ENGINES = {VelourRenderEngine.bl_idname}
 
     def _draw(self, context, owner, collection_name):
@@ -67,7 +66,8 @@ class VELOUR_OBJECT_PT_tile(TilePanel, bpy.types.Panel):
     @classmethod
     def poll(cls, context):
         obj = context.object
-        return context.engine in cls.COMPAT_ENGINES and obj is not None and obj.type in GEOMETRY
+        is_one = obj is not None and obj.type in GEOMETRY and obj.velour.is_shown()
+        return context.engine in cls.COMPAT_ENGINES and is_one
 
     def draw(self, context):
         self._draw(context, context.object, "")
@@ -80,6 +80,7 @@ class VELOUR_COLLECTION_PT_tile(TilePanel, bpy.types.Panel):
     def poll(cls, context):
         collection = context.collection
         is_one = collection is not None and collection != context.scene.collection
+        is_one = is_one and collection.velour.is_shown()
         return context.engine in cls.COMPAT_ENGINES and is_one
 
     def draw(self, context):

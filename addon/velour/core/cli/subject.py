@@ -9,7 +9,10 @@ from ...native import Scene, Tile
 from ...native.errors import refuse
 from . import numbers
 
-HELP = "tile (weave, twill, satin, knit, net, chainmail, gravel, corduroy, velvet, leather) or mesh file (.obj, .ply)"
+HELP = (
+    "tile (weave, twill, satin, knit, net, chainmail, gravel, corduroy, velvet, leather)"
+    " or mesh file (.obj, .ply)"
+)
 # The up axis of the file becomes +z; y-up: (x, y, z) -> (x, -z, y), as in Blender's OBJ import.
 _UP = {"y": ((1, 0, 0, 0), (0, 0, -1, 0), (0, 1, 0, 0)), "z": ((1, 0, 0, 0), (0, 1, 0, 0), (0, 0, 1, 0))}
 UPS = tuple(_UP)
