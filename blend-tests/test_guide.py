@@ -1,5 +1,6 @@
 """The user guide: its snippets run, and what it names is what Blender and Velour show."""
 
+import importlib
 import os
 import shutil
 import tempfile
@@ -42,6 +43,12 @@ class Snippets(SnippetTest):
         self.assertEqual([language for language, _ in self._run_page("first_material.md")], ["python", "sh"])
         self.assertTrue((self.folder / "iris.velour").is_file())
         self.assertTrue((self.folder / "monkey_0001.png").is_file())
+
+    def test_preset(self):
+        if not importlib.import_module("velour.core.presets").listed():
+            self.skipTest("scripts/presets has not been run")
+        self._run_page("preset.md")
+        self.assertTrue((self.folder / "look_0001.png").is_file())
 
     def test_library(self):
         with tempfile.TemporaryDirectory() as cache, mock.patch.dict(os.environ, XDG_CACHE_HOME=cache):

@@ -17,7 +17,6 @@ PAGES = [ROOT / "README.md", *sorted((ROOT / "docs").rglob("*.md"))]
 # Blocks that no test here runs, by page and first words, and why.
 NOT_RUN = {
     ("README.md", "scripts/demo"): "installs and builds for minutes; the second is what runs this test",
-    ("README.md", "BLENDER_USER_SCRIPTS="): "opens a window that waits for a user",
     ("results/chart.md", "scripts/figures"): "takes hours, and Mitsuba",
     ("reference/farm.md", "scripts/farm shot.blend"): "needs Slurm; test_farm_slurm has one of its own",
     (

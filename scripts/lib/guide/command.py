@@ -17,7 +17,7 @@ sys.path.insert(0, str(ROOT / "blend-tests"))
 
 from support import process
 
-CHAPTERS = ("install", "first_material", "library", "tolerance", "scene_model", "tile", "cloth")
+CHAPTERS = ("install", "preset", "first_material", "library", "tolerance", "scene_model", "tile", "cloth")
 MEASUREMENT = "brdf/cc_iris_purple_gem_rgb.bsdf"
 SCREEN = "1000x2300"  # the whole window fits a page at this width, the longest panel at this height
 SECONDS = 1800  # time limit for a chapter, on a busy machine
