@@ -298,7 +298,7 @@ PRESETS += (
         Weave(
             "leather",
             (coat((0.012, 0.012, 0.013), 0.22, 1.5),),
-            {"size": 0.006, "thickness": 0.15},
+            {"size": 0.006, "thickness": 0.16},
             repeats=16,
         ),
         "Finely grained leather, polished",

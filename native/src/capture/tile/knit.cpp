@@ -4,6 +4,7 @@
 #include <cmath>
 #include "capture/tile/mesh_builder.h"
 #include "capture/tile/periodic_noise.h"
+#include "math/sphere/random.h"
 
 namespace velour {
 namespace {
@@ -16,12 +17,12 @@ constexpr double kLoopLength = 3.7;  // length of the middle line per loop, wale
 
 /// The middle line of a course, in wales; the loop begins at its head.
 Vec3d middle(double t) {
-  return {t / kTurn + kLoopWidth * std::sin(2 * t), kLoopHeight * std::cos(t), kLoopDepth * std::cos(2 * t)};
+  return {t / kTurn + kLoopWidth * std::sin(2 * t), kLoopHeight * std::cos(t), -kLoopDepth * std::cos(2 * t)};
 }
 
 Vec3d tangent(double t) {
   return glm::normalize(Vec3d(1 / kTurn + 2 * kLoopWidth * std::cos(2 * t), -kLoopHeight * std::sin(t),
-                              -2 * kLoopDepth * std::sin(2 * t)));
+                              2 * kLoopDepth * std::sin(2 * t)));
 }
 
 /// Radius of a yarn of round plies in the direction `angle`, relative to its largest.
@@ -42,7 +43,7 @@ TileParts make_knit(const TileShape& shape) {
   for (int course = 0; course < courses; ++course) {
     const PeriodicNoise noise{shape.seed, static_cast<uint64_t>(course), {3 * shape.count, 1}};
     builder.add_grid(grid, [&](double u, double v) {
-      const double t = kTurn * u * shape.count, angle = kTurn * v;
+      const double t = kTurn * u * shape.count, angle = -kTurn * v;  // clockwise, so that the surface faces outward
       const Vec3d along = tangent(t), side = glm::normalize(glm::cross(Vec3d(0, 0, 1), along));
       const Vec3d out = std::cos(angle) * side + std::sin(angle) * glm::cross(along, side);
       const double share = ply_share(angle - kTwist * t) * (1 - shape.irregularity * noise({u, 0}));
@@ -56,6 +57,8 @@ TileParts make_knit(const TileShape& shape) {
 
 namespace {
 
+constexpr uint64_t kJitterStream = 0x7665;
+constexpr double kJitter = 0.5;        // largest distance of two neighbors from their places, in gaps
 constexpr int kLeanSpan = 14;          // pitches over which the lean changes
 constexpr double kFurthestLean = 0.5;  // in heights of the pile
 
@@ -75,7 +78,11 @@ TileParts make_velvet(const TileShape& shape) {
                    [](double, double) { return Vec3d(0.0); });
   for (int row = 0; row < shape.count; ++row) {
     for (int column = 0; column < shape.count; ++column) {
-      const glm::dvec2 place = (glm::dvec2(column, row) + 0.5) / double(shape.count);
+      const auto number =
+          static_cast<uint64_t>(row) * static_cast<uint64_t>(shape.count) + static_cast<uint64_t>(column);
+      const glm::dvec2 jitter(RandomStream(shape.seed, kJitterStream, number).next2() - 0.5f);
+      const glm::dvec2 place =
+          (glm::dvec2(column, row) + 0.5 + kJitter * shape.gap * shape.irregularity * jitter) / double(shape.count);
       const glm::dvec2 lean =
           2 * kFurthestLean * height * shape.irregularity * (glm::dvec2(noise_x(place), noise_y(place)) - 0.5);
       builder.add_globe(shape.resolution, 1, [&](const Vec3d& direction) {

@@ -7,7 +7,7 @@ namespace velour {
 
 /// Plain knit (jersey), seen from its face. A course of yarn runs along x as
 ///
-///   x = t / 2 pi + a sin 2t,  y = h cos t,  z = d cos 2t   (in wales, one loop per period of t),
+///   x = t / 2 pi + a sin 2t,  y = h cos t,  z = -d cos 2t   (in wales, one loop per period of t),
 ///
 /// and the next course, kCourse wales further along y, passes through its loops. The shape below roughly maximizes the
 /// distance between the middle lines of courses and of the two sides of a loop, 0.249 wales, for this spacing.
@@ -20,8 +20,8 @@ inline constexpr double kThickestYarn = 0.24;  // diameter, wales
 TileParts make_knit(const TileShape& shape);
 
 /// Velvet: upright fibers, one per pitch and side, on the opaque ground z = 0. Thickness is their height in pitches,
-/// gap the distance between neighbors; irregularity makes them lean, all within an area the same way, by up to half
-/// their height.
+/// gap the distance between neighbors; irregularity jitters them within the gap and makes them lean, all within an area
+/// the same way, by up to half their height.
 TileParts make_velvet(const TileShape& shape);
 
 }  // namespace velour

@@ -121,9 +121,8 @@ TileParts make_leather(const TileShape& shape) {
   MeshBuilder builder;
   builder.add_grid(sheet(shape), [&](double u, double v) {
     const Grain::Nearest nearest = grain.at(glm::dvec2(u, v) * double(shape.count));
-    // A quarter of a circle from the bottom of the crease to the top of the cushion.
-    const double rest = 1 - std::min(2 * nearest.border / shape.gap, 1.0);
-    const double z = shape.thickness * shape.pitch() * nearest.height * std::sqrt(std::max(1 - rest * rest, 0.0));
+    const double t = std::min(2 * nearest.border / shape.gap, 1.0);  // from the bottom of the crease to the cushion
+    const double z = shape.thickness * shape.pitch() * nearest.height * t * t * (3 - 2 * t);
     return Vec3d(u * shape.size, v * shape.size, z);
   });
   return closed_sheet(builder.finish(), {"leather", {.base_color = {0.16f, 0.06f, 0.025f}, .roughness = 0.4f}});

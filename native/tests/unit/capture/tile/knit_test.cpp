@@ -11,7 +11,7 @@ namespace {
 /// The middle line of a course, in wales, as knit.h states it.
 Vec3d middle(double t, double course) {
   return {t / (2 * kPiD) + kLoopWidth * std::sin(2 * t), kLoopHeight * std::cos(t) + course * kCourse,
-          kLoopDepth * std::cos(2 * t)};
+          -kLoopDepth * std::cos(2 * t)};
 }
 
 /// Distance of the middle lines of two courses, or of the two sides of a loop: parts further apart along the line than

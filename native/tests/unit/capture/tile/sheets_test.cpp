@@ -21,16 +21,15 @@ TEST(Corduroy, WithoutIrregularityIsParabolas) {
 }
 
 TEST(Leather, WithoutIrregularityIsSquareCushions) {
-  const Tile tile = make_tile({.kind = "leather", .resolution = 32, .irregularity = 0.0});
+  const Tile tile = make_tile({.kind = "leather", .irregularity = 0.0, .resolution = 32});
   const TileShape& s = tile.shape;
   const double height = s.thickness * s.pitch(), side = s.pitch(), crease = 0.5 * s.gap * s.pitch();
-  // A square with flat top, whose border of width w rises as a quarter of a circle: the height integrated over the
-  // level lines, squares of side (side - 2 t).
+  // A square with a flat top, whose border rises as 3 t^2 - 2 t^3: the height integrated over the level lines, squares.
   double expected = height * std::pow(side - 2 * crease, 2);
   constexpr int kSteps = 10000;
   for (int i = 0; i < kSteps; ++i) {
-    const double t = (i + 0.5) / kSteps, rest = 1 - t;
-    expected += height * std::sqrt(1 - rest * rest) * 4 * (side - 2 * crease * t) * crease / kSteps;
+    const double t = (i + 0.5) / kSteps;
+    expected += height * t * t * (3 - 2 * t) * 4 * (side - 2 * crease * t) * crease / kSteps;
   }
   EXPECT_NEAR(volume(tile.parts.mesh, {0}) / (s.count * s.count * expected), 1, 0.01);
 }
