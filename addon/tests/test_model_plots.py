@@ -23,6 +23,7 @@ from velour.native import (
     table,
     votf_job,
 )
+from velour.native.plot import text_coverage
 
 DARK = {"background": (0.19, 0.19, 0.19), "foreground": (0.9, 0.9, 0.9)}
 
@@ -217,3 +218,16 @@ def test_the_command_writes_each_form(model_file, measurement_file, tmp_path):
     assert images.read(tmp_path / "e.png").shape == (800, 800, 4)
     assert velour("plot", model_file, "-o", tmp_path / "f.png", "--view", 90).status == 2
     assert "does not exist" in refused("plot", model_file, "-o", tmp_path / "no/g.png")
+
+
+def test_text_is_as_wide_as_its_letters_and_stands_on_its_baseline():
+    one, two = text_coverage("Model", 20), text_coverage("Model Model", 20)
+    assert one.shape[0] == two.shape[0] == 60
+    assert 1.8 < (two.shape[1] - 40) / (one.shape[1] - 40) < 2.2  # margins of an em on both sides
+    assert (one.min(), one.max()) == (0, 1)
+    rows = np.flatnonzero(one.max(axis=1) > 0.5)
+    assert rows[0] == 20  # no letter reaches below the baseline
+    assert text_coverage("", 20).max(initial=0) == 0
+    for text, em in (("Model", 2), ("Model", float("nan")), ("x" * 2000, 20)):
+        with pytest.raises(VelourError, match="em is|bytes"):
+            text_coverage(text, em)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import os
-from ctypes import byref
+from ctypes import byref, c_uint32
 
 import numpy as np
 
@@ -52,6 +52,19 @@ class Plot(Handle):
     def save(self, path: str | os.PathLike, **style) -> None:
         """Writes .png, .svg or .csv, by extension. Atomic."""
         self._lib.vlr_plot_save(self.pointer, byref(_style(style)), path_bytes(path))
+
+
+def text_coverage(text: str, em: float) -> np.ndarray:
+    """Coverage [height x width] of a line of text, 0 to 1, in the font of the plots; row 0 at the bottom.
+
+    `em` in pixels, 4 to 512. The baseline is a third of the height above the bottom.
+    """
+    width, height = c_uint32(), c_uint32()
+    draw = library.load().vlr_text_draw
+    draw(text.encode(), em, byref(width), byref(height), None, 0)
+    coverage = np.empty((height.value, width.value), np.float32)
+    draw(text.encode(), em, byref(width), byref(height), pointer(coverage), coverage.size)
+    return coverage
 
 
 def plot_arguments(

@@ -214,6 +214,7 @@ STATUS_CALLS = {
     "vlr_plot_json": [_handle, _json],
     "vlr_plot_draw": [_handle, POINTER(structs.PlotStyle), _floats, c_uint64],
     "vlr_plot_save": [_handle, POINTER(structs.PlotStyle), c_char_p],
+    "vlr_text_draw": [c_char_p, c_float, POINTER(c_uint32), POINTER(c_uint32), _floats, c_uint64],
     "vlr_image_write": [c_char_p, c_uint32, c_uint32, c_uint32, _floats],
     "vlr_image_read": [c_char_p, _number, _number, _number, _floats, c_uint64],
     "vlr_image_write_part": [

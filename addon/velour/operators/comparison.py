@@ -10,9 +10,12 @@ from ..core.read_job import ReadJob
 from ..export import ExportError
 from ..export.files import StoredFile
 from ..native import Btf, Measurement, VelourError, library
+from ..native.plot import text_coverage
 
 _BACKDROP = 0.05  # linear gray around the balls
 _THUMBNAIL = 256  # pixels; previews are square
+_CAPTION, _SMALLEST_EM = 26, 10  # height of a tile over that of a line of text, and its minimum in pixels
+_CAPTION_GRAY = 0.6  # linear
 
 
 class Comparison:
@@ -69,7 +72,14 @@ class Comparison:
     def tiles(self, gain):
         """Measured, model and `gain` times the absolute difference, from left to right: linear, opaque."""
         measured, model = (_over_backdrop(ball) for ball in self._balls)
-        tiles = np.concatenate((measured, model, gain * np.abs(model - measured)), axis=1)
+        difference = gain * np.abs(model - measured)
+        for tile, caption in (
+            (measured, "Measurement"),
+            (model, "Model"),
+            (difference, f"{gain:g} times the difference"),
+        ):
+            _write(tile, caption)
+        tiles = np.concatenate((measured, model, difference), axis=1)
         return np.concatenate((tiles, np.ones_like(tiles[..., :1])), axis=2)
 
     def thumbnail(self, gain):
@@ -82,6 +92,14 @@ class Comparison:
         picture[half:, :half], picture[half:, half:] = shown(measured), shown(model)
         picture[:half, half // 2 : half // 2 + half] = shown(difference)
         return picture
+
+
+def _write(tile, caption):
+    """Writes a caption into the lower left corner of a tile."""
+    em = max(len(tile) / _CAPTION, _SMALLEST_EM)
+    coverage = text_coverage(caption, em)[: len(tile), : tile.shape[1], None]
+    height, width, _ = coverage.shape
+    tile[:height, :width] += coverage * (_CAPTION_GRAY - tile[:height, :width])
 
 
 def _adding(model):

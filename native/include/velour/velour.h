@@ -1047,6 +1047,12 @@ VLR_API vlr_status vlr_plot_draw(const vlr_plot* plot, const vlr_plot_style* sty
  * chosen). */
 VLR_API vlr_status vlr_plot_save(const vlr_plot* plot, const vlr_plot_style* style, const char* path);
 
+/* A line of UTF-8 text in the font of plots: coverage, 0..1, row 0 at the bottom; the baseline is a third of the height
+ * above the bottom. `em` in pixels, 4..512. `width` and `height` are always set; `coverage` may be null, otherwise
+ * `count` is width x height. */
+VLR_API vlr_status vlr_text_draw(const char* utf8, float em, uint32_t* width, uint32_t* height, float* coverage,
+                                 uint64_t count);
+
 /* ---- images -------------------------------------------------------------------------------------------------- */
 
 /* Writes linear pixels [height x width x channels], row 0 at the bottom, atomically. The extension selects the format:

@@ -7,6 +7,7 @@
 #include "capi/handles.h"
 #include "capi/json_text.h"
 #include "image/picture.h"
+#include "plot/font.h"
 #include "plot/model_plots.h"
 #include "plot/pen.h"
 #include "plot/plot.h"
@@ -17,6 +18,8 @@ using namespace velour;
 using namespace velour::capi;
 
 namespace {
+
+constexpr size_t kMaxText = 1024;  // bytes of a line of text
 
 Json axis_json(const PlotAxis& axis) {
   return {{"column", axis.column},
@@ -177,5 +180,35 @@ vlr_status vlr_plot_save(const vlr_plot* plot, const vlr_plot_style* style, cons
     }
     const Drawing drawing = lay_out(plot->plot, converted(style));
     extension == ".svg" ? write_text(path, svg_text(drawing)) : write_png(path, drawing);
+  });
+}
+
+vlr_status vlr_text_draw(const char* utf8, float em, uint32_t* width, uint32_t* height, float* coverage,
+                         uint64_t count) {
+  return guard([&] {
+    require(utf8, "utf8");
+    require(width, "width");
+    require(height, "height");
+    const std::string_view text(utf8);
+    if (!(em >= 4 && em <= 512)) {
+      throw Error(Status::invalid_argument, "em is " + std::to_string(em) + "; it must be 4 to 512 pixels.");
+    }
+    if (text.size() > kMaxText) {
+      throw Error(Status::invalid_argument, "utf8 has " + std::to_string(text.size()) + " bytes; the maximum is " +
+                                                std::to_string(kMaxText) + ".");
+    }
+    const TextPixels pixels = text_pixels(text, em, 0);
+    *width = static_cast<uint32_t>(pixels.width);
+    *height = static_cast<uint32_t>(pixels.height);
+    if (!coverage) return;
+    if (count != pixels.coverage.size()) {
+      throw Error(Status::invalid_argument, "count is " + std::to_string(count) + ", but the text has " +
+                                                std::to_string(pixels.coverage.size()) + " pixels.");
+    }
+    const auto row = static_cast<size_t>(pixels.width);
+    for (size_t i = 0; i < pixels.coverage.size(); ++i) {
+      const size_t y = i / row, x = i % row;
+      coverage[(*height - 1 - y) * row + x] = static_cast<float>(pixels.coverage[i]) / 255;
+    }
   });
 }
