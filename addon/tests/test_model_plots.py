@@ -229,5 +229,5 @@ def test_text_is_as_wide_as_its_letters_and_stands_on_its_baseline():
     assert rows[0] == 20  # no letter reaches below the baseline
     assert text_coverage("", 20).max(initial=0) == 0
     for text, em in (("Model", 2), ("Model", float("nan")), ("x" * 2000, 20)):
-        with pytest.raises(VelourError, match="em is|bytes"):
+        with pytest.raises(VelourError, match=r"em is|bytes"):
             text_coverage(text, em)
