@@ -2,6 +2,7 @@
 #include "image/formats/exr_picture.h"
 
 #include <gtest/gtest.h>
+#include <algorithm>
 
 #include "base/error.h"
 #include "support/inputs.h"

@@ -1,6 +1,7 @@
 // The zip's picture libraries, and libtiff, against OpenImageIO: every kind of file gives the same values, or both
 // refuse it.
 #include <cstdio>  // jpeglib.h needs it
+#include <cstring>
 
 #include <jpeglib.h>
 
