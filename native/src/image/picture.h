@@ -16,7 +16,7 @@ namespace velour {
 struct Picture {
   int width = 0, height = 0, channels = 0;
   std::vector<float> pixels;
-  std::vector<std::string> notes = {};  // sentences with the file's name that say what was left out or replaced
+  std::vector<Warning> warnings = {};  // about what was left out or replaced
   const float* pixel(int x, int y) const {
     return pixels.data() + (static_cast<size_t>(y) * static_cast<size_t>(width) + static_cast<size_t>(x)) *
                                static_cast<size_t>(channels);
@@ -40,11 +40,11 @@ struct PictureOptions {
 /// Reads an OpenEXR, Radiance HDR, PNG, JPEG, TIFF or BMP file, recognized by content, as gray, gray and alpha, RGB or
 /// RGBA, upright, in linear Rec. 709. OpenEXR: applies choose_exr_colors(), the display window and `chromaticities`.
 /// Radiance: applies orientation, EXPOSURE, COLORCORR, PRIMARIES and XYZE. Others: apply the EXIF orientation and the
-/// transfer curve. Non-finite values become the largest finite one (+infinity) or 0, and the notes count them. Throws
+/// transfer curve. Non-finite values become the largest finite one (+infinity) or 0, and the warnings count them. Throws
 /// Error with the file's name, also for files that end early, deep pictures and cube maps. Checks dimensions against
 /// the file's size before anything is allocated.
 Picture read_picture(const std::string& path, const PictureOptions& options = {});
-/// Reads width, height, channels and notes without the pixels.
+/// Reads width, height, channels and warnings without the pixels.
 Picture read_picture_header(const std::string& path, const PictureOptions& options = {});
 /// Reads all channels of the first part of an OpenEXR file as stored, colors first; other files like read_picture().
 /// For files written by Velour.
@@ -83,7 +83,7 @@ struct ValueFaults {
 /// Examines the first `used` of every `stride` values.
 ValueFaults find_value_faults(std::span<const float> values, size_t stride = 1, size_t used = 1);
 
-/// "SUBJECT: 12 values are infinite and count as 65504.", one sentence for each kind that occurs.
-std::vector<std::string> fault_sentences(const ValueFaults& faults, const std::string& subject);
+/// One warning for each kind that occurs. `file` empty: the environment image.
+std::vector<Warning> fault_warnings(const ValueFaults& faults, const std::string& file);
 
 }  // namespace velour

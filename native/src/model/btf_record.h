@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "base/warning.h"
 #include "model/records.h"
 
 namespace velour {
@@ -42,7 +43,7 @@ struct BtfRecord {
   double seconds = 0;                 // wall clock of the fit
   double evaluations_per_second = 0;  // per CPU second of one thread, at random places and directions; 0: not measured
   uint64_t seed = 0;
-  std::vector<std::string> warnings;  // sentences
+  std::vector<Warning> warnings;
   double relative_l2 = 0;             // of companded values over all fitted pairs; 0: not measured
   double tolerance = 0;               // requested maximum of relative_l2; 0: none
   OrderCurve order;                   // error over size; `lobes` are coefficients per texel, or components

@@ -83,8 +83,8 @@ class BtfMeasurement {
 
   /// Further facts about the source, as (key, value) pairs for `info`.
   virtual std::vector<std::pair<std::string, std::string>> details() const { return {}; }
-  /// Warnings for users of the data, one sentence each.
-  virtual std::vector<std::string> warnings() const { return {}; }
+  /// Warnings for users of the data.
+  virtual std::vector<Warning> warnings() const { return {}; }
 
   const PairLayout& layout() const { return *layout_; }
   const TexelGrid& grid() const { return grid_; }

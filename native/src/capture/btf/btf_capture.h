@@ -46,7 +46,7 @@ struct BtfCaptureReport {
   uint64_t pairs = 0;
   bool two_sided = false, open = false;
   double thickness = 0, reference_height = 0;  // meters (tile widths if unknown), over the lowest point
-  std::vector<std::string> warnings;
+  std::vector<Warning> warnings;
 };
 
 /// Captures the committed `scene` as a BTF in the folder `path`. Every view is written as soon as it is done; `resume`
