@@ -10,7 +10,7 @@ import bpy
 from bpy.props import BoolProperty, IntProperty, StringProperty
 
 from ..core.fit_time import fit_of, remember
-from ..core.plain_words import plain
+from ..core.warning_table import sentences
 from ..core.read_job import ReadJob, check
 from ..core.sizes import data_size
 from ..export.caches import cache_folder
@@ -126,8 +126,8 @@ class VELOUR_OT_compress_btf(AskedFit, MakesModel, bpy.types.Operator):
 
     def _say_what_it_is(self, material):
         report = self._report
-        for sentence in report["warnings"]:
-            self.report({"WARNING"}, plain(sentence))
+        for sentence in sentences(report["warning_codes"]):
+            self.report({"WARNING"}, sentence)
         unseen = report["psnr_held_out"]
         self.report(
             {"INFO"},

@@ -104,10 +104,9 @@ std::vector<Warning> warnings_of(const std::string& path, const PictureHeader& h
     warnings.push_back(warning<WarningCode::primaries_ignored>({{"file", path}}));
   }
   if (header.frame) {
-    warnings.push_back(
-        warning<WarningCode::window_ignored>({{"file", path},
-                                              {"width", static_cast<uint64_t>(header.frame->width)},
-                                              {"height", static_cast<uint64_t>(header.frame->height)}}));
+    warnings.push_back(warning<WarningCode::window_ignored>({{"file", path},
+                                                             {"width", static_cast<uint64_t>(header.frame->width)},
+                                                             {"height", static_cast<uint64_t>(header.frame->height)}}));
   }
   return warnings;
 }

@@ -40,9 +40,9 @@ struct PictureOptions {
 /// Reads an OpenEXR, Radiance HDR, PNG, JPEG, TIFF or BMP file, recognized by content, as gray, gray and alpha, RGB or
 /// RGBA, upright, in linear Rec. 709. OpenEXR: applies choose_exr_colors(), the display window and `chromaticities`.
 /// Radiance: applies orientation, EXPOSURE, COLORCORR, PRIMARIES and XYZE. Others: apply the EXIF orientation and the
-/// transfer curve. Non-finite values become the largest finite one (+infinity) or 0, and the warnings count them. Throws
-/// Error with the file's name, also for files that end early, deep pictures and cube maps. Checks dimensions against
-/// the file's size before anything is allocated.
+/// transfer curve. Non-finite values become the largest finite one (+infinity) or 0, and the warnings count them.
+/// Throws Error with the file's name, also for files that end early, deep pictures and cube maps. Checks dimensions
+/// against the file's size before anything is allocated.
 Picture read_picture(const std::string& path, const PictureOptions& options = {});
 /// Reads width, height, channels and warnings without the pixels.
 Picture read_picture_header(const std::string& path, const PictureOptions& options = {});

@@ -272,8 +272,7 @@ void add_warnings(const ObjContent& content, const ObjArrays& arrays, const std:
   const size_t all = content.faces.size();
   const auto some = [&](size_t faces) { return faces > 0 && faces < all; };
   if (const size_t faces = arrays.without_normals; some(faces)) {
-    mesh.add_warning(
-        warning<WarningCode::faces_without_normals>({{"file", path}, {"faces", faces}, {"all", all}}));
+    mesh.add_warning(warning<WarningCode::faces_without_normals>({{"file", path}, {"faces", faces}, {"all", all}}));
   }
   if (const size_t faces = arrays.without_uvs; some(faces)) {
     mesh.add_warning(warning<WarningCode::faces_without_uvs>({{"file", path}, {"faces", faces}, {"all", all}}));

@@ -12,8 +12,7 @@ namespace {
 
 void warn_of_uncovered(size_t uncovered, size_t fitted, std::vector<Warning>& warnings) {
   if (uncovered == 0) return;
-  warnings.push_back(
-      warning<WarningCode::views_left_out>({{"uncovered", uncovered}, {"sampled", uncovered + fitted}}));
+  warnings.push_back(warning<WarningCode::views_left_out>({{"uncovered", uncovered}, {"sampled", uncovered + fitted}}));
 }
 
 void warn_of_gamut(const std::vector<MeasuredSlice>& slices, std::vector<Warning>& warnings) {
@@ -25,8 +24,7 @@ void warn_of_gamut(const std::vector<MeasuredSlice>& slices, std::vector<Warning
     cost = std::max(cost, SliceSamples(s.samples).gamut_error());
   }
   if (outside == 0) return;
-  warnings.push_back(
-      warning<WarningCode::out_of_gamut>({{"outside", outside}, {"values", total}, {"error", cost}}));
+  warnings.push_back(warning<WarningCode::out_of_gamut>({{"outside", outside}, {"values", total}, {"error", cost}}));
 }
 
 }  // namespace

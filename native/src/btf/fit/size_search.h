@@ -63,10 +63,10 @@ class SizeSearch {
 struct SizedFit {
   ModelBody body;
   BtfErrors errors;
-  OrderCurve order;                 // scaled to the measured errors; the chosen point is the body's
-  std::vector<SizeTrial> trials;    // the last one need not be the body
+  OrderCurve order;                  // scaled to the measured errors; the chosen point is the body's
+  std::vector<SizeTrial> trials;     // the last one need not be the body
   std::optional<Warning> shortfall;  // if the tolerance is not met
-  double seconds = 0;               // time of all fits, without measuring errors
+  double seconds = 0;                // time of all fits, without measuring errors
 };
 
 /// Computes the errors of a model against the data to which it was fitted.

@@ -224,7 +224,8 @@ void write(const PixelSum& p, float* out) {
 }
 
 uint32_t count(float value) {
-  if (value >= 0.0f && value <= static_cast<float>(kMaxRays) && value == std::floor(value)) return static_cast<uint32_t>(value);
+  if (value >= 0.0f && value <= static_cast<float>(kMaxRays) && value == std::floor(value))
+    return static_cast<uint32_t>(value);
   throw Error(Status::bad_data,
               "The given numbers are not the sums of a render: a pixel has " + std::to_string(value) + " rays.");
 }

@@ -114,8 +114,7 @@ bool is_not_reciprocal(const FitRecord& record) {
 
 void warn_of_reciprocity(const FitRecord& record, std::vector<Warning>& warnings) {
   if (is_not_reciprocal(record)) {
-    warnings.push_back(
-        warning<WarningCode::measurement_not_reciprocal>({{"change", *record.measured_reciprocity}}));
+    warnings.push_back(warning<WarningCode::measurement_not_reciprocal>({{"change", *record.measured_reciprocity}}));
   } else if (record.reciprocity > kBrokenReciprocity) {
     warnings.push_back(warning<WarningCode::model_not_reciprocal>({{"change", record.reciprocity}}));
   }
