@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "base/warning.h"
 #include "image/color_primaries.h"
 #include "image/formats/exr_part.h"
 #include "image/orientation.h"

@@ -8,6 +8,7 @@
 #include <span>
 #include <string>
 #include <vector>
+#include "base/warning.h"
 #include "image/color_primaries.h"
 
 namespace velour {

@@ -6,6 +6,7 @@
 #include <span>
 #include <string>
 #include <vector>
+#include "base/warning.h"
 #include "image/picture.h"
 #include "math/sphere/directions.h"
 

@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/warning.h"
 #include "math/sphere/affine.h"
 #include "math/sphere/vec.h"
 #include "scene/mesh_arrays.h"

@@ -9,6 +9,7 @@
 #include <typeinfo>
 #include <vector>
 #include "base/progress.h"
+#include "base/warning.h"
 #include "light/environment.h"
 #include "light/light.h"
 #include "material/texture_slot.h"

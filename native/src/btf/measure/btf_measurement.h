@@ -7,6 +7,7 @@
 #include <string>
 #include <utility>
 #include <vector>
+#include "base/warning.h"
 #include "brdf/measure/measurement.h"
 #include "btf/measure/half_floats.h"
 #include "btf/measure/pair_layout.h"

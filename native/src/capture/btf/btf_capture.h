@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "base/progress.h"
+#include "base/warning.h"
 #include "btf/measure/pair_layout.h"
 #include "capture/btf/path_vertices.h"
 #include "capture/btf/repeated_tile.h"

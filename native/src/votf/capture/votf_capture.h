@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 #include "base/progress.h"
+#include "base/warning.h"
 #include "capture/btf/repeated_tile.h"
 #include "votf/eval/occlusion_volume.h"
 #include "votf/eval/visibility_mask.h"
