@@ -33,6 +33,7 @@ NUMBERS = {  # of single numbers, by the form of the sentence
     "percent": (0.0625, "6.25%"),
     "degrees": (60.0, "60\N{DEGREE SIGN}"),
     "meters": (0.0625, "0.0625 m"),
+    "memory": (101_200_000, "102 MB"),
     "size": (1_500_000, "1.50 MB"),
     "subject": ("sky.hdr", "sky.hdr"),
 }

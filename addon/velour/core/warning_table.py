@@ -5,6 +5,7 @@ The library reports a warning as a code and named values (native/src/base/warnin
 
 from __future__ import annotations
 
+import math
 import string
 
 from .sizes import data_size
@@ -160,7 +161,7 @@ SENTENCES = {
     ),
     "memory_limits_fit": (
         "There was not enough memory for the best model: lobes were chosen by {points} points instead of"
-        " {usual}. {memory:size} would suffice. Use fewer {TEXELS} or allow more memory, and fit again."
+        " {usual}. {memory:memory} would suffice. Use fewer {TEXELS} or allow more memory, and fit again."
     ),
     "fit_not_resumed": "The fit was not resumed but started from the beginning: {reason}",
     "checkpoint_not_written": (
@@ -300,6 +301,7 @@ _FORMS = {
     "azimuths": lambda angles: f" (azimuth {_degrees(angles)})" if angles else "",
     "degrees": _degrees,
     "layer": lambda name: f" of layer '{name}'" if name else "",
+    "memory": lambda size: f"{math.ceil(size / 1e6)} MB",  # rounded up: as much must suffice
     "meters": lambda length: f"{length:.3g} m",
     "name": lambda name: f" '{name}'" if name else "",
     "percent": lambda share: f"{100 * share:.3g}%",
