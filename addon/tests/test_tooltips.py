@@ -1,4 +1,4 @@
-"""Blender shows the docstring of a panel or menu as its tooltip, so what it says to programmers is a comment."""
+"""Blender shows the docstring of a panel or menu as its tooltip: notes to programmers are comments there."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Every warning of the library has its sentence, with all of its values and without the words of engineers."""
+"""Every warning of the library has its sentence, with all of its values and without words of engineers."""
 
 from __future__ import annotations
 
@@ -13,7 +13,8 @@ from velour.core.warning_table import COMMAND_LINE, PANEL, SENTENCES, sentence
 
 HEADER = ROOT / "native/src/base/warning.h"
 JARGON = re.compile(
-    r"relmse|relative L2|\bL2\b|reciprocal:|albedo\b|\bRMS\b|coefficient|kcta|clustered|\bentries\b|\bsrbf\b|resolves"
+    r"relmse|relative L2|\bL2\b|reciprocal:|albedo\b|\bRMS\b|coefficient|kcta|clustered|\bentries\b|\bsrbf\b"
+    r"|resolves"
 )
 # A value of each kind for the names of the header, with what the sentence must show of it.
 VALUES = {
@@ -129,7 +130,8 @@ def test_settings_are_named_as_the_reader_knows_them():
 
 
 @pytest.mark.parametrize(
-    "values", [{}, {"views": 3, "share": "much"}, {"views": ["a"], "share": 0.5}, {"views": [75.0], "share": []}]
+    "values",
+    [{}, {"views": 3, "share": "much"}, {"views": ["a"], "share": 0.5}, {"views": [75.0], "share": []}],
 )
 def test_values_of_a_damaged_file_are_shown_as_they_are(values):
     said = sentence({"code": "partial_coverage", "values": values})

@@ -15,7 +15,7 @@ _LOOKS = (  # (largest tolerance, what the errors look like)
 
 
 def panel_warnings(info: dict) -> list[str]:
-    """`info`: a model's info from the library. Its errors at the reported views stand for those at all views."""
+    """`info`: a model's info from the library. Errors at the reported views stand for those at all views."""
     codes = {warning["code"] for warning in info["warning_codes"]}
     redundant = {"fitted_views_exceed_tolerance"} if "views_exceed_tolerance" in codes else set()
     return [sentence(warning) for warning in info["warning_codes"] if warning["code"] not in redundant]

@@ -39,7 +39,7 @@ _ORIENTATIONS = (  # by EXIF tag 274
     "|mirrored and rotated by 90 degrees|rotated by 270 degrees"
 )
 
-# By code. What follows a colon says how a value is written: a key of _FORMS, or the words that it chooses from.
+# By code. What follows a colon says how a value is written: a key of _FORMS, or the words it chooses from.
 SENTENCES = {
     # Measurements
     "invalid_entries": (
@@ -151,11 +151,13 @@ SENTENCES = {
         " needed."
     ),
     "tolerance_needs_bytes": _NOT_MET + ". Raise {MAX_SIZE} to about {enough:size}.",
-    "tolerance_needs_more_bytes": _NOT_MET + (
+    "tolerance_needs_more_bytes": _NOT_MET
+    + (
         ", and more than {largest:size} would be needed. Raise {MAX_ERROR} to {reachable}, or try another"
         " {METHOD}."
     ),
-    "tolerance_out_of_reach": _NOT_MET + (
+    "tolerance_out_of_reach": _NOT_MET
+    + (
         ", and no larger model of this method is known to be better. Raise {MAX_ERROR} to {reachable}, or try"
         " another {METHOD}."
     ),
@@ -217,12 +219,16 @@ SENTENCES = {
         " surface and folds over itself on {triangles} of {sampled} triangles, where the surface has radii of"
         " curvature down to {radius:meters}. Make its tiles smaller (they are {tile:meters} wide)."
     ),
-    "no_light": "The scene has no light, so its image is black. Add a light, an emissive mesh or an environment.",
+    "no_light": (
+        "The scene has no light, so its image is black. Add a light, an emissive mesh or an environment."
+    ),
     "faces_without_normals": "{file}: {faces} of {all} faces have no normals and are shaded flat.",
     "faces_without_uvs": "{file}: {faces} of {all} faces have no texture coordinates; (0, 0) is used.",
     "faces_left_out": "{file}: {faces} faces have fewer than 3 corners and were left out.",
     # Images
-    "channels_ignored": "{file}: only the image{layer:layer} is used; other channels are ignored: {channels:some}.",
+    "channels_ignored": (
+        "{file}: only the image{layer:layer} is used; other channels are ignored: {channels:some}."
+    ),
     "parts_ignored": "{file}: part{part:name} of {parts} is used; the other parts are ignored.",
     "channel_missing": "{file}: one of the channels R, G and B is missing and is treated as 0.",
     "orientation_ignored": (

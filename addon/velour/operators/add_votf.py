@@ -4,9 +4,9 @@ import functools
 
 import bpy
 
-from ..core.warning_table import sentences
 from ..core.read_job import ReadJob
 from ..core.sizes import data_size
+from ..core.warning_table import sentences
 from ..native import votf_job
 from . import measured
 from .approximate import MakesModel

@@ -5,8 +5,8 @@ import os
 import bpy
 from bpy.props import BoolProperty, EnumProperty, IntProperty, StringProperty
 
-from ..core.warning_table import sentences
 from ..core.sizes import data_size
+from ..core.warning_table import sentences
 from ..export.tiles import export_tile
 from ..native import capture_job
 from ..properties.tile_settings import SIDES

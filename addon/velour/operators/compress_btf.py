@@ -10,9 +10,9 @@ import bpy
 from bpy.props import BoolProperty, IntProperty, StringProperty
 
 from ..core.fit_time import fit_of, remember
-from ..core.warning_table import sentences
 from ..core.read_job import ReadJob, check
 from ..core.sizes import data_size
+from ..core.warning_table import sentences
 from ..export.caches import cache_folder
 from ..export.nodes import velour_node
 from ..native import Btf, compress_job

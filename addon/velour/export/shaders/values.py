@@ -60,8 +60,4 @@ def own_value(socket, asked=None):
     value = float(value) if isinstance(value, (int, float)) else tuple(value[:3])
     if asked is None or isinstance(asked.default_value, (int, float)) == isinstance(value, float):
         return value
-    return (
-        (value,) * 3
-        if isinstance(value, float)
-        else float(np.dot(luminance_weights(), value))
-    )
+    return (value,) * 3 if isinstance(value, float) else float(np.dot(luminance_weights(), value))
