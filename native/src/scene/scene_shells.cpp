@@ -1,7 +1,6 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
-#include <cstdio>
 #include <string>
 #include <utility>
 
@@ -17,12 +16,6 @@ Mat3 metric_of(const Affine& map) {
   return {{glm::dot(x, x), glm::dot(x, y), glm::dot(x, z)},
           {glm::dot(x, y), glm::dot(y, y), glm::dot(y, z)},
           {glm::dot(x, z), glm::dot(y, z), glm::dot(z, z)}};
-}
-
-std::string in_metres(float length) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.3g m", static_cast<double>(length));
-  return text;
 }
 
 }  // namespace

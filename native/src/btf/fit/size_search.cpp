@@ -1,10 +1,8 @@
 #include "btf/fit/size_search.h"
 
 #include <algorithm>
-#include <array>
 #include <chrono>
 #include <cmath>
-#include <cstdio>
 #include <set>
 
 namespace velour {
@@ -18,12 +16,6 @@ constexpr double kFarthest = 2;    // maximum step of an extrapolation, relative
 
 /// Keeps logarithms finite for exact models.
 double positive(double error) { return std::max(error, 1e-12); }
-
-std::string text(const char* format, double value) {
-  std::array<char, 32> out{};
-  std::snprintf(out.data(), out.size(), format, value);
-  return out.data();
-}
 
 }  // namespace
 

@@ -62,7 +62,7 @@ Model bounded_model(const Measurement& measurement, const FittedSlices& all, con
       model.fit.warnings.push_back(
           warning<WarningCode::model_bounded>({{"bytes", options.max_bytes},
                                                {"views", fitted.slices.size()},
-                                               {"lobes", std::get<PerViewBrdf>(model.body).lobe_count()}}));
+                                               {"lobes", std::get<PerViewBrdf>(model.body).center.size()}}));
     }
     const uint64_t size = size_of_per_view(model, options);
     if (size <= options.max_bytes) return model;
