@@ -1,4 +1,4 @@
-"""Each setting has one default, the library's: panels and help texts, which have to repeat it, agree with it."""
+"""Each setting has one default, the library's: panels and help texts, which must repeat it, agree."""
 
 from __future__ import annotations
 
@@ -12,8 +12,8 @@ import pytest
 from conftest import ROOT
 from velour.native import library, structs
 
-# (file of properties, property, options of the library, field). Samples of renders are Blender's kind of setting:
-# they have a default of their own.
+# (file of properties, property, options of the library, field). The samples of renders are not among them:
+# a Blender scene has more by default.
 PROPERTIES = [
     *(("material_settings", name, "Fit", name) for name in ("tolerance", "max_lobes", "seed")),
     ("material_settings", "use_limit_albedo", "Fit", "limit_albedo"),

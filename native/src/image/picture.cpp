@@ -287,8 +287,7 @@ PictureDifference compare_pictures(const float* pixels, const float* reference, 
       }
   };
   each([&](double, double r) { mean += r / count; });
-  // The lower bound only matters if the whole reference is black.
-  const double floor = std::max(0.01 * mean * mean, 1e-30);
+  const double floor = relmse_floor(mean);
   PictureDifference difference;
   each([&](double x, double r) {
     difference.rmse += (x - r) * (x - r) / count;

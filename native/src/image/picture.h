@@ -1,6 +1,7 @@
 // Pictures of linear float pixels, read from and written to files.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -61,7 +62,10 @@ void write_picture(const std::string& path, const Picture& picture);
 struct PictureDifference {
   double rmse = 0, relmse = 0;
 };
-/// Compares the first three channels: relmse = mean((x - r)^2 / (r^2 + 0.01 mean(r)^2)).
+/// What relmse adds to the square of a reference value: 0.01 mean(r)^2. The lower bound only matters for a black image.
+inline double relmse_floor(double mean) { return std::max(0.01 * mean * mean, 1e-30); }
+
+/// Compares the first three channels: relmse = mean((x - r)^2 / (r^2 + relmse_floor(mean(r)))).
 PictureDifference compare_pictures(const float* pixels, const float* reference, size_t pixel_count, int channels);
 
 // The sRGB transfer curve (IEC 61966-2-1) and its inverse.
