@@ -19,6 +19,7 @@ PANEL = {
     "MEASUREMENT_RENDER": "Render from Measurement",
     "METHOD": "Method",
     "RECIPROCAL": "Reciprocal",
+    "SIZE_PLOT": "the Size plot",
     "TEXELS": "Texels",
 }
 COMMAND_LINE = {
@@ -29,6 +30,7 @@ COMMAND_LINE = {
     "MEASUREMENT_RENDER": "a render of the measurement",
     "METHOD": "--method",
     "RECIPROCAL": "--symmetric",
+    "SIZE_PLOT": "velour plot --kind order",
     "TEXELS": "--texels",
 }
 
@@ -118,7 +120,7 @@ SENTENCES = {
     # Fits and models
     "views_exceed_tolerance": (
         "The model exceeds {MAX_ERROR} ({tolerance}, twice that beyond 75\N{DEGREE SIGN}) at {views:degrees}:"
-        " its errors there are {errors}. Raise {MAX_LOBES} and fit again; the Size plot shows the error of"
+        " its errors there are {errors}. Raise {MAX_LOBES} and fit again; {SIZE_PLOT} shows the error of"
         " larger models."
     ),
     "views_not_covered": (
@@ -178,8 +180,8 @@ SENTENCES = {
         " or in a smaller image, a smaller model would suffice."
     ),
     "only_finest_levels_left_out": (
-        "Only detail that is too fine for this scene was left out. For a smaller scene model, create the"
-        " material with {METHOD} SRBF or SVD, which are also fitted to the views of the scene."
+        "Only detail that is too fine for this scene was left out. For a smaller scene model, fit the BTF"
+        " with {METHOD} SRBF or SVD, which are also fitted to the views of the scene."
     ),
     # Captures
     "tile_seam": (
