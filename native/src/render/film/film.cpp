@@ -198,10 +198,10 @@ double Film::noise() const {
 namespace {
 
 constexpr size_t kOfPixel = 12;
-constexpr uint32_t kMaxRays = 1u << 24;  // above, floats skip integers
+constexpr uint32_t kMaxCount = 1u << 24;  // above, floats skip integers
 
 float float_of(uint32_t count) {
-  if (count <= kMaxRays) return static_cast<float>(count);
+  if (count <= kMaxCount) return static_cast<float>(count);
   throw Error(Status::unsupported, "A pixel of this part has " + std::to_string(count) +
                                        " samples, but the sums of a part hold at most 16777216 per pixel. Render "
                                        "several parts with fewer samples.");
@@ -224,7 +224,7 @@ void write(const PixelSum& p, float* out) {
 }
 
 uint32_t count(float value) {
-  if (value >= 0.0f && value <= static_cast<float>(kMaxRays) && value == std::floor(value))
+  if (value >= 0.0f && value <= static_cast<float>(kMaxCount) && value == std::floor(value))
     return static_cast<uint32_t>(value);
   throw Error(Status::bad_data,
               "The given numbers are not the sums of a render: a pixel has " + std::to_string(value) + " rays.");
