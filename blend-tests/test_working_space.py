@@ -1,9 +1,11 @@
 """Colors between linear Rec. 709 and a working space that is another one."""
 
+from types import SimpleNamespace
 from unittest import mock
 
 import numpy as np
 from velour.export import color
+from velour.export.shaders.values import own_value
 
 from support.blender import BlenderTest
 
@@ -29,3 +31,10 @@ class WorkingSpace(BlenderTest):
     def test_luminance(self):
         white = color.luminance_weights() @ (_REC2020 @ np.ones(3))
         self.assert_close(white, 1, 1e-6)
+
+    def test_a_color_at_a_number(self):
+        """A link from a color to a number gives its luminance, the same in every working space."""
+        orange = np.array((0.9, 0.4, 0.1))
+        color_socket = SimpleNamespace(default_value=(*(_REC2020 @ orange), 1.0))
+        number = own_value(color_socket, SimpleNamespace(default_value=0.0))
+        self.assert_close(number, np.dot((0.2126, 0.7152, 0.0722), orange), 1e-5)

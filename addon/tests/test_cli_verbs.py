@@ -20,6 +20,7 @@ FIT_KEYS = [
     "reciprocity",
     "measured_reciprocity",
     "warnings",
+    "warning_codes",
     "order",
     "view_range",
 ]
@@ -182,6 +183,10 @@ def test_views_that_miss_the_tolerance_are_warned_of_on_stderr(measurement_file,
     )
     assert result.json["warnings"]
     assert all(warning in result.err for warning in result.json["warnings"])
+    first = result.json["warning_codes"][0]
+    assert first["code"] == "views_exceed_tolerance"
+    assert first["values"]["tolerance"] == 1e-4
+    assert "--max-lobes" in result.json["warnings"][0]
 
 
 def test_render(render_arguments, tmp_path):

@@ -99,9 +99,11 @@ def test_what_cannot_be_met_says_what_would(folder, btf):
     report = velour("compress", btf, "-o", path, "--tolerance", 0.05, "--bytes", BYTES // 4, "--json").json
     assert report["relative_l2"] > 0.05
     assert report["parameter_bytes"] <= BYTES // 4
+    (warning,) = report["warning_codes"]
+    assert warning["code"] in ("tolerance_needs_bytes", "tolerance_needs_more_bytes")
+    assert warning["values"]["tolerance"] == 0.05
     (sentence,) = report["warnings"]
-    assert "tolerance of 0.05 is not met" in sentence
-    assert "bytes would" in sentence
+    assert "exceeds --tolerance (0.05)" in sentence
 
 
 def test_a_ratio_is_bytes(folder, btf):
@@ -171,19 +173,19 @@ def test_memory_that_makes_another_model_says_so_and_what_would_not(folder, btf)
         out = folder / "memory.velour"
         done = velour("compress", btf, "-o", out, "--bytes", BYTES, *memory, "--json", "--quiet")
         assert done.status == 0, done.err
-        return done.json["warnings"], parameters(out)
+        return done.json["warning_codes"], parameters(out)
 
     sentence = refused("compress", btf, "-o", path_of(folder), "--bytes", BYTES, "--memory", 1_000_000)
     least = int(sentence.split("requires at least ")[1].split(" MB")[0]) * 1_000_000
     no_warnings, unlimited = compressed()
     warnings, other = compressed("--memory", least)
-    assert not any("another model" in w for w in no_warnings)
-    said = [w for w in warnings if "another model" in w]
-    assert len(said) == 1
+    assert no_warnings == []
+    (limited,) = warnings
+    assert limited["code"] == "memory_limits_fit"
+    assert limited["values"]["points"] < limited["values"]["usual"]
     assert other != unlimited
-    enough = int(said[0].split("; ")[1].split(" MB")[0]) * 1_000_000
-    warnings, same = compressed("--memory", enough)
-    assert not any("another model" in w for w in warnings)
+    warnings, same = compressed("--memory", limited["values"]["memory"])
+    assert warnings == []
     assert same == unlimited
 
 
@@ -225,7 +227,7 @@ def test_what_is_left_of_another_fit_is_ignored(folder, btf):
     checkpoint = killed(btf, path, "--bytes", BYTES)
     report = velour("compress", btf, "-o", path, "--bytes", BYTES // 4, "--resume", "--json").json
     (sentence,) = report["warnings"]
-    assert "the fit was not resumed" in sentence
+    assert "The fit was not resumed" in sentence
     assert str(checkpoint) in sentence
     assert not checkpoint.exists()
     checkpoint.write_bytes(b"v/1\x01" + os.urandom(500))

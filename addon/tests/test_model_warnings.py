@@ -14,32 +14,33 @@ def _info(path) -> dict:
 
 def test_missed_views_are_one_sentence(model_file):
     from velour.core.model_warnings import panel_warnings
-    from velour.core.plain_words import plain
+    from velour.core.warning_table import sentence
 
     info = _info(model_file)
-    about_views = [w for w in info["warnings"] if w.startswith(("view ", "fitted views"))]
-    assert len(about_views) > 3
+    codes = [warning["code"] for warning in info["warning_codes"]]
+    assert codes[:2] == ["views_exceed_tolerance", "fitted_views_exceed_tolerance"]
     first, *others = panel_warnings(info)
-    assert first.startswith("The model exceeds Max Error (0.0001) at 5°, 30°")
-    assert others == [plain(w) for w in info["warnings"] if w not in about_views]
+    assert first.startswith("The model exceeds Max Error (0.0001, twice that beyond 75°) at 5°, 30°")
+    assert others == [sentence(warning) for warning in info["warning_codes"][2:]]
 
 
-def test_views_that_were_not_measured_are_one_sentence():
+def test_views_between_the_reported_ones_are_told_if_no_others_are():
     from velour.core.model_warnings import panel_warnings
 
-    warnings = [f"view {angle} degrees: the measurement does not cover it" for angle in (75, 85)]
-    (sentence,) = panel_warnings({"warnings": warnings, "tolerance": 0.02})
-    assert sentence.startswith("The measurement has no view at 75°, 85°, so")
-
-
-def test_views_between_the_reported_ones():
-    from velour.core.model_warnings import panel_warnings
-
-    warnings = [
-        "fitted views that miss the tolerance with at most 3 lobes (degrees): 72.1; the worst is 72.1"
-    ]
-    (sentence,) = panel_warnings({"warnings": warnings, "tolerance": 0.02})
-    assert sentence.startswith("The model exceeds Max Error (0.02) between the reported views.")
+    angles = {"views": [72.1], "azimuths": [], "worst": 72.1, "worst_azimuth": []}
+    fitted = {
+        "code": "fitted_views_exceed_tolerance",
+        "values": {**angles, "missed": 1, "fitted": 96, "lobes": 3, "error": 0.05, "tolerance": 0.02},
+    }
+    reported = {
+        "code": "views_exceed_tolerance",
+        "values": {"views": [75.0], "errors": [0.1], "tolerance": 0.02},
+    }
+    (told,) = panel_warnings({"warning_codes": [fitted]})
+    assert told.startswith("1 of 96 fitted views exceed Max Error (0.02) with at most 3 lobes")
+    assert "the first at 72.1°." in told
+    (told,) = panel_warnings({"warning_codes": [reported, fitted]})
+    assert told.startswith("The model exceeds Max Error (0.02")
 
 
 @pytest.mark.parametrize(

@@ -99,7 +99,7 @@ def _floor_under_glow(strategy, drawn):
         scene.commit()
         with render_job(scene, width=SIDE, height=SIDE, spp=4096, strategy=strategy) as job:
             job.run()
-            return job.read_pass("Combined")[..., :3].mean(), scene.info()["warnings"]
+            return job.read_pass("Combined")[..., :3].mean(), scene.info()["warning_codes"]
 
 
 def test_what_glows_lights_without_bounces():

@@ -6,13 +6,14 @@ import numpy as np
 import pytest
 import tail_bound
 import velour_cli
-from agreement import LUMINANCE, agreement
+from agreement import agreement
 from campaigns import run_in_this_process
 from progress import Progress
 from scenes import Scene
 from scipy import stats
 from tail_bound import Moments, log_p_of_pixels, log_p_of_sum
 from uniform_check import uniform_agreement
+from velour.core.luminance import LUMINANCE
 
 SAMPLES = 400_000
 PIXELS = (30, 40)

@@ -28,7 +28,7 @@ def test_the_report(made):
     assert 0.3 < report["coverage"] < 0.8
     assert report["wrong"] < 0.01
     assert not report["closed"]
-    assert report["warnings"] == []
+    assert report["warning_codes"] == []
 
 
 def test_info_tells_of_it(net, model_file):

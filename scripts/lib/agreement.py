@@ -6,9 +6,9 @@ from dataclasses import dataclass
 
 import numpy as np
 from scipy import stats
+from velour.core.luminance import LUMINANCE
 
 LEVEL = 0.01  # significance level of all tests together, not of each
-LUMINANCE = np.array([0.2126, 0.7152, 0.0722])
 
 
 @dataclass(frozen=True)

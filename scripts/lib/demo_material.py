@@ -14,6 +14,7 @@ from demo_parts import Part, Parts
 from steps import Steps
 from velour.core import files
 from velour.core.machine import machine
+from velour.core.warning_table import COMMAND_LINE, sentences
 from velour.native import Measurement, fit_job, library
 
 PART = Part(
@@ -71,7 +72,7 @@ def _make(folder: Path, measurement: Path, steps: Steps) -> dict:
         "relmse": relmse,
         "rmse": rmse,
     }
-    return {"numbers": numbers, "warnings": fit["warnings"]}
+    return {"numbers": numbers, "warnings": sentences(fit["warning_codes"], COMMAND_LINE)}
 
 
 def save_fit(measurement_file: Path, model_file: Path) -> dict:

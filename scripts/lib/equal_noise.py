@@ -20,6 +20,7 @@ import palette
 import plots
 import provenance
 from display import display
+from velour.core.luminance import LUMINANCE
 from velour.native import images
 from velour_cli import ROOT
 
@@ -154,7 +155,7 @@ def _fireflies(pictures: np.ndarray, mean: np.ndarray) -> float:
     """Mean number of pixels of a render that are far brighter than their neighbors while the mean is not."""
 
     def stand_out(picture: np.ndarray) -> np.ndarray:
-        luminance = picture @ np.array([0.2126, 0.7152, 0.0722])
+        luminance = picture @ LUMINANCE
         return luminance - median_filter(luminance, 3) > _FIREFLY
 
     own = stand_out(mean)

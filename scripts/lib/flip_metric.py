@@ -7,7 +7,7 @@ import site
 import sys
 
 import numpy as np
-from agreement import LUMINANCE
+from velour.core.luminance import LUMINANCE
 from velour_cli import ROOT
 
 # Where scripts/setup --metrics installs FLIP. Last on the path, so that numpy remains the system's.

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
+from velour.core.luminance import LUMINANCE
 from velour.native import images
 
 SUN_DIAMETER = np.radians(0.5)
@@ -18,7 +19,6 @@ SUN_ELEVATION, SUN_AZIMUTH = (
 SUN_COLOR = np.array([1.05, 1.0, 0.85])
 _HEIGHT = 1024  # rows; the sun is three texels across
 _SUBSAMPLES = 32  # per side of a texel near the sun
-_LUMINANCE = np.array([0.2126, 0.7152, 0.0722])
 
 
 @dataclass(frozen=True)
@@ -43,8 +43,8 @@ def write(path: Path) -> Path:
     sky = np.broadcast_to(_gradient(elevation), (_HEIGHT, 2 * _HEIGHT, 3))
     sun = _coverage(*centers)
     area = np.cos(elevation)  # up to a factor
-    energy = (area[..., None] * sky).sum(axis=(0, 1)) @ _LUMINANCE
-    radiance = SUN_SHARE / (1 - SUN_SHARE) * energy / ((area * sun).sum() * (SUN_COLOR @ _LUMINANCE))
+    energy = (area[..., None] * sky).sum(axis=(0, 1)) @ LUMINANCE
+    radiance = SUN_SHARE / (1 - SUN_SHARE) * energy / ((area * sun).sum() * (SUN_COLOR @ LUMINANCE))
     images.write(path, (sky + radiance * sun[..., None] * SUN_COLOR).astype(np.float32))
     return path
 
@@ -85,7 +85,7 @@ def sun_lobes(mixture: Path) -> SunLobes:
     )
     bandwidth = _part(mixture, "lobes.bandwidth").ravel()
     # The integral of exp(lambda (t - 1)) over the sphere.
-    energy = color @ _LUMINANCE * 2 * np.pi * -np.expm1(-2 * bandwidth) / bandwidth
+    energy = color @ LUMINANCE * 2 * np.pi * -np.expm1(-2 * bandwidth) / bandwidth
     # The mean cosine of a disk of radius a is 1 - a^2 / 4, that of a lobe 1 - 1 / lambda.
     diameter = 4 / np.sqrt(bandwidth)
     near = center @ sun_direction() > np.cos(SUN_DIAMETER)

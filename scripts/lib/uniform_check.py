@@ -10,8 +10,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from agreement import LEVEL, LUMINANCE, two_sided_z
+from agreement import LEVEL, two_sided_z
 from tail_bound import Moments, log_p_of_pixels, log_p_of_sum
+from velour.core.luminance import LUMINANCE
 
 SEEN = 2.326  # standard errors above the refused difference: such a bias is detected in 99 of 100 cases
 _BISECTIONS = 50

@@ -3,13 +3,9 @@
 from __future__ import annotations
 
 import math
-import re
 
-from .plain_words import plain
+from .warning_table import sentence
 
-# Warnings per view, and one that lists all fitted views, which are redundant beside a table of errors.
-_MISSED = re.compile(r"view (\d+) degrees: relative L2 |fitted views that miss the tolerance")
-_UNSEEN = re.compile(r"view (\d+) degrees: the measurement does not cover it")
 _LOOKS = (  # (largest tolerance, what the errors look like)
     (0.014, "most images look like the measurement, as they already do at 0.02"),
     (0.05, "most images look like the measurement"),
@@ -19,27 +15,10 @@ _LOOKS = (  # (largest tolerance, what the errors look like)
 
 
 def panel_warnings(info: dict) -> list[str]:
-    """`info`: a model's info from the library."""
-    missed, unseen, others = [], [], []
-    for warning in info["warnings"]:
-        if match := _MISSED.match(warning):
-            missed.append(match[1])
-        elif match := _UNSEEN.match(warning):
-            unseen.append(match[1])
-        else:
-            others.append(plain(warning))
-    if unseen:
-        guess = f"The measurement has no view at {_angles(unseen)}, so the model is a guess there."
-        others.insert(0, f"{guess} Use a more complete measurement, or avoid these angles.")
-    if missed:
-        where = f"at {_angles(missed)}" if any(missed) else "between the reported views"
-        remedy = "Raise Max Lobes and fit again; the Size plot shows the error of larger models."
-        others.insert(0, f"The model exceeds Max Error ({info['tolerance']:g}) {where}. {remedy}")
-    return others
-
-
-def _angles(degrees: list[str | None]) -> str:
-    return ", ".join(f"{angle}\N{DEGREE SIGN}" for angle in degrees if angle)
+    """`info`: a model's info from the library. Errors at the reported views stand for those at all views."""
+    codes = {warning["code"] for warning in info["warning_codes"]}
+    redundant = {"fitted_views_exceed_tolerance"} if "views_exceed_tolerance" in codes else set()
+    return [sentence(warning) for warning in info["warning_codes"] if warning["code"] not in redundant]
 
 
 def gain_warning(albedo_max: float | None, gain: tuple[float, float, float]) -> str | None:

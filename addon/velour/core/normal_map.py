@@ -10,6 +10,7 @@ import numpy as np
 from ..native import Model, Scene, Shader, Texture, TextureSlot
 from ..native.job_state import JobState
 from .approximation_map import show_tile, tile_job
+from .luminance import LUMINANCE
 from .photometric_stereo import normals_of, root_mean_square_slope
 from .read_job import ReadJob, check
 
@@ -19,7 +20,6 @@ _RINGS, _AZIMUTHS = (15, 35, 55, 75), 6  # a flat texel keeps all of the third r
 _JUDGES, _JUDGE_AZIMUTHS = (30, 60, 75), 3
 _LEAST_SLOPE = 0.02  # root mean square; about five steps of an 8-bit map
 _LEAST_GAIN = 0.1  # share of the error that a map must remove
-_LUMINANCE = np.array([0.2126, 0.7152, 0.0722], np.float32)
 
 
 class NormalMap(NamedTuple):
@@ -56,7 +56,7 @@ class NormalMapJob(ReadJob):
             radiance = np.empty((len(lights), *self._size[::-1]), np.float32)
             for light, seen in zip(lights, radiance, strict=True):
                 picture = self._picture(scene, light)
-                seen[:] = picture[..., :3] @ _LUMINANCE
+                seen[:] = picture[..., :3] @ LUMINANCE.astype(np.float32)
             normals = normals_of(lights, radiance, picture[..., 3])
             if root_mean_square_slope(normals) < _LEAST_SLOPE:
                 return NormalMap(None)

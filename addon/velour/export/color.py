@@ -3,6 +3,8 @@
 import numpy as np
 from mathutils import Color
 
+from ..core.luminance import LUMINANCE
+
 _LINEAR_REC709 = {"Linear", "Linear Rec.709", "linear", "scene_linear", "Utility - Linear - sRGB"}
 _DATA = {"Non-Color", "Raw", "Generic Data"}
 
@@ -36,7 +38,7 @@ def set_working_space(scene):
 
 def luminance_weights():
     """[3] float32 weights of the luminance of a working-space color."""
-    return (np.array((0.2126, 0.7152, 0.0722)) @ np.linalg.inv(rec709_to_working())).astype(np.float32)
+    return (LUMINANCE @ np.linalg.inv(rec709_to_working())).astype(np.float32)
 
 
 def is_linear_rec709(space_name):

@@ -4,6 +4,7 @@ import os
 
 import numpy as np
 
+from ..core.warning_table import sentences
 from ..native import VelourError, images
 from .color import is_data, is_linear_rec709
 from .files import absolute_path
@@ -48,10 +49,10 @@ def note_header(image, notes):
     if path is None:
         return
     try:
-        found = images.picture_notes(path, as_stored=True)
+        found = images.picture_warnings(path, as_stored=True)
     except VelourError:
         return  # reported when the pixels are read, unless Blender can read them
-    for sentence in found:
+    for sentence in sentences(found):
         notes.add(f"Image '{image.name}': {sentence}")
 
 

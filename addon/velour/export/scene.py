@@ -2,6 +2,7 @@
 
 from typing import NamedTuple
 
+from ..core.warning_table import sentences
 from ..native import Scene
 from .black import refuse_black
 from .changes import Changes
@@ -80,8 +81,8 @@ class SceneExport:
         check_break()
         self.scene.commit()
         info = self.scene.info()
-        for warning in info["warnings"]:
-            self.notes.add(warning)
+        for sentence in sentences(info["warning_codes"]):
+            self.notes.add(sentence)
         surroundings = _surroundings(depsgraph.scene.camera, objects.owner(info["camera_inside"]))
         if surroundings:
             self.notes.add(surroundings)

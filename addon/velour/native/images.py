@@ -80,8 +80,8 @@ def read_picture(path: str | os.PathLike, layer: str = "", as_stored: bool = Fal
     return pixels
 
 
-def picture_notes(path: str | os.PathLike, layer: str = "", as_stored: bool = False) -> list[str]:
-    """Sentences on what read_picture() leaves out, and what it ignores in the header."""
+def picture_warnings(path: str | os.PathLike, layer: str = "", as_stored: bool = False) -> list[dict]:
+    """What read_picture() leaves out or ignores in the header: warnings, each {code, values}."""
     options = picture_options(layer, as_stored)
     return library.json_of(library.load().vlr_picture_notes_json, path_bytes(path), byref(options))
 

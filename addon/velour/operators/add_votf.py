@@ -4,9 +4,9 @@ import functools
 
 import bpy
 
-from ..core.plain_words import plain
 from ..core.read_job import ReadJob
 from ..core.sizes import data_size
+from ..core.warning_table import sentences
 from ..native import votf_job
 from . import measured
 from .approximate import MakesModel
@@ -49,7 +49,7 @@ class VELOUR_OT_add_votf(AskedOutline, MakesModel, bpy.types.Operator):
         if node is None:
             return {"FINISHED"}
         self._put_approximation(material)
-        for sentence in (*self._notes, *map(plain, report["warnings"])):
+        for sentence in (*self._notes, *sentences(report["warning_codes"])):
             self.report({"WARNING"}, sentence)
         self.report(
             {"INFO"},

@@ -5,8 +5,8 @@ import os
 import bpy
 from bpy.props import BoolProperty, EnumProperty, IntProperty, StringProperty
 
-from ..core.plain_words import plain
 from ..core.sizes import data_size
+from ..core.warning_table import sentences
 from ..export.tiles import export_tile
 from ..native import capture_job
 from ..properties.tile_settings import SIDES
@@ -115,7 +115,7 @@ class VELOUR_OT_capture_btf(OneJob, bpy.types.Operator):
     def _finish(self):
         with self._job:
             report = self._job.report()
-        for sentence in (*self._notes, *map(plain, report["warnings"])):
+        for sentence in (*self._notes, *sentences(report["warning_codes"])):
             self.report({"WARNING"}, sentence)
         resumed = report["views_resumed"]
         there = f"; {resumed} of {report['views']} views were captured earlier" if resumed else ""

@@ -10,9 +10,9 @@ import bpy
 from bpy.props import BoolProperty, IntProperty, StringProperty
 
 from ..core.fit_time import fit_of, remember
-from ..core.plain_words import plain
 from ..core.read_job import ReadJob, check
 from ..core.sizes import data_size
+from ..core.warning_table import sentences
 from ..export.caches import cache_folder
 from ..export.nodes import velour_node
 from ..native import Btf, compress_job
@@ -126,8 +126,8 @@ class VELOUR_OT_compress_btf(AskedFit, MakesModel, bpy.types.Operator):
 
     def _say_what_it_is(self, material):
         report = self._report
-        for sentence in report["warnings"]:
-            self.report({"WARNING"}, plain(sentence))
+        for sentence in sentences(report["warning_codes"]):
+            self.report({"WARNING"}, sentence)
         unseen = report["psnr_held_out"]
         self.report(
             {"INFO"},

@@ -136,7 +136,7 @@ def _draw_look(context, layout, settings, info):
 
 
 class VELOUR_MATERIAL_PT_surface(MaterialPanel, bpy.types.Panel):
-    """Replaces Blender's panel, which would be above Velour's. Edits a measured material's approximation."""
+    # Replaces Blender's panel, which would be above Velour's. Edits a measured material's approximation.
 
     bl_label = "Surface"
 
@@ -159,7 +159,7 @@ class VELOUR_MATERIAL_PT_surface(MaterialPanel, bpy.types.Panel):
 
 
 class VELOUR_MATERIAL_PT_notes(MaterialPanel, bpy.types.Panel):
-    """Features of a material that Velour does not support, listed before the render."""
+    # Features of a material that Velour does not support, listed before the render.
 
     bl_label = "Unsupported Features"
 

@@ -32,7 +32,7 @@ class _RenderPanel:
 
 
 class VELOUR_RENDER_PT_library(_RenderPanel, bpy.types.Panel):
-    """Shown only if the library cannot be used, before a render fails."""
+    # Shown only if the library cannot be used, before a render fails.
 
     bl_label = "Velour Cannot Render"
 
@@ -45,7 +45,7 @@ class VELOUR_RENDER_PT_library(_RenderPanel, bpy.types.Panel):
 
 
 class VELOUR_RENDER_PT_newer(_RenderPanel, bpy.types.Panel):
-    """Shown only if a later release has saved the scene."""
+    # Shown only if a later release has saved the scene.
 
     bl_label = "Saved by a Newer Velour"
 
@@ -137,7 +137,7 @@ class VELOUR_RENDER_PT_light_paths(_RenderPanel, bpy.types.Panel):
 
 
 class VELOUR_RENDER_PT_simplify(_RenderPanel, bpy.types.Panel):
-    """Replaces Blender's own panel, whose earlier registration would place it above Sampling."""
+    # Replaces Blender's own panel, whose earlier registration would place it above Sampling.
 
     bl_label = "Simplify"
     bl_options = {"DEFAULT_CLOSED"}

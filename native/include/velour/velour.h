@@ -93,6 +93,10 @@ VLR_API vlr_status vlr_measurement_eval(const vlr_measurement* measurement, cons
 
 /* ---- models -------------------------------------------------------------------------------------------------- */
 
+/* Reports on models, BTFs, scenes and captures contain warning_codes [{code, values {name: value}}]. The codes, the
+ * names and the units of their values are in native/src/base/warning.h; a value is a number, a text, or a list of
+ * either. Their sentences are in addon/velour/core/warning_table.py; the command line adds them as "warnings". */
+
 VLR_API vlr_status vlr_model_load(const char* path, vlr_model** out);
 /* Reads the bytes of a model file in memory (a packed image); `name` appears in error sentences. */
 VLR_API vlr_status vlr_model_load_memory(const void* bytes, uint64_t size, const char* name, vlr_model** out);
@@ -108,11 +112,11 @@ VLR_API vlr_status vlr_model_bytes(vlr_model* model, const void** bytes, uint64_
 VLR_API vlr_status vlr_model_roughened(const vlr_model* model, float roughness, vlr_model** out);
 /* JSON: kind "model", model "scattered" (per-view) or "parametric", kernel, isotropic, lobes, bytes, parameter_bytes,
  * relative_l2, by_view_angle, albedo_by_view_angle, albedo_max, reciprocity, measured_reciprocity, tolerance, seconds,
- * seed, all_data, warnings, order (as of a fit), source {name, format, sha256}. Per-view: also views,
+ * seed, all_data, warning_codes, order (as of a fit), source {name, format, sha256}. Per-view: also views,
  * max_lobes_per_view. Parametric: also cells, symmetric, view_range [from, to] in degrees, spaces {light, half}, the
  * numbers of lobes in each. BTFs (model "factored-btf", "srbf-btf" or "tensor-btf") have instead: method, psnr,
  * psnr_held_out, ser, relative_l2, p99, raw_bytes, evaluations_per_second (one thread; null in older files), seconds,
- * seed, warnings, tolerance, order, search, shapes (as of a fit), texels, tile_metres, views, lights, companding;
+ * seed, warning_codes, tolerance, order, search, shapes (as of a fit), texels, tile_metres, views, lights, companding;
  * components, or coefficients (of the side that has most) and, for SRBFs, lobes; and sides: view and light ("above",
  * "below"), parameter_bytes, as (null, or the index of the side that serves this one, whose own fields are null) and
  * lobes {tile, texel}, or clusters, members, ranks {texel, view, light, color}, relief (whether there is one),
@@ -242,10 +246,10 @@ typedef struct vlr_fit_options {
 } vlr_fit_options;
 VLR_API void vlr_fit_options_init(vlr_fit_options* options);
 /* Result: a model. JSON: lobes, bytes, parameter_bytes, seconds, relative_l2, by_view_angle, albedo_max, reciprocity,
- * measured_reciprocity, warnings, order {lobes [], parameter_bytes [], worst [], relative_l2 [], chosen}: how the error
- * falls as the model grows. `worst` is the largest relative L2 over tolerance of any fitted view, `chosen` the index of
- * the model's own point, or null. Parametric: also view_range [from, to], the view angles in degrees that the model
- * covers. With for_scene also scene {frames, light_density, hash, picture_error, full_picture_error,
+ * measured_reciprocity, warning_codes, order {lobes [], parameter_bytes [], worst [], relative_l2 [], chosen}: how the
+ * error falls as the model grows. `worst` is the largest relative L2 over tolerance of any fitted view, `chosen` the
+ * index of the model's own point, or null. Parametric: also view_range [from, to], the view angles in degrees that the
+ * model covers. With for_scene also scene {frames, light_density, hash, picture_error, full_picture_error,
  * full_parameter_bytes}: the errors are the relmse at the observed hits against the measurement, of this model and of
  * the full one. */
 VLR_API vlr_status vlr_fit_create_job(const vlr_measurement* measurement, const vlr_fit_options* options,
@@ -329,7 +333,7 @@ typedef struct vlr_compress_options {
 VLR_API void vlr_compress_options_init(vlr_compress_options* options);
 /* Fits a model to a BTF; vlr_job_result_model returns it. JSON: bytes, parameter_bytes, ratio (raw half floats /
  * bytes), psnr, psnr_held_out (null without held_out), ser, relative_l2, p99, evaluations_per_second, seconds,
- * warnings, tolerance, order as of vlr_fit_create_job (lobes: coefficients of a texel, or components; worst:
+ * warning_codes, tolerance, order as of vlr_fit_create_job (lobes: coefficients of a texel, or components; worst:
  * relative_l2 over the tolerance, or relative_l2 without one), search [{coefficients, parameter_bytes, expected,
  * relative_l2}], the fits in their order; for clustered tensors shapes [{clusters, members, texel_rank, view_rank,
  * light_rank, color_rank, parameter_bytes, expected}], those tried before the fit; components of SVDs; lobes and
@@ -528,7 +532,7 @@ VLR_API vlr_status vlr_scene_set_world_pixels(vlr_scene* scene, uint32_t width, 
 VLR_API vlr_status vlr_scene_load_world(vlr_scene* scene, const char* path, float strength,
                                         const float* world_to_image);
 /* Loads a world image with options (vlr_picture_read). Parts of the file that were left out or replaced are among the
- * warnings of vlr_scene_info_json. */
+ * warning_codes of vlr_scene_info_json. */
 VLR_API vlr_status vlr_scene_load_world_picture(vlr_scene* scene, const char* path, const vlr_picture_options* options,
                                                 float strength, const float* world_to_image);
 /* Changes strength and rotation of the world's image without reading it again. Refused if the world is a color. */
@@ -563,7 +567,7 @@ VLR_API vlr_status vlr_scene_commit(vlr_scene* scene);
 VLR_API vlr_status vlr_scene_stay(vlr_scene* scene);
 /* JSON: triangles, instances, meshes, lights, materials, untextured (instances of a mesh without texture coordinates
  * whose material varies over the surface: one point of it is shown everywhere), camera_inside (committed scenes: index
- * of the instance that encloses the camera and is all it sees, or null), bytes, bvh_seconds, warnings. */
+ * of the instance that encloses the camera and is all it sees, or null), bytes, bvh_seconds, warning_codes. */
 VLR_API vlr_status vlr_scene_info_json(vlr_scene* scene, const char** json);
 
 /* ---- textures ------------------------------------------------------------------------------------------------ */
@@ -738,8 +742,8 @@ VLR_API void vlr_capture_options_init(vlr_capture_options* options);
 VLR_API vlr_status vlr_directions(const char* name, double* angles, uint64_t* count);
 /* Captures the committed scene `tile`, repeated by the period, into the folder `path`. JSON: seconds, rays,
  * rays_per_second, ray_share (or null), bytes, views, lights, pairs, views_resumed, sides, open, thickness,
- * reference_height (meters, or tile widths, over its lowest point), warnings. The scene must not change as long as the
- * job exists. */
+ * reference_height (meters, or tile widths, over its lowest point), warning_codes. The scene must not change as long as
+ * the job exists. */
 VLR_API vlr_status vlr_capture_create_job(const vlr_scene* tile, const vlr_capture_options* options, const char* path,
                                           vlr_job** out);
 
@@ -762,7 +766,7 @@ VLR_API void vlr_votf_options_init(vlr_votf_options* options);
 /* Adds the VOTF of the committed scene `tile`, repeated by the period, to a copy of `model`: surfaces with the result
  * show its silhouette and holes. An existing VOTF is replaced. Result: a model. JSON: source, bytes, points [x, y, z],
  * heights [lowest, highest] (tile widths), tile_width (or null), closed, coverage, wrong (both null without
- * check_views), seconds, warnings. The scene must not change as long as the job exists. */
+ * check_views), seconds, warning_codes. The scene must not change as long as the job exists. */
 VLR_API vlr_status vlr_votf_create_job(const vlr_scene* tile, const vlr_model* model, const vlr_votf_options* options,
                                        vlr_job** out);
 /* Computes the VOTF from the views of a BTF, without the geometry: coverage and heights of a capture, or the alpha of
@@ -1068,8 +1072,8 @@ VLR_API vlr_status vlr_image_read(const char* path, uint32_t* width, uint32_t* h
  * (pixels NULL), then the pixels. +infinity becomes the largest finite value, NaN 0. */
 VLR_API vlr_status vlr_picture_read(const char* path, const vlr_picture_options* options, uint32_t* width,
                                     uint32_t* height, uint32_t* channels, float* pixels, uint64_t count);
-/* JSON list of sentences: the parts of the file that are left out, and the statements of its header that are not
- * followed. The text belongs to the thread until its next call. */
+/* JSON list of warnings, {code, values}: the parts of the file that are left out, and the statements of its header that
+ * are not followed. The text belongs to the thread until its next call. */
 VLR_API vlr_status vlr_picture_notes_json(const char* path, const vlr_picture_options* options, const char** json);
 /* Position of the pixels of an OpenEXR file in a larger image (its data window in its display window). */
 typedef struct vlr_image_frame {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <charconv>
 #include <cmath>
 #include <limits>
 #include "base/error.h"
@@ -73,6 +74,14 @@ std::vector<uint8_t> JsonFields::bytes(const char* key, uint64_t count) const {
   auto bytes = parse_base64(json.get_ref<const std::string&>());
   if (!bytes || bytes->size() != count) fail(key, "base64 of " + std::to_string(count) + " bytes");
   return std::move(*bytes);
+}
+
+double four_digits(double value) {
+  std::array<char, 32> text;
+  const auto written = std::to_chars(text.begin(), text.end(), value, std::chars_format::scientific, 3);
+  double rounded = value;
+  std::from_chars(text.begin(), written.ptr, rounded);
+  return rounded;
 }
 
 JsonFields::Json parse_json(std::span<const uint8_t> text) {

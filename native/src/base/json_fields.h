@@ -66,6 +66,9 @@ JsonFields::Json parse_json(const std::string& text);
 /// Whether `json` is an object whose "format" is `format`.
 bool is_of_format(const JsonFields::Json& json, const char* format);
 
+/// `value` rounded to four significant digits.
+double four_digits(double value);
+
 // Base64 [RFC 4648, section 4], for binary arrays in JSON.
 
 std::string base64(std::span<const uint8_t> bytes);

@@ -46,7 +46,8 @@ std::string btf_json(const BtfMeasurement& btf) {
            {"errors", btf.has_errors()},
            {"structure", btf.has_structure()},
            {"entries", entries_json(count_values(btf))},
-           {"details", details_json(btf)}});
+           {"details", details_json(btf)},
+           {"warning_codes", warnings_json(btf.warnings())}});
   return text(json);
 }
 
@@ -67,7 +68,7 @@ std::string compression_json(const Model& model, uint64_t file_bytes) {
                    {"p99", record.p99},
                    {"evaluations_per_second", record.evaluations_per_second},
                    {"seconds", record.seconds},
-                   {"warnings", record.warnings},
+                   {"warning_codes", warnings_json(record.warnings)},
                    {"tolerance", record.tolerance},
                    {"order", order_json(record.order)},
                    {"search", trials_json(record.search)}});
@@ -102,7 +103,7 @@ std::string capture_json(const BtfCaptureReport& report) {
                {"open", report.open},
                {"thickness", report.thickness},
                {"reference_height", report.reference_height},
-               {"warnings", report.warnings}});
+               {"warning_codes", warnings_json(report.warnings)}});
 }
 
 std::string microsurface_json(const MicrosurfaceReport& report) {

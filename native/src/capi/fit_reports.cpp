@@ -52,7 +52,7 @@ std::string fit_json(const Model& model, uint64_t file_bytes) {
                    {"albedo_max", model.fit.albedo_max},
                    {"reciprocity", model.fit.reciprocity},
                    {"measured_reciprocity", or_null(model.fit.measured_reciprocity)},
-                   {"warnings", model.fit.warnings},
+                   {"warning_codes", warnings_json(model.fit.warnings)},
                    {"order", order_json(model.fit.order)}});
   if (const auto* brdf = std::get_if<ParametricBrdf>(&model.body)) json["view_range"] = views_json(brdf->views);
   if (model.scene) json["scene"] = reduced_json(*model.scene);
@@ -182,7 +182,7 @@ Json record_json(const FitRecord& fit) {
           {"seconds", fit.seconds},
           {"seed", fit.seed},
           {"all_data", fit.all_data},
-          {"warnings", fit.warnings},
+          {"warning_codes", warnings_json(fit.warnings)},
           {"order", order_json(fit.order)}};
 }
 
@@ -199,7 +199,7 @@ Json record_json(const BtfRecord& btf) {
           {"evaluations_per_second", timed ? Json(btf.evaluations_per_second) : Json()},
           {"seconds", btf.seconds},
           {"seed", btf.seed},
-          {"warnings", btf.warnings},
+          {"warning_codes", warnings_json(btf.warnings)},
           {"relative_l2", measured ? Json(btf.relative_l2) : Json()},
           {"tolerance", btf.tolerance},
           {"order", order_json(btf.order)},
@@ -234,9 +234,9 @@ Json size_json(const Model& model, uint64_t file_bytes) {
       model.body);
 }
 
-std::string votf_json(const ModelShell& shell, double seconds, const std::vector<std::string>& warnings) {
+std::string votf_json(const ModelShell& shell, double seconds, const std::vector<Warning>& warnings) {
   Json json = shell_json(shell);
-  json.update(Json{{"seconds", seconds}, {"warnings", warnings}});
+  json.update(Json{{"seconds", seconds}, {"warning_codes", warnings_json(warnings)}});
   return text(json);
 }
 

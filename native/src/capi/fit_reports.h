@@ -21,6 +21,6 @@ Json size_json(const Model& model, uint64_t file_bytes);
 
 std::string model_json(const Model& model, uint64_t file_bytes);
 /// Report on a VOTF that took `seconds` to compute.
-std::string votf_json(const ModelShell& shell, double seconds, const std::vector<std::string>& warnings);
+std::string votf_json(const ModelShell& shell, double seconds, const std::vector<Warning>& warnings);
 
 }  // namespace velour::capi

@@ -97,8 +97,8 @@ Json sky_json(const RenderReport::Sky& sky) {
 std::string scene_json(const Scene& scene) {
   const SceneInfo& info = scene.info();
   const auto around = scene.committed() ? surrounding_instance(scene) : std::nullopt;
-  std::vector<std::string> warnings = info.warnings;
-  if (std::ranges::any_of(scene.materials(), emits)) std::erase(warnings, kNoLightWarning);
+  std::vector<Warning> warnings = info.warnings;
+  if (std::ranges::any_of(scene.materials(), emits)) std::erase(warnings, warning<WarningCode::no_light>());
   return text({{"triangles", info.triangles},
                {"instances", info.instances},
                {"meshes", info.meshes},
@@ -108,7 +108,7 @@ std::string scene_json(const Scene& scene) {
                {"camera_inside", around ? Json(*around) : Json(nullptr)},
                {"bytes", info.bytes},
                {"bvh_seconds", info.bvh_seconds},
-               {"warnings", warnings}});
+               {"warning_codes", warnings_json(warnings)}});
 }
 
 std::string render_json(const RenderReport& report) {

@@ -101,7 +101,7 @@ vlr_status vlr_picture_notes_json(const char* path, const vlr_picture_options* o
     require(path, "path");
     require(json, "json");
     thread_local std::string said;
-    said = text(read_picture_header(path, converted(options)).notes);
+    said = text(warnings_json(read_picture_header(path, converted(options)).warnings));
     *json = said.c_str();
   });
 }

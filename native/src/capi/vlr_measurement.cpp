@@ -47,7 +47,7 @@ vlr_status vlr_measurement_load_create_job(const char* path, vlr_job** out) {
     auto output = std::make_shared<JobOutput>();
     *out = new vlr_job(output, [output, file = std::string(path)](Progress& progress) {
       progress.stage("reading", 0, 1);
-      const auto measurement = load_measurement(file);
+      const auto measurement = load_measurement(file, progress);
       progress.check();
       output->set(measurement_json(*measurement), measurement);
     });

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "base/warning.h"
 #include "image/color_primaries.h"
 #include "image/formats/exr_part.h"
 #include "image/orientation.h"
@@ -29,7 +30,7 @@ struct PictureHeader {
   std::array<float, 3> scale{1, 1, 1};      // radiance is the stored value times this
   std::optional<ColorPrimaries> primaries;  // empty: Rec. 709 or unknown
   std::optional<PictureFrame> frame;        // set if the stored pixels do not fill the picture exactly
-  std::vector<std::string> notes;           // sentences without the file's name that say what is left out
+  std::vector<Warning> warnings;            // about what is left out
 };
 
 class OpenPicture {

@@ -54,19 +54,6 @@ Picture upright(Picture stored, Orientation orientation) {
   return result;
 }
 
-std::string name_of(Orientation orientation) {
-  constexpr std::array<const char*, 9> kNames{"",
-                                              "upright",
-                                              "mirrored",
-                                              "rotated by 180 degrees",
-                                              "flipped vertically",
-                                              "transposed",
-                                              "rotated by 90 degrees",
-                                              "mirrored and rotated by 90 degrees",
-                                              "rotated by 270 degrees"};
-  return kNames[static_cast<size_t>(orientation)];
-}
-
 namespace {
 
 using namespace std::string_view_literals;

@@ -24,9 +24,6 @@ inline bool swaps_sides(Orientation o) { return o >= Orientation::transposed; }
 /// Returns the upright picture. The top row comes first in memory in both.
 Picture upright(Picture stored, Orientation orientation);
 
-/// "turned by 90 degrees", for messages.
-std::string name_of(Orientation orientation);
-
 // The orientation that cameras and editors store in a picture file (EXIF 2.3, tag 274).
 
 /// Orientation stored in a JPEG (APP1 segment) or PNG file (eXIf chunk); normal if it is missing or invalid. Reads only

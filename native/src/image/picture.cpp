@@ -91,28 +91,29 @@ const std::optional<ColorPrimaries>& primaries_of(const PictureHeader& header, c
   return header.primaries ? header.primaries : options.primaries;
 }
 
-/// Notes of the header and, for options.as_stored, of what Blender ignores in it.
-std::vector<std::string> notes_of(const std::string& path, const PictureHeader& header, const PictureOptions& options) {
-  std::vector<std::string> notes;
-  for (const std::string& note : header.notes) notes.push_back(path + ": " + note);
-  if (!options.as_stored) return notes;
-  const auto ignored = [&](const std::string& what) {
-    notes.push_back(path + ": according to its header, " + what +
-                    ". Blender ignores this, and so does Velour in Blender. Save the image as it should look.");
-  };
-  if (header.orientation != Orientation::normal) ignored("the image is stored " + name_of(header.orientation));
-  if (is_scaled(header)) ignored("its values must be divided by an exposure");
-  if (header.primaries && !is_rec709(*header.primaries)) ignored("its colors are not in Rec. 709");
-  if (header.frame) {
-    ignored("it is a part of an image of " + std::to_string(header.frame->width) + " x " +
-            std::to_string(header.frame->height) + " pixels");
+/// Warnings about the header and, for options.as_stored, about what Blender ignores in it.
+std::vector<Warning> warnings_of(const std::string& path, const PictureHeader& header, const PictureOptions& options) {
+  std::vector<Warning> warnings = header.warnings;
+  if (!options.as_stored) return warnings;
+  if (header.orientation != Orientation::normal) {
+    warnings.push_back(warning<WarningCode::orientation_ignored>(
+        {{"file", path}, {"orientation", static_cast<uint64_t>(header.orientation)}}));
   }
-  return notes;
+  if (is_scaled(header)) warnings.push_back(warning<WarningCode::exposure_ignored>({{"file", path}}));
+  if (header.primaries && !is_rec709(*header.primaries)) {
+    warnings.push_back(warning<WarningCode::primaries_ignored>({{"file", path}}));
+  }
+  if (header.frame) {
+    warnings.push_back(warning<WarningCode::window_ignored>({{"file", path},
+                                                             {"width", static_cast<uint64_t>(header.frame->width)},
+                                                             {"height", static_cast<uint64_t>(header.frame->height)}}));
+  }
+  return warnings;
 }
 
 /// The picture without its pixels.
 Picture picture_of(const std::string& path, const PictureHeader& header, const PictureOptions& options) {
-  Picture picture{header.width, header.height, header.channels, {}, notes_of(path, header, options)};
+  Picture picture{header.width, header.height, header.channels, {}, warnings_of(path, header, options)};
   if (options.as_stored) return picture;
   if (header.frame) {
     picture.width = header.frame->width;
@@ -143,7 +144,7 @@ void replace_not_finite(Picture& picture, const std::string& path) {
   if (faults.infinite + faults.no_number == 0) return;
   std::ranges::transform(picture.pixels, picture.pixels.begin(), [&](float v) { return faults.finite(v); });
   faults.negative = 0;
-  picture.notes = fault_sentences(faults, path);
+  picture.warnings = fault_warnings(faults, path);
 }
 
 void scale_colors(Picture& picture, const std::array<float, 3>& scale) {
@@ -239,8 +240,8 @@ Picture read_picture(const std::string& path, const PictureOptions& options) {
   Picture picture = stored_pixels(*input);
   if (header.integers) make_linear(picture, header.alpha_channel, options.curve);
   if (!options.keeps_not_finite) replace_not_finite(picture, path);
-  std::vector<std::string> notes = notes_of(path, header, options);
-  notes.insert(notes.end(), picture.notes.begin(), picture.notes.end());
+  std::vector<Warning> warnings = warnings_of(path, header, options);
+  warnings.insert(warnings.end(), picture.warnings.begin(), picture.warnings.end());
   if (!options.as_stored) {
     if (is_scaled(header)) scale_colors(picture, header.scale);
     if (const auto& primaries = primaries_of(header, options)) apply_primaries(picture, *primaries, path);
@@ -248,7 +249,7 @@ Picture read_picture(const std::string& path, const PictureOptions& options) {
   }
   flip_rows(picture);
   if (header.frame && !options.as_stored) picture = placed(picture, *header.frame);
-  picture.notes = std::move(notes);
+  picture.warnings = std::move(warnings);
   return picture;
 }
 
@@ -286,8 +287,7 @@ PictureDifference compare_pictures(const float* pixels, const float* reference, 
       }
   };
   each([&](double, double r) { mean += r / count; });
-  // The lower bound only matters if the whole reference is black.
-  const double floor = std::max(0.01 * mean * mean, 1e-30);
+  const double floor = relmse_floor(mean);
   PictureDifference difference;
   each([&](double x, double r) {
     difference.rmse += (x - r) * (x - r) / count;
@@ -312,20 +312,19 @@ ValueFaults find_value_faults(std::span<const float> values, size_t stride, size
   return faults;
 }
 
-std::vector<std::string> fault_sentences(const ValueFaults& faults, const std::string& subject) {
-  std::vector<std::string> sentences;
-  const auto add = [&](size_t count, const char* one, const char* many, const char* instead) {
-    if (count == 0) return;
-    sentences.push_back(subject + ": " + std::to_string(count) + (count == 1 ? one : many) + instead + ".");
-  };
-  char brightest[32];
-  std::snprintf(brightest, sizeof brightest, "%.6g", static_cast<double>(faults.brightest));
-  add(faults.infinite, " value is infinite and was replaced by ", " values are infinite and were replaced by ",
-      brightest);
-  add(faults.no_number, " value is not a number (NaN) and was replaced by ",
-      " values are not numbers (NaN) and were replaced by ", "0");
-  add(faults.negative, " value is negative and was replaced by ", " values are negative and were replaced by ", "0");
-  return sentences;
+std::vector<Warning> fault_warnings(const ValueFaults& faults, const std::string& file) {
+  std::vector<Warning> warnings;
+  if (faults.infinite > 0) {
+    warnings.push_back(warning<WarningCode::infinite_values>(
+        {{"file", file}, {"values", faults.infinite}, {"replacement", faults.brightest}}));
+  }
+  if (faults.no_number > 0) {
+    warnings.push_back(warning<WarningCode::nan_values>({{"file", file}, {"values", faults.no_number}}));
+  }
+  if (faults.negative > 0) {
+    warnings.push_back(warning<WarningCode::negative_values>({{"file", file}, {"values", faults.negative}}));
+  }
+  return warnings;
 }
 
 }  // namespace velour

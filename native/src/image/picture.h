@@ -1,6 +1,7 @@
 // Pictures of linear float pixels, read from and written to files.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -8,6 +9,7 @@
 #include <span>
 #include <string>
 #include <vector>
+#include "base/warning.h"
 #include "image/color_primaries.h"
 
 namespace velour {
@@ -16,7 +18,7 @@ namespace velour {
 struct Picture {
   int width = 0, height = 0, channels = 0;
   std::vector<float> pixels;
-  std::vector<std::string> notes = {};  // sentences with the file's name that say what was left out or replaced
+  std::vector<Warning> warnings = {};  // about what was left out or replaced
   const float* pixel(int x, int y) const {
     return pixels.data() + (static_cast<size_t>(y) * static_cast<size_t>(width) + static_cast<size_t>(x)) *
                                static_cast<size_t>(channels);
@@ -40,11 +42,11 @@ struct PictureOptions {
 /// Reads an OpenEXR, Radiance HDR, PNG, JPEG, TIFF or BMP file, recognized by content, as gray, gray and alpha, RGB or
 /// RGBA, upright, in linear Rec. 709. OpenEXR: applies choose_exr_colors(), the display window and `chromaticities`.
 /// Radiance: applies orientation, EXPOSURE, COLORCORR, PRIMARIES and XYZE. Others: apply the EXIF orientation and the
-/// transfer curve. Non-finite values become the largest finite one (+infinity) or 0, and the notes count them. Throws
-/// Error with the file's name, also for files that end early, deep pictures and cube maps. Checks dimensions against
-/// the file's size before anything is allocated.
+/// transfer curve. Non-finite values become the largest finite one (+infinity) or 0, and the warnings count them.
+/// Throws Error with the file's name, also for files that end early, deep pictures and cube maps. Checks dimensions
+/// against the file's size before anything is allocated.
 Picture read_picture(const std::string& path, const PictureOptions& options = {});
-/// Reads width, height, channels and notes without the pixels.
+/// Reads width, height, channels and warnings without the pixels.
 Picture read_picture_header(const std::string& path, const PictureOptions& options = {});
 /// Reads all channels of the first part of an OpenEXR file as stored, colors first; other files like read_picture().
 /// For files written by Velour.
@@ -60,7 +62,10 @@ void write_picture(const std::string& path, const Picture& picture);
 struct PictureDifference {
   double rmse = 0, relmse = 0;
 };
-/// Compares the first three channels: relmse = mean((x - r)^2 / (r^2 + 0.01 mean(r)^2)).
+/// What relmse adds to the square of a reference value: 0.01 mean(r)^2. The lower bound only matters for a black image.
+inline double relmse_floor(double mean) { return std::max(0.01 * mean * mean, 1e-30); }
+
+/// Compares the first three channels: relmse = mean((x - r)^2 / (r^2 + relmse_floor(mean(r)))).
 PictureDifference compare_pictures(const float* pixels, const float* reference, size_t pixel_count, int channels);
 
 // The sRGB transfer curve (IEC 61966-2-1) and its inverse.
@@ -83,7 +88,7 @@ struct ValueFaults {
 /// Examines the first `used` of every `stride` values.
 ValueFaults find_value_faults(std::span<const float> values, size_t stride = 1, size_t used = 1);
 
-/// "SUBJECT: 12 values are infinite and count as 65504.", one sentence for each kind that occurs.
-std::vector<std::string> fault_sentences(const ValueFaults& faults, const std::string& subject);
+/// One warning for each kind that occurs. `file` empty: the environment image.
+std::vector<Warning> fault_warnings(const ValueFaults& faults, const std::string& file);
 
 }  // namespace velour

@@ -71,17 +71,17 @@ Environment Environment::load(const std::string& path, const PictureOptions& opt
   const Picture picture = read_picture(path, options);
   Environment e =
       image({picture.width, picture.height, picture.channels, picture.pixels, true}, strength, world_to_image);
-  e.notes_ = picture.notes;
+  e.warnings_ = picture.warnings;
   return e;
 }
 
-std::vector<std::string> Environment::notes() const {
-  std::vector<std::string> notes = notes_;
+std::vector<Warning> Environment::warnings() const {
+  std::vector<Warning> warnings = warnings_;
   if (image_) {
-    const auto replaced = fault_sentences(image_->faults(), "The environment image");
-    notes.insert(notes.end(), replaced.begin(), replaced.end());
+    const auto replaced = fault_warnings(image_->faults(), "");
+    warnings.insert(warnings.end(), replaced.begin(), replaced.end());
   }
-  return notes;
+  return warnings;
 }
 
 void Environment::look_up(const DirectionBatch& world, RgbBatch& radiance, ScalarBatch& pdf) const {

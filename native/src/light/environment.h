@@ -6,6 +6,7 @@
 #include <span>
 #include <string>
 #include <vector>
+#include "base/warning.h"
 #include "image/picture.h"
 #include "math/sphere/directions.h"
 
@@ -61,7 +62,7 @@ class Environment {
   float mean_luminance() const { return mean_luminance_; }
   uint64_t bytes() const;
   /// Sentences that say what of the image was left out or replaced.
-  std::vector<std::string> notes() const;
+  std::vector<Warning> warnings() const;
   /// The image without its placement; null for a constant environment.
   const EquirectangularImage* equirectangular() const { return image_.get(); }
   const EnvironmentPlacement& placement() const { return placement_; }
@@ -71,7 +72,7 @@ class Environment {
   EnvironmentPlacement placement_;
   Rgb constant_{0.0f};
   float mean_luminance_ = 0.0f;
-  std::vector<std::string> notes_;  // of the file
+  std::vector<Warning> warnings_;  // about the file
 };
 
 // Unoccluded irradiance of a plane in an environment.

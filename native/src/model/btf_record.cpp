@@ -77,15 +77,15 @@ std::string btf_record_json(const BtfRecord& record) {
                {"raw_bytes", record.raw_bytes},
                {"seconds", record.seconds},
                {"evaluations_per_second", record.evaluations_per_second},
-               {"seed", record.seed},
-               {"warnings", record.warnings}};
+               {"seed", record.seed}};
+  put_warnings(record.warnings, json);
   if (record.psnr_held_out) json["psnr_held_out"] = *record.psnr_held_out;
   json["relative_l2"] = record.relative_l2;
   json["tolerance"] = record.tolerance;
   if (!record.order.points.empty()) json["order"] = order_json(record.order);
   if (!record.search.empty()) json["search"] = trials_json(record.search);
   if (!record.shapes.empty()) json["shapes"] = shapes_json(record.shapes);
-  return json.dump();
+  return json.dump(-1, ' ', false, Json::error_handler_t::replace);  // paths may not be UTF-8
 }
 
 BtfRecord parse_btf_record(const std::string& text, const std::string& where) {
@@ -108,10 +108,7 @@ BtfRecord parse_btf_record(const std::string& text, const std::string& where) {
   if (fields.has("order")) record.order = parse_order(fields.at("order"), where + ": 'order'");
   if (fields.has("search")) record.search = parse_trials(fields.at("search"), fields, source);
   if (fields.has("shapes")) record.shapes = parse_shapes(fields.at("shapes"), fields, source);
-  for (const Json& warning : fields.at("warnings")) {
-    if (!warning.is_string()) fields.fail("warnings", "a list of sentences");
-    record.warnings.push_back(warning.get<std::string>());
-  }
+  record.warnings = parse_warnings(json, where);
   return record;
 }
 

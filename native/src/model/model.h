@@ -8,6 +8,7 @@
 #include <variant>
 #include <vector>
 
+#include "base/warning.h"
 #include "brdf/model/parametric_brdf.h"
 #include "brdf/model/per_view_brdf.h"
 #include "btf/model/factored_btf.h"
@@ -35,7 +36,7 @@ struct FitRecord {
   uint64_t seed = 0;
   bool all_data = false;  // fitted without held-out data
   OrderCurve order;
-  std::vector<std::string> warnings;  // sentences
+  std::vector<Warning> warnings;
 };
 
 /// The data that the model was fitted to.

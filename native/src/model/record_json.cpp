@@ -1,7 +1,5 @@
 #include "model/record_json.h"
 
-#include <array>
-#include <charconv>
 #include <cmath>
 #include <limits>
 #include <nlohmann/json.hpp>
@@ -52,15 +50,6 @@ class FitRecordReader {
       out[angle] = error.is_null() ? std::nullopt : std::optional(number_of(error, key));
     }
   }
-  void sentences(const char* key, std::vector<std::string>& out) const {
-    const Json* v = find(key);
-    if (v && !v->is_array()) fail(key, "a list of sentences");
-    if (!v) return;
-    for (const Json& sentence : *v) {
-      if (!sentence.is_string()) fail(key, "a list of sentences");
-      out.push_back(sentence.get<std::string>());
-    }
-  }
   void order(const char* key, OrderCurve& out) const {
     if (const Json* v = find(key)) out = parse_order(*v, where_ + ": '" + key + "'");
   }
@@ -94,8 +83,8 @@ std::string fit_record_json(const FitRecord& record) {
                {"tolerance", record.tolerance},
                {"seconds", record.seconds},
                {"seed", record.seed},
-               {"all_data", record.all_data},
-               {"warnings", record.warnings}};
+               {"all_data", record.all_data}};
+  put_warnings(record.warnings, json);
   if (!record.order.points.empty()) json["order"] = order_json(record.order);
   return json.dump(-1, ' ', false, Json::error_handler_t::replace);
 }
@@ -115,7 +104,7 @@ FitRecord parse_fit_record(const std::string& text, const std::string& where) {
   reader.number("seconds", record.seconds);
   reader.integer("seed", record.seed);
   reader.boolean("all_data", record.all_data);
-  reader.sentences("warnings", record.warnings);
+  record.warnings = parse_warnings(json, where);
   reader.order("order", record.order);
   return record;
 }
@@ -143,14 +132,6 @@ std::vector<double> column(const Json& json, const char* key, double most, const
 }
 
 }  // namespace
-
-double four_digits(double value) {
-  std::array<char, 32> text;
-  const auto written = std::to_chars(text.begin(), text.end(), value, std::chars_format::scientific, 3);
-  double rounded = value;
-  std::from_chars(text.begin(), written.ptr, rounded);
-  return rounded;
-}
 
 Json order_json(const OrderCurve& order) {
   Json json = {{"lobes", Json::array()},

@@ -17,9 +17,6 @@ FitRecord parse_fit_record(const std::string& text, const std::string& where);
 
 // The order curve as JSON: one list per column, as for plots.
 
-/// `value` rounded to four significant digits.
-double four_digits(double value);
-
 /// {"lobes": [], "parameter_bytes": [], "worst": [], "relative_l2": [], "chosen": index or null}. Errors keep four
 /// digits, so that model files stay small and reading and writing one again does not change it.
 nlohmann::ordered_json order_json(const OrderCurve& order);

@@ -35,7 +35,7 @@ std::vector<double> plotted_angles(double view_degrees) {
   return angles;
 }
 
-double luminance_of(const Vec3d& c) { return 0.2126 * c.x + 0.7152 * c.y + 0.0722 * c.z; }
+double luminance_of(const Vec3d& c) { return kLuminance[0] * c.x + kLuminance[1] * c.y + kLuminance[2] * c.z; }
 
 struct NamedLobe {
   std::string name;

@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/warning.h"
 #include "math/sphere/affine.h"
 #include "math/sphere/vec.h"
 #include "scene/mesh_arrays.h"
@@ -85,9 +86,9 @@ class Mesh {
   /// three transform like normals. Requires has_tangents().
   Mat3 relief(uint32_t triangle, const Vec2& uv) const;
   uint64_t bytes() const;
-  /// Sentences with the file's name that say what of it was left out or replaced.
-  const std::vector<std::string>& notes() const { return notes_; }
-  void add_note(std::string sentence) { notes_.push_back(std::move(sentence)); }
+  /// About the file: what of it was left out or replaced.
+  const std::vector<Warning>& warnings() const { return warnings_; }
+  void add_warning(Warning warning) { warnings_.push_back(std::move(warning)); }
 
  private:
   /// Copies the data of triangles [begin, end) of this mesh; `kept`: their indices in `arrays`.
@@ -114,7 +115,7 @@ class Mesh {
   std::vector<CornerTangent> tangents_;  // 3 per triangle, or none
   std::vector<BorderEdge> sides_;        // border edge of the top above each side
   uint32_t dropped_ = 0;
-  std::vector<std::string> notes_;
+  std::vector<Warning> warnings_;
 };
 
 }  // namespace velour

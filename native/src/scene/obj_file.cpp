@@ -268,18 +268,18 @@ struct ObjArrays {
   std::vector<Vec3> polygon_;
 };
 
-void add_notes(const ObjContent& content, const ObjArrays& arrays, const std::string& path, Mesh& mesh) {
-  const size_t faces = content.faces.size();
-  const auto note = [&](size_t count, const std::string& what) {
-    if (count > 0 && count < faces) {
-      mesh.add_note(path + ": " + std::to_string(count) + " of " + std::to_string(faces) + " faces have " + what + ".");
-    }
-  };
-  note(arrays.without_normals, "no normals and are shaded flat");
-  note(arrays.without_uvs, "no texture coordinates; (0, 0) is used");
-  if (content.too_small > 0)
-    mesh.add_note(path + ": " + std::to_string(content.too_small) +
-                  " faces have fewer than 3 corners and were left out.");
+void add_warnings(const ObjContent& content, const ObjArrays& arrays, const std::string& path, Mesh& mesh) {
+  const size_t all = content.faces.size();
+  const auto some = [&](size_t faces) { return faces > 0 && faces < all; };
+  if (const size_t faces = arrays.without_normals; some(faces)) {
+    mesh.add_warning(warning<WarningCode::faces_without_normals>({{"file", path}, {"faces", faces}, {"all", all}}));
+  }
+  if (const size_t faces = arrays.without_uvs; some(faces)) {
+    mesh.add_warning(warning<WarningCode::faces_without_uvs>({{"file", path}, {"faces", faces}, {"all", all}}));
+  }
+  if (const size_t faces = content.too_small; faces > 0) {
+    mesh.add_warning(warning<WarningCode::faces_left_out>({{"file", path}, {"faces", faces}}));
+  }
 }
 
 }  // namespace
@@ -295,7 +295,7 @@ Mesh read_obj(const std::string& path) {
              .corner_uvs = arrays.corner_uvs,
              .smooth = arrays.smooth,
              .corner_vertices = arrays.corner_vertices});
-  add_notes(content, arrays, path, mesh);
+  add_warnings(content, arrays, path, mesh);
   return mesh;
 }
 

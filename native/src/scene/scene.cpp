@@ -245,21 +245,22 @@ SceneInfo Scene::count() const {
   for (size_t m = 0; m < meshes_.size(); ++m) {
     info.bytes += meshes_[m].bytes();
     if (meshes_[m].dropped() == 0) continue;
-    info.warnings.push_back("Mesh " + std::to_string(m) + ": " + std::to_string(meshes_[m].dropped()) +
-                            " triangles without area or with coordinates that are not finite were left out.");
+    info.warnings.push_back(
+        warning<WarningCode::triangles_left_out>({{"mesh", m}, {"triangles", meshes_[m].dropped()}}));
   }
   if (flat_instances_ > 0) {
-    info.warnings.push_back(std::to_string(flat_instances_) + " instances have a scale of 0 and were left out.");
+    info.warnings.push_back(warning<WarningCode::flat_instances_left_out>({{"instances", flat_instances_}}));
   }
   if (unlifted_ > 0) {
-    info.warnings.push_back(std::to_string(unlifted_) +
-                            " instances have a material with a silhouette (VOTF), but no texture coordinates that "
-                            "cover their surface; they were rendered without the silhouette. Unwrap their meshes.");
+    info.warnings.push_back(warning<WarningCode::silhouettes_without_uvs>({{"instances", unlifted_}}));
   }
-  info.warnings.insert(info.warnings.end(), shell_warnings_.begin(), shell_warnings_.end());
-  for (const Mesh& mesh : meshes_) info.warnings.insert(info.warnings.end(), mesh.notes().begin(), mesh.notes().end());
-  for (const std::string& note : environment_.notes()) info.warnings.push_back(note);
-  if (environment_.black() && lights_.empty()) info.warnings.emplace_back(kNoLightWarning);
+  const auto append = [&](const std::vector<Warning>& w) {
+    info.warnings.insert(info.warnings.end(), w.begin(), w.end());
+  };
+  append(shell_warnings_);
+  for (const Mesh& mesh : meshes_) append(mesh.warnings());
+  append(environment_.warnings());
+  if (environment_.black() && lights_.empty()) info.warnings.push_back(warning<WarningCode::no_light>());
   return info;
 }
 

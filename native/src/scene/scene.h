@@ -9,6 +9,7 @@
 #include <typeinfo>
 #include <vector>
 #include "base/progress.h"
+#include "base/warning.h"
 #include "light/environment.h"
 #include "light/light.h"
 #include "material/texture_slot.h"
@@ -97,10 +98,6 @@ struct SurfacePoint {
   float terminator = 0;  // cosine below which shadow rays begin on that surface; 0: nowhere
 };
 
-/// Warning for rendered scenes; scenes that are only traced need no light.
-inline constexpr const char* kNoLightWarning =
-    "The scene has no light, so its image is black. Add a light, an emissive mesh or an environment.";
-
 /// Placed texture coordinates of a hit, for materials that vary over the surface. (0, 0) without gradients if the mesh
 /// has no texture coordinates or they are not finite.
 struct TexturePoint {
@@ -115,7 +112,7 @@ struct SceneInfo {
   uint64_t instances = 0, meshes = 0, lights = 0, materials = 0;
   uint64_t bytes = 0;  // hierarchy, meshes, environment
   double bvh_seconds = 0;
-  std::vector<std::string> warnings;
+  std::vector<Warning> warnings;  // no_light concerns rendered scenes only, not those that are traced
 };
 
 /// Local geometry of a shell at a hit, in world space.
@@ -293,7 +290,7 @@ class Scene {
   Camera camera_;
   std::optional<Mat3> rec709_to_working_;
   uint64_t unlifted_ = 0;  // instances whose shells lack texture coordinates
-  std::vector<std::string> shell_warnings_;
+  std::vector<Warning> shell_warnings_;
   bool committed_ = false, geometry_changed_ = true;
   uint64_t revision_ = 0;
   bool stays_ = false;

@@ -1,7 +1,6 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
-#include <cstdio>
 #include <string>
 #include <utility>
 
@@ -17,12 +16,6 @@ Mat3 metric_of(const Affine& map) {
   return {{glm::dot(x, x), glm::dot(x, y), glm::dot(x, z)},
           {glm::dot(x, y), glm::dot(y, y), glm::dot(y, z)},
           {glm::dot(x, z), glm::dot(y, z), glm::dot(z, z)}};
-}
-
-std::string in_metres(float length) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.3g m", static_cast<double>(length));
-  return text;
 }
 
 }  // namespace
@@ -137,12 +130,13 @@ ShellFolds Scene::folds(const Instance& instance, uint32_t slot, const ShellHeig
 void Scene::warn_of_folds(const Instance& instance, uint32_t slot, const ShellHeights& shell) {
   const ShellFolds& folds = instance.top->folds[slot];
   if (folds.triangles == 0) return;
-  shell_warnings_.push_back(
-      "The silhouette (VOTF) of material " + std::to_string(instance.materials[slot]) + " reaches from " +
-      in_metres(shell.bottom) + " to " + in_metres(shell.top) + " above the surface and folds over itself on " +
-      std::to_string(folds.triangles) + " of " + std::to_string(folds.all) +
-      " triangles, where the surface has radii of curvature down to " + in_metres(folds.least_radius) +
-      ". Make its tiles smaller (they are " + in_metres(instance.tile_width[slot]) + " wide).");
+  shell_warnings_.push_back(warning<WarningCode::silhouette_folds>({{"material", instance.materials[slot]},
+                                                                    {"bottom", shell.bottom},
+                                                                    {"top", shell.top},
+                                                                    {"triangles", folds.triangles},
+                                                                    {"sampled", folds.all},
+                                                                    {"radius", folds.least_radius},
+                                                                    {"tile", instance.tile_width[slot]}}));
 }
 
 /// Width in meters of a tile that covers one unit of the texture coordinates, averaged over the slot's triangles; 0 if

@@ -94,17 +94,16 @@ bool is_above_horizon(const Vec3& w) { return w.z > 0.0f && is_unit(w); }
 /// Assigns each hit the terms that follow those of the previous hit.
 void read_term_counts(const JsonFields& fields, uint64_t total, std::vector<ObservedHit>& hits) {
   const auto counts = fields.values<uint32_t>("terms", 2 * hits.size());
+  constexpr const char* kWanted = "counts that add up to 'terms.count'";
   uint64_t next = 0;
   for (size_t i = 0; i < hits.size(); ++i) {
     const uint64_t middle = next + counts[2 * i], last = middle + counts[2 * i + 1];
-    if (last > total) break;
+    if (last > total) fields.fail("terms", kWanted);
     hits[i].first = static_cast<uint32_t>(next);
     hits[i].middle = static_cast<uint32_t>(middle);
     hits[i].last = static_cast<uint32_t>(next = last);
   }
-  if (next != total || (!hits.empty() && hits.back().last != total)) {
-    fields.fail("terms", "counts that add up to 'terms.count'");
-  }
+  if (next != total) fields.fail("terms", kWanted);
 }
 
 void read_sides(const JsonFields& fields, std::vector<ObservedHit>& hits) {

@@ -7,6 +7,7 @@
 
 #include "base/parallel.h"
 #include "brdf/model/parametric_brdf.h"
+#include "image/picture.h"
 
 namespace velour {
 namespace {
@@ -120,7 +121,8 @@ PictureError::PictureError(const Measurement& measurement, const ParametricBrdf&
   });
   Vec3d mean(0);
   for (const Vec3d& r : radiance) mean += r / static_cast<double>(radiance.size());
-  for (const Vec3d& r : radiance) scale_.push_back(1.0 / (3.0 * (r * r + 0.01 * mean * mean + 1e-30)));
+  const Vec3d floor(relmse_floor(mean.x), relmse_floor(mean.y), relmse_floor(mean.z));
+  for (const Vec3d& r : radiance) scale_.push_back(1.0 / (3.0 * (r * r + floor)));
 }
 
 std::vector<size_t> PictureError::hits_of(Part part) const {

@@ -1,4 +1,4 @@
-// Measurements that break fits, each with the truth behind it and the sentence that a user must be told. Every kind of
+// Measurements that break fits, each with the truth behind it and the warning that a user must be given. Every kind of
 // model is held against all of them.
 #pragma once
 
@@ -16,7 +16,7 @@ struct HostileCase {
   std::string name;
   std::shared_ptr<const Measurement> given;  // what the fit reads
   AnalyticMeasurement::Formula truth;        // f that a good fit would find: without noise, holes and sentinels
-  std::vector<std::string> told;             // parts of the fit's warnings
+  std::vector<std::string> told;             // regular expressions, each found in the JSON of the fit's warnings
   std::string refused = {};                  // part of the refusal's sentence; empty: the fit must succeed
   AnalyticMeasurement::Coverage known = {};  // where the truth can be asked for; empty: everywhere
 };

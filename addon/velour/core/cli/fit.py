@@ -18,7 +18,7 @@ KEYS = (
     "albedo_max",
     "reciprocity",
     "measured_reciprocity",
-    "warnings",
+    "warning_codes",
     "order",
 )
 OWN_KEYS = ("view_range", "scene")  # for parametric models; for scene models
@@ -86,8 +86,7 @@ def run(args: argparse.Namespace) -> dict:
         with job.result_model() as model:
             model.save(args.output)
     if args.json:  # otherwise the summary lists them
-        for warning in report["warnings"]:
-            output.log.warning("%s", warning)
+        output.warn(report["warning_codes"])
     return {key: report[key] for key in (*KEYS, *OWN_KEYS) if key in report}
 
 

@@ -48,8 +48,7 @@ def run(args: argparse.Namespace) -> dict:
             observation.merge(other)
         observation.save(args.output)
         report |= observation.info()
-        for warning in described.info()["warnings"]:
-            output.log.warning("%s", warning)
+        output.warn(described.info()["warning_codes"])
     return {key: report[key] for key in (*KEYS, *OWN_KEYS) if key in report}
 
 

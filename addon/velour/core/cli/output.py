@@ -9,6 +9,7 @@ import tempfile
 from pathlib import Path
 
 from .. import files
+from ..warning_table import COMMAND_LINE, sentences
 from .progress import ProgressBar, ProgressLines
 
 log = logging.getLogger("velour")
@@ -41,14 +42,31 @@ def tell(args: argparse.Namespace, line: str) -> None:
         log.info("%s", line)
 
 
+def warn(warnings: list[dict]) -> None:
+    """Logs warnings of the library."""
+    for sentence in sentences(warnings, COMMAND_LINE):
+        log.warning("%s", sentence)
+
+
 def deliver(args: argparse.Namespace, report: dict) -> None:
     """Writes the verb's report in all requested forms."""
+    report = _with_sentences(report)
     if args.json_file:
         files.write_json(args.json_file, report)
     if args.json:
         print(files.json_text(report))
     elif not args.quiet:
         print(summary(report))
+
+
+def _with_sentences(report: dict) -> dict:
+    """The report with "warnings", a list of sentences, before the library's "warning_codes"."""
+    told = {}
+    for key, value in report.items():
+        if key == "warning_codes":
+            told["warnings"] = sentences(value, COMMAND_LINE)
+        told[key] = value
+    return told
 
 
 def summary(report: dict) -> str:
@@ -60,6 +78,8 @@ def _lines(report: dict, indent: str):
         if isinstance(value, dict):
             yield f"{indent}{key}:"
             yield from _lines(value, indent + "  ")
+        elif key == "warning_codes":
+            continue  # "warnings" has their sentences
         elif key == "warnings":
             yield from (f"warning: {warning}" for warning in value)
         else:

@@ -235,8 +235,7 @@ def _read_reference(args: argparse.Namespace) -> np.ndarray | None:
     if not args.reference:
         return None
     pixels = images.read_picture(args.reference)
-    for note in images.picture_notes(args.reference):
-        output.log.warning("%s", note)
+    output.warn(images.picture_warnings(args.reference))
     needed = render_part.size(args)
     if pixels.shape[1::-1] != needed:  # maybe a part, to compare with the same part
         pixels = images.read_picture(args.reference, as_stored=True)
@@ -268,8 +267,7 @@ def _options(args: argparse.Namespace) -> dict:
 
 
 def _tell(args: argparse.Namespace, report: dict, info: dict) -> None:
-    for warning in info["warnings"]:
-        output.log.warning("%s", warning)
+    output.warn(info["warning_codes"])
     if report["nan_samples"]:
         output.log.warning("%d samples were not finite numbers and were left out.", report["nan_samples"])
     if report["denoised"] and report["denoised"]["relmse_bound"] is not None:

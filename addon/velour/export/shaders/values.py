@@ -1,5 +1,8 @@
 """Values, colors and pictures of a node's inputs."""
 
+import numpy as np
+
+from ..color import luminance_weights
 from ..corner_colors import corner_colors_of
 from ..image_nodes import UnsupportedError, picture_of
 from ..plugs import followed
@@ -57,8 +60,4 @@ def own_value(socket, asked=None):
     value = float(value) if isinstance(value, (int, float)) else tuple(value[:3])
     if asked is None or isinstance(asked.default_value, (int, float)) == isinstance(value, float):
         return value
-    return (
-        (value,) * 3
-        if isinstance(value, float)
-        else 0.2126 * value[0] + 0.7152 * value[1] + 0.0722 * value[2]
-    )
+    return (value,) * 3 if isinstance(value, float) else float(np.dot(luminance_weights(), value))

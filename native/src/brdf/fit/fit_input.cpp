@@ -10,13 +10,12 @@ namespace velour {
 
 namespace {
 
-void warn_of_uncovered(size_t uncovered, size_t fitted, std::vector<std::string>& warnings) {
+void warn_of_uncovered(size_t uncovered, size_t fitted, std::vector<Warning>& warnings) {
   if (uncovered == 0) return;
-  warnings.push_back(std::to_string(uncovered) + " of " + std::to_string(uncovered + fitted) +
-                     " sampled views are outside the measurement and were left out");
+  warnings.push_back(warning<WarningCode::views_left_out>({{"uncovered", uncovered}, {"sampled", uncovered + fitted}}));
 }
 
-void warn_of_gamut(const std::vector<MeasuredSlice>& slices, std::vector<std::string>& warnings) {
+void warn_of_gamut(const std::vector<MeasuredSlice>& slices, std::vector<Warning>& warnings) {
   size_t total = 0, outside = 0;
   double cost = 0;
   for (const MeasuredSlice& s : slices) {
@@ -25,10 +24,7 @@ void warn_of_gamut(const std::vector<MeasuredSlice>& slices, std::vector<std::st
     cost = std::max(cost, SliceSamples(s.samples).gamut_error());
   }
   if (outside == 0) return;
-  warnings.push_back(std::to_string(outside) + " of " + std::to_string(total) +
-                     " fitted values have a negative channel (a color outside Rec. 709), which non-negative "
-                     "coefficients cannot represent; this alone causes a relative L2 error of up to " +
-                     std::to_string(cost));
+  warnings.push_back(warning<WarningCode::out_of_gamut>({{"outside", outside}, {"values", total}, {"error", cost}}));
 }
 
 }  // namespace
@@ -66,7 +62,7 @@ MeasuredSlices read_slices(const Measurement& measurement, const SliceGrid& grid
   return slices;
 }
 
-void warn_of_slices(const MeasuredSlices& slices, std::vector<std::string>& warnings) {
+void warn_of_slices(const MeasuredSlices& slices, std::vector<Warning>& warnings) {
   warn_of_uncovered(slices.uncovered.size(), slices.slices.size(), warnings);
   warn_of_gamut(slices.slices, warnings);
 }

@@ -4,6 +4,7 @@
 #include <span>
 #include <vector>
 #include "base/progress.h"
+#include "base/warning.h"
 #include "brdf/fit/options.h"
 #include "brdf/fit/slice_sampling.h"
 #include "brdf/measure/measurement.h"
@@ -20,7 +21,7 @@ MeasuredSlices read_slices(const Measurement& measurement, const SliceGrid& grid
                            Progress& progress);
 
 /// Appends a warning for views that are not covered, and one for colors outside the gamut.
-void warn_of_slices(const MeasuredSlices& slices, std::vector<std::string>& warnings);
+void warn_of_slices(const MeasuredSlices& slices, std::vector<Warning>& warnings);
 
 // Irregular samples as slices: the parametric fit reads the samples themselves, not only their interpolation.
 

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
+#include <iterator>
 #include "brdf/fit/error/albedo.h"
 #include "brdf/fit/error/compare.h"
 #include "brdf/fit/error/evaluate.h"
@@ -18,67 +18,75 @@ namespace {
 // Albedo above which the scale must be wrong: no measurement error doubles the light of a perfect reflector.
 constexpr double kWrongScale = 2;
 
-std::string number(double x, const char* format = "%.4g") {
-  char text[32];
-  std::snprintf(text, sizeof text, format, x);
-  return text;
-}
-
 double polar_degrees(const Vec3& w) { return std::acos(std::clamp(static_cast<double>(w.z), -1.0, 1.0)) * 180 / kPiD; }
 
-std::string view_name(const Vec3& wv, bool isotropic) {
-  std::string name = number(polar_degrees(wv), "%.1f");
-  return isotropic ? name : name.append("/").append(number(std::atan2(wv.y, wv.x) * 180 / kPiD, "%.0f"));
+/// The azimuth of a view for warnings; none for isotropic measurements, whose azimuths have no meaning.
+std::vector<double> azimuth_degrees(const Vec3& wv, bool isotropic) {
+  if (isotropic) return {};
+  return {std::atan2(static_cast<double>(wv.y), static_cast<double>(wv.x)) * 180 / kPiD};
 }
 
 double largest(const Vec3d& v) { return std::max({v.x, v.y, v.z}); }
 
-void warn_of_errors(const FitRecord& record, std::vector<std::string>& warnings) {
+void warn_of_errors(const FitRecord& record, std::vector<Warning>& warnings) {
+  std::vector<double> missed, errors, not_covered;
   for (const int degrees : kHeldOutViews) {
     const auto error = record.by_view_angle.at(std::to_string(degrees));
-    const double limit = tolerance_at(record.tolerance, radians_from(static_cast<double>(degrees)));
-    if (error && *error > limit) {
-      warnings.push_back("view " + std::to_string(degrees) + " degrees: relative L2 error " + number(*error) +
-                         " exceeds the tolerance " + number(limit));
+    if (!error) {
+      not_covered.push_back(degrees);
+    } else if (*error > tolerance_at(record.tolerance, radians_from(static_cast<double>(degrees)))) {
+      missed.push_back(degrees);
+      errors.push_back(*error);
     }
-    if (!error) warnings.push_back("view " + std::to_string(degrees) + " degrees: the measurement does not cover it");
   }
+  if (!missed.empty()) {
+    warnings.push_back(warning<WarningCode::views_exceed_tolerance>(
+        {{"views", missed}, {"errors", errors}, {"tolerance", record.tolerance}}));
+  }
+  if (!not_covered.empty()) warnings.push_back(warning<WarningCode::views_not_covered>({{"views", not_covered}}));
 }
 
 /// One warning for all fitted views beyond the tolerance, so that a difficult material does not bury other warnings.
 void warn_of_fitted_views(const std::vector<FittedView>& fitted, const FitOptions& options, bool isotropic,
-                          std::vector<std::string>& warnings) {
+                          std::vector<Warning>& warnings) {
   constexpr size_t kMaxNamed = 12;
-  std::string names;
+  std::vector<double> views, azimuths;
   size_t missed = 0;
   const FittedView* worst = nullptr;
   for (const FittedView& v : fitted) {
     if (v.relative_l2 <= tolerance_at(options.tolerance, std::acos(std::min(v.wv.z, 1.0f)))) continue;
-    if (++missed <= kMaxNamed) names += (names.empty() ? "" : ", ") + view_name(v.wv, isotropic);
+    if (++missed <= kMaxNamed) {
+      views.push_back(polar_degrees(v.wv));
+      std::ranges::copy(azimuth_degrees(v.wv, isotropic), std::back_inserter(azimuths));
+    }
     if (!worst || v.relative_l2 > worst->relative_l2) worst = &v;
   }
   if (!worst) return;
-  if (missed > kMaxNamed)
-    names += " and " + std::to_string(missed - kMaxNamed) + " more of " + std::to_string(fitted.size());
-  warnings.push_back("fitted views that miss the tolerance with at most " + std::to_string(options.max_lobes) +
-                     " lobes (degrees): " + names + "; the worst is " + view_name(worst->wv, isotropic) +
-                     " with relative L2 error " + number(worst->relative_l2));
+  warnings.push_back(
+      warning<WarningCode::fitted_views_exceed_tolerance>({{"views", views},
+                                                           {"azimuths", azimuths},
+                                                           {"missed", missed},
+                                                           {"fitted", fitted.size()},
+                                                           {"lobes", static_cast<uint64_t>(options.max_lobes)},
+                                                           {"worst", polar_degrees(worst->wv)},
+                                                           {"worst_azimuth", azimuth_degrees(worst->wv, isotropic)},
+                                                           {"error", worst->relative_l2},
+                                                           {"tolerance", options.tolerance}}));
 }
 
 void warn_of_albedo(const Measurement& measurement, const Vec3& wv, FitRecord& record) {
-  const std::string where =
-      "albedo " + number(record.albedo_max) + " at view " + view_name(wv, measurement.isotropic()) + " degrees: ";
+  const double albedo = record.albedo_max, view = polar_degrees(wv);
+  const std::vector<double> azimuth = azimuth_degrees(wv, measurement.isotropic());
   const double measured = largest(directional_albedo(measurement, wv).albedo);  // over the lights that it covers
   if (measured > kWrongScale) {
-    record.warnings.push_back(where +
-                              "the measurement reflects more light there than arrives, far more than measurement "
-                              "errors explain; check its scale");
+    record.warnings.push_back(
+        warning<WarningCode::implausible_albedo>({{"albedo", albedo}, {"view", view}, {"azimuth", azimuth}}));
   } else if (measured > 1) {
-    record.warnings.push_back(where + "the measurement reflects more light there than arrives");
+    record.warnings.push_back(
+        warning<WarningCode::measured_albedo_above_one>({{"albedo", albedo}, {"view", view}, {"azimuth", azimuth}}));
   } else {
-    record.warnings.push_back(where +
-                              "the model reflects more light there than arrives, but the measurement has albedo " +
-                              number(measured) + "; allow more lobes");
+    record.warnings.push_back(warning<WarningCode::model_albedo_above_one>(
+        {{"albedo", albedo}, {"view", view}, {"azimuth", azimuth}, {"measured", measured}}));
   }
 }
 

@@ -196,8 +196,7 @@ Model fit_for_scene(const Measurement& measurement, const FitOptions& options, P
     model = parametric_model(measurement, *search.best(), options, progress);
     model.shell = full.shell;
   } else {
-    model.fit.warnings.emplace_back(
-        "the scene needs all of the full model: no smaller model gives images of the same quality");
+    model.fit.warnings.push_back(warning<WarningCode::scene_needs_full_model>());
   }
   const auto error = [](const std::vector<double>& shares) { return PictureError::estimate(shares).relmse; };
   model.scene =

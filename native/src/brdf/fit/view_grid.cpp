@@ -76,7 +76,7 @@ LightGrid light_grid(const Vec3& wv, int rings, int spokes) {
   for (int i = 0; i < rings; ++i) {
     const double cell = half_vector_cell(i, rings, spokes),
                  theta = 0.5 * (ring_edge(i, rings) + ring_edge(i + 1, rings));
-    const double turn = i * 0.6180339887498949;  // golden ratio: neighboring rings do not line up
+    const double turn = i * kGoldenRatio;  // neighboring rings do not line up
     for (int k = 0; k < spokes; ++k) {
       const double phi = azimuth + 2 * kPiD * (k + turn - std::floor(turn)) / spokes;
       const Vec3d h(std::sin(theta) * std::cos(phi), std::sin(theta) * std::sin(phi), std::cos(theta));
@@ -130,7 +130,7 @@ void redistribute_weights(LightGrid& grid, std::span<const uint8_t> kept) {
 void CloseRings::append(std::vector<Vec3>& out) const {
   for (int i = 0; i < rings_; ++i) {
     const double angle = i == 0 ? inner_ / std::sqrt(2.0) : std::sqrt(edge(i) * edge(i + 1));
-    const double turn = 0.6180339887498949 * i;  // golden ratio: neighboring rings do not line up
+    const double turn = kGoldenRatio * i;  // neighboring rings do not line up
     for (int k = 0; k < spokes_; ++k) {
       const double phi = 2 * kPiD * (k + turn) / spokes_;
       const Vec3d local(std::sin(angle) * std::cos(phi), std::sin(angle) * std::sin(phi), std::cos(angle));

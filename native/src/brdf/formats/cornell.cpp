@@ -65,10 +65,12 @@ class NumberReader {
   throw Error(Status::bad_data, path + ": " + what);
 }
 
-std::vector<double> read_numbers(std::span<const uint8_t> bytes, const std::string& path) {
+std::vector<double> read_numbers(std::span<const uint8_t> bytes, const std::string& path, const Progress& progress) {
+  constexpr size_t kBetweenChecks = 1 << 16;
   NumberReader in(bytes);
   std::vector<double> numbers;
   for (double value = 0;;) {
+    if (numbers.size() % kBetweenChecks == 0) progress.check();
     const auto result = in.next(value);
     if (result == NumberReader::Result::end) return numbers;
     if (result == NumberReader::Result::not_a_number)
@@ -222,16 +224,17 @@ bool looks_like_cornell(std::span<const uint8_t> head) {
          in.next(wavelength) == NumberReader::Result::number && wavelength >= 100 && wavelength <= 5000;
 }
 
-std::shared_ptr<const Measurement> read_cornell(std::span<const uint8_t> bytes, Provenance provenance) {
+std::shared_ptr<const Measurement> read_cornell(std::span<const uint8_t> bytes, Provenance provenance,
+                                                const Progress& progress) {
   const std::string path = provenance.path;
-  const auto numbers = read_numbers(bytes, path);
+  const auto numbers = read_numbers(bytes, path, progress);
   const CornellText text = split(numbers, path);
   EntryCounts counts;
   auto samples = read_samples(text, path, counts);
   provenance.format = "cornell";
   provenance.description = opening_comment(bytes);
   return std::make_shared<IrregularMeasurement>(std::move(samples), std::move(provenance), counts, describe(text),
-                                                Progress());
+                                                progress);
 }
 
 }  // namespace velour

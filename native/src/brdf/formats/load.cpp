@@ -15,7 +15,14 @@
 namespace velour {
 namespace {
 
-using Reader = std::shared_ptr<const Measurement> (*)(std::span<const uint8_t>, Provenance);
+using Reader = std::shared_ptr<const Measurement> (*)(std::span<const uint8_t>, Provenance, const Progress&);
+
+/// The reader of a format that takes too little time to be cancelled.
+template <auto read>
+std::shared_ptr<const Measurement> read_at_once(std::span<const uint8_t> bytes, Provenance provenance,
+                                                const Progress&) {
+  return read(bytes, std::move(provenance));
+}
 
 struct Format {
   bool (*recognize)(std::span<const uint8_t> head);
@@ -23,10 +30,10 @@ struct Format {
 };
 
 /// Tried in order; each recognizes its own first bytes.
-constexpr Format kFormats[] = {{looks_like_merl, read_merl},
-                               {looks_like_rgl, read_rgl},
-                               {looks_like_exr, read_brdf_table},
-                               {looks_like_window_bsdf, read_window_bsdf}};
+constexpr Format kFormats[] = {{looks_like_merl, read_at_once<read_merl>},
+                               {looks_like_rgl, read_at_once<read_rgl>},
+                               {looks_like_exr, read_at_once<read_brdf_table>},
+                               {looks_like_window_bsdf, read_at_once<read_window_bsdf>}};
 constexpr size_t kHeadBytes = 4096;
 
 /// The first bytes of a text after a UTF-8 mark and comments, which may be as long as a lab report.
@@ -98,7 +105,7 @@ constexpr OtherFormat kOtherFormats[] = {
 
 }  // namespace
 
-std::shared_ptr<const Measurement> load_measurement(const std::string& path) {
+std::shared_ptr<const Measurement> load_measurement(const std::string& path, const Progress& progress) {
   const Reader read = reader_of(path);
   if (!read) refuse_file(path);
   const auto bytes = read_file(path);
@@ -107,7 +114,7 @@ std::shared_ptr<const Measurement> load_measurement(const std::string& path) {
   provenance.name = std::filesystem::path(path).stem().string();
   provenance.sha256 = sha256_hex(bytes);
   provenance.file_bytes = bytes.size();
-  return read(bytes, std::move(provenance));
+  return read(bytes, std::move(provenance), progress);
 }
 
 bool is_measurement_file(const std::string& path) { return reader_of(path) != nullptr; }

@@ -108,15 +108,13 @@ Model compress_btf(const BtfMeasurement& measurement, const CompressOptions& opt
   record.seed = options.seed;
   record.raw_bytes = measurement.raw_bytes();
   if (fitter->not_finite() > 0) {
-    record.warnings.push_back(std::to_string(fitter->not_finite()) +
-                              " entries of the BTF are not finite; they were replaced by the mean of their image.");
+    record.warnings.push_back(warning<WarningCode::values_not_finite>({{"values", fitter->not_finite()}}));
   }
-  const std::string repeated = repeated_directions(measurement.layout());
-  if (!repeated.empty()) record.warnings.push_back(repeated);
-  for (const std::string& warning : measurement.warnings()) record.warnings.push_back(warning);
-  for (const std::string& warning : fitter->warnings()) record.warnings.push_back(warning);
-  for (const std::string& warning : checkpoint.warnings()) record.warnings.push_back(warning);
-  if (!found.shortfall.empty()) record.warnings.push_back(found.shortfall);
+  if (const auto repeated = repeated_directions(measurement.layout())) record.warnings.push_back(*repeated);
+  for (const auto& found_by : {measurement.warnings(), fitter->warnings(), checkpoint.warnings()}) {
+    record.warnings.insert(record.warnings.end(), found_by.begin(), found_by.end());
+  }
+  if (found.shortfall) record.warnings.push_back(*found.shortfall);
   record.psnr = found.errors.psnr;
   record.ser = found.errors.ser;
   record.relative_l2 = found.errors.relative_l2;

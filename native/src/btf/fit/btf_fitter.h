@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 #include "base/progress.h"
+#include "base/warning.h"
 #include "btf/model/factored_btf.h"
 #include "model/model.h"
 
@@ -46,7 +47,7 @@ class BtfFitter {
   /// Number of entries of the measurement that are not finite.
   uint64_t not_finite() const { return not_finite_; }
   /// Warnings about the models.
-  const std::vector<std::string>& warnings() const { return warnings_; }
+  const std::vector<Warning>& warnings() const { return warnings_; }
 
  protected:
   /// Sets largest(). Throws Error(invalid_argument) if even the first point, described by `one`, exceeds `bytes`.
@@ -56,7 +57,7 @@ class BtfFitter {
   size_t largest_ = 0;
   std::vector<ShapeTrial> shapes_;
   uint64_t not_finite_ = 0;
-  std::vector<std::string> warnings_;
+  std::vector<Warning> warnings_;
 };
 
 }  // namespace velour

@@ -47,7 +47,7 @@ void FitCheckpoint::read() {
     }
     file_ = std::move(file);
   } catch (const Error& error) {
-    warnings_.push_back(std::string("the fit was not resumed but started from the beginning: ") + error.what());
+    warnings_.push_back(warning<WarningCode::fit_not_resumed>({{"reason", error.what()}}));
   }
 }
 
@@ -118,8 +118,7 @@ void FitCheckpoint::write() {
     write_file(options_.path, encode_tensors(file_));
   } catch (const Error& error) {
     failed_ = true;
-    warnings_.push_back(std::string("the checkpoint could not be written, so the fit cannot be resumed: ") +
-                        error.what());
+    warnings_.push_back(warning<WarningCode::checkpoint_not_written>({{"reason", error.what()}}));
   }
 }
 

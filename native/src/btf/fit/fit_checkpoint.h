@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "base/warning.h"
 #include "btf/fit/companded_views.h"
 #include "image/tensors/exr_tensors.h"
 
@@ -44,8 +45,7 @@ class FitCheckpoint {
   /// Deletes the file, after a successful fit.
   void remove();
 
-  /// One sentence each.
-  const std::vector<std::string>& warnings() const { return warnings_; }
+  const std::vector<Warning>& warnings() const { return warnings_; }
 
  private:
   void read();
@@ -54,7 +54,7 @@ class FitCheckpoint {
   CheckpointOptions options_;
   TensorFile file_;
   bool failed_ = false;
-  std::vector<std::string> warnings_;
+  std::vector<Warning> warnings_;
 };
 
 }  // namespace velour

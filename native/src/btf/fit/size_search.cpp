@@ -1,10 +1,8 @@
 #include "btf/fit/size_search.h"
 
 #include <algorithm>
-#include <array>
 #include <chrono>
 #include <cmath>
-#include <cstdio>
 #include <set>
 
 namespace velour {
@@ -18,12 +16,6 @@ constexpr double kFarthest = 2;    // maximum step of an extrapolation, relative
 
 /// Keeps logarithms finite for exact models.
 double positive(double error) { return std::max(error, 1e-12); }
-
-std::string text(const char* format, double value) {
-  std::array<char, 32> out{};
-  std::snprintf(out.data(), out.size(), format, value);
-  return out.data();
-}
 
 }  // namespace
 
@@ -163,21 +155,26 @@ OrderCurve SizeSearch::measured_curve(size_t most) const {
   return curve;
 }
 
-std::string SizeSearch::shortfall() const {
+Warning SizeSearch::shortfall() const {
   const Fit& closest = best_fit();
-  std::string sentence = "the tolerance of " + text("%.4g", tolerance_) + " is not met: the error is " +
-                         text("%.4g", closest.error) + " with " +
-                         std::to_string(curve_.points[closest.point].parameter_bytes) + " bytes; ";
+  const uint64_t bytes = curve_.points[closest.point].parameter_bytes;
   for (size_t point = largest_ + 1; point < curve_.points.size(); ++point) {
     if (expected(point) * height(point) > tolerance_) continue;
-    return sentence + "about " + std::to_string(curve_.points[point].parameter_bytes) + " bytes would do";
+    return warning<WarningCode::tolerance_needs_bytes>({{"tolerance", tolerance_},
+                                                        {"error", closest.error},
+                                                        {"bytes", bytes},
+                                                        {"enough", curve_.points[point].parameter_bytes}});
   }
+  const double reachable = closest.error * (1 + kClose);
   if (largest_ + 1 < curve_.points.size()) {
-    return sentence + "more than " + std::to_string(curve_.points.back().parameter_bytes) +
-           " bytes would be needed, or a tolerance of " + text("%.3g", closest.error * (1 + kClose));
+    return warning<WarningCode::tolerance_needs_more_bytes>({{"tolerance", tolerance_},
+                                                             {"error", closest.error},
+                                                             {"bytes", bytes},
+                                                             {"largest", curve_.points.back().parameter_bytes},
+                                                             {"reachable", reachable}});
   }
-  return sentence + "no larger model of this method is known to do, a tolerance of " +
-         text("%.3g", closest.error * (1 + kClose)) + " would";
+  return warning<WarningCode::tolerance_out_of_reach>(
+      {{"tolerance", tolerance_}, {"error", closest.error}, {"bytes", bytes}, {"reachable", reachable}});
 }
 
 namespace {

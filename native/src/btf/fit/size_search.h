@@ -32,8 +32,8 @@ class SizeSearch {
   /// The curve scaled to the measured heights, with best() as the chosen point: at most `most` points, evenly spaced by
   /// logarithm, and all points fitted.
   OrderCurve measured_curve(size_t most) const;
-  /// One sentence: by how much the tolerance is missed, and what would suffice.
-  std::string shortfall() const;
+  /// By how much the tolerance is missed, and what would suffice.
+  Warning shortfall() const;
 
  private:
   struct Fit {
@@ -63,10 +63,10 @@ class SizeSearch {
 struct SizedFit {
   ModelBody body;
   BtfErrors errors;
-  OrderCurve order;               // scaled to the measured errors; the chosen point is the body's
-  std::vector<SizeTrial> trials;  // the last one need not be the body
-  std::string shortfall;          // one sentence if the tolerance is not met
-  double seconds = 0;             // time of all fits, without measuring errors
+  OrderCurve order;                  // scaled to the measured errors; the chosen point is the body's
+  std::vector<SizeTrial> trials;     // the last one need not be the body
+  std::optional<Warning> shortfall;  // if the tolerance is not met
+  double seconds = 0;                // time of all fits, without measuring errors
 };
 
 /// Computes the errors of a model against the data to which it was fitted.

@@ -100,15 +100,17 @@ bool is_outside(const std::string& picture, const fs::path& folder) {
 }
 
 /// Warns of images outside the index's folder: an index may name any file here, whose pixels would go into the model.
-std::string pictures_elsewhere(const ImageSetSource& source) {
+std::vector<Warning> pictures_elsewhere(const ImageSetSource& source) {
   const fs::path given = fs::absolute(source.path).lexically_normal();
   const fs::path folder = fs::is_directory(given) ? given : given.parent_path();
   const auto outside = [&](const PairPicture& p) { return is_outside(p.path, folder); };
   const auto first = std::ranges::find_if(source.pictures, outside);
   if (first == source.pictures.end()) return {};
-  return source.path + ": " + std::to_string(std::ranges::count_if(source.pictures, outside)) + " of " +
-         std::to_string(source.pictures.size()) + " images are outside the folder of the index, the first is " +
-         first->path + ". Check that these are the intended files.";
+  return {warning<WarningCode::images_outside_folder>(
+      {{"index", source.path},
+       {"outside", static_cast<uint64_t>(std::ranges::count_if(source.pictures, outside))},
+       {"images", source.pictures.size()},
+       {"first", first->path}})};
 }
 
 class ImageSet : public BtfMeasurement {
@@ -151,18 +153,13 @@ class ImageSet : public BtfMeasurement {
   bool has_coverage() const override { return has_alpha_; }
 
   std::vector<std::pair<std::string, std::string>> details() const override {
-    std::vector<std::pair<std::string, std::string>> details = {
-        {"values", scale_.text()},
-        {"curve", curve_text(options_.curve) + " for integer images, none for float images"},
-        {"colors", colors_text()},
-        {"first_picture", paths_[0]}};
-    if (!elsewhere_.empty()) details.emplace_back("warning", elsewhere_);
-    return details;
+    return {{"values", scale_.text()},
+            {"curve", curve_text(options_.curve) + " for integer images, none for float images"},
+            {"colors", colors_text()},
+            {"first_picture", paths_[0]}};
   }
 
-  std::vector<std::string> warnings() const override {
-    return elsewhere_.empty() ? std::vector<std::string>{} : std::vector{elsewhere_};
-  }
+  std::vector<Warning> warnings() const override { return elsewhere_; }
 
  private:
   PictureOptions picture_options() const {
@@ -232,7 +229,7 @@ class ImageSet : public BtfMeasurement {
   }
 
   BtfLoadOptions options_;
-  std::string elsewhere_;  // a warning; usually empty
+  std::vector<Warning> elsewhere_;  // of images outside the index's folder
   ValueScale scale_;
   std::vector<std::string> paths_;
   bool has_alpha_ = false;  // whether the first image has alpha

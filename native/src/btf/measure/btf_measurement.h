@@ -7,6 +7,7 @@
 #include <string>
 #include <utility>
 #include <vector>
+#include "base/warning.h"
 #include "brdf/measure/measurement.h"
 #include "btf/measure/half_floats.h"
 #include "btf/measure/pair_layout.h"
@@ -83,8 +84,8 @@ class BtfMeasurement {
 
   /// Further facts about the source, as (key, value) pairs for `info`.
   virtual std::vector<std::pair<std::string, std::string>> details() const { return {}; }
-  /// Warnings for users of the data, one sentence each.
-  virtual std::vector<std::string> warnings() const { return {}; }
+  /// Warnings for users of the data.
+  virtual std::vector<Warning> warnings() const { return {}; }
 
   const PairLayout& layout() const { return *layout_; }
   const TexelGrid& grid() const { return grid_; }

@@ -121,12 +121,10 @@ size_t repeated(const std::vector<PolarAngles>& set) {
 
 }  // namespace
 
-std::string repeated_directions(const PairLayout& layout) {
+std::optional<Warning> repeated_directions(const PairLayout& layout) {
   const size_t views = repeated(layout.views()), lights = repeated(layout.lights());
-  if (views == 0 && lights == 0) return "";
-  return "The BTF contains the same direction under different angles (phi 0 and 360, or any phi at theta 0): " +
-         std::to_string(views) + " of its views and " + std::to_string(lights) +
-         " of its lights repeat an earlier one. Interpolation uses only the earlier one.";
+  if (views == 0 && lights == 0) return std::nullopt;
+  return warning<WarningCode::repeated_directions>({{"views", views}, {"lights", lights}});
 }
 
 namespace {

@@ -2,8 +2,10 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
+#include "base/warning.h"
 #include "math/sphere/vec.h"
 
 namespace velour {
@@ -76,7 +78,7 @@ std::vector<PolarAngles> named_directions(const std::string& name);
 // Detects directions of a BTF that coincide although their angles differ.
 
 /// Warning about views and lights that coincide with an earlier one (phi 0 and 360, any phi at theta 0); interpolation
-/// uses the earlier one only. Empty if all differ.
-std::string repeated_directions(const PairLayout& layout);
+/// uses the earlier one only. Nothing if all differ.
+std::optional<Warning> repeated_directions(const PairLayout& layout);
 
 }  // namespace velour

@@ -74,13 +74,11 @@ class BtfCapturer {
     layout_ = layout(wanted);
     report_.two_sided = any_below(layout_->views()) || any_below(layout_->lights());
     report_.warnings = scene_.info().warnings;
-    std::erase(report_.warnings, kNoLightWarning);  // the capture supplies its own lights
-    if (const auto warning = seam_warning(tile_)) report_.warnings.push_back(*warning);
+    std::erase(report_.warnings, warning<WarningCode::no_light>());  // the capture supplies its own lights
+    if (const auto seam = seam_warning(tile_)) report_.warnings.push_back(*seam);
     for (const SurfaceMaterial& m : scene_.materials()) {
       if (m.emission == Rgb(0)) continue;
-      report_.warnings.push_back(
-          "A material of the tile emits light. Its emission is not captured, because a BTF contains only reflected "
-          "light.");
+      report_.warnings.push_back(warning<WarningCode::tile_emits_light>());
       break;
     }
   }
@@ -185,12 +183,10 @@ class BtfCapturer {
     report_.views = static_cast<uint32_t>(layout_->views().size());
     report_.lights = static_cast<uint32_t>(layout_->lights().size());
     report_.pairs = layout_->pairs();
-    const auto warn = [&](uint64_t count, const char* what) {
-      if (count > 0) report_.warnings.push_back(std::to_string(count) + what);
-    };
-    warn(counts.lost, " rays never left the shell and were counted as misses.");
-    warn(counts.broken,
-         " path values were not finite and were counted as 0. Check the materials of the tile for invalid values.");
+    if (counts.lost > 0) report_.warnings.push_back(warning<WarningCode::rays_lost>({{"rays", counts.lost}}));
+    if (counts.broken > 0) {
+      report_.warnings.push_back(warning<WarningCode::path_values_not_finite>({{"values", counts.broken}}));
+    }
   }
 
   const Scene& scene_;

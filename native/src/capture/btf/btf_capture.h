@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "base/progress.h"
+#include "base/warning.h"
 #include "btf/measure/pair_layout.h"
 #include "capture/btf/path_vertices.h"
 #include "capture/btf/repeated_tile.h"
@@ -46,7 +47,7 @@ struct BtfCaptureReport {
   uint64_t pairs = 0;
   bool two_sided = false, open = false;
   double thickness = 0, reference_height = 0;  // meters (tile widths if unknown), over the lowest point
-  std::vector<std::string> warnings;
+  std::vector<Warning> warnings;
 };
 
 /// Captures the committed `scene` as a BTF in the folder `path`. Every view is written as soon as it is done; `resume`

@@ -1,9 +1,7 @@
 #include "capture/btf/tile_checks.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <cstdio>
 #include <vector>
 #include "base/file.h"
 #include "capture/btf/view_capture.h"
@@ -102,7 +100,7 @@ bool is_open(const RepeatedTile& tile) {
   return heights.missed_any();
 }
 
-std::optional<std::string> seam_warning(const RepeatedTile& tile) {
+std::optional<Warning> seam_warning(const RepeatedTile& tile) {
   Heights heights(tile);
   for (int axis = 0; axis < 2; ++axis) {
     const Jumps border = jumps_across(heights, tile, axis, 0);
@@ -111,14 +109,12 @@ std::optional<std::string> seam_warning(const RepeatedTile& tile) {
       inside = std::max(inside, jumps_across(heights, tile, axis, at).share);
     }
     if (border.share <= inside + 0.1) continue;
-    std::array<char, 320> text{};
-    std::snprintf(text.data(), text.size(),
-                  "The tile does not repeat seamlessly along %c: its surface jumps by more than %g %% of its thickness "
-                  "across %.0f %% of its border (RMS %.3g of a thickness of %.3g), but across %.0f %% or less of lines "
-                  "inside. The seam will be visible. Set the period, or make the borders match.",
-                  axis == 0 ? 'x' : 'y', 100 * kJump, 100 * border.share, border.rms,
-                  static_cast<double>(tile.thickness()), 100 * inside);
-    return text.data();
+    return warning<WarningCode::tile_seam>({{"axis", axis == 0 ? "x" : "y"},
+                                            {"jump", kJump},
+                                            {"share", border.share},
+                                            {"rms", border.rms},
+                                            {"thickness", static_cast<double>(tile.thickness())},
+                                            {"inside", inside}});
   }
   return std::nullopt;
 }

@@ -4,6 +4,7 @@
 #include <optional>
 #include <string>
 #include "base/progress.h"
+#include "base/warning.h"
 #include "capture/btf/repeated_tile.h"
 
 namespace velour {
@@ -11,9 +12,9 @@ namespace velour {
 /// Whether any of 4096 evenly distributed vertical rays through the tile hits nothing.
 bool is_open(const RepeatedTile& tile);
 
-/// Warning with numbers if the surface seen from above jumps across the cell's border and hardly anywhere else: the
+/// Warning if the surface seen from above jumps across the cell's border and hardly anywhere else: the
 /// geometry is not periodic, or the period is wrong.
-std::optional<std::string> seam_warning(const RepeatedTile& tile);
+std::optional<Warning> seam_warning(const RepeatedTile& tile);
 
 /// SHA-256 of everything the values of the tile depend on: vertices, triangles, transforms, and f of its materials for
 /// a few pairs of directions.

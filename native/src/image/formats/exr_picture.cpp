@@ -178,7 +178,7 @@ class ExrPicture : public OpenExr {
     }
     const PictureFrame frame = frame_of(exr_header());
     if (frame != PictureFrame{header_.width, header_.height, 0, 0}) header_.frame = frame;
-    add_notes();
+    add_warnings();
   }
 
   void read(std::span<float> values) override {
@@ -227,25 +227,20 @@ class ExrPicture : public OpenExr {
     }
   }
 
-  void add_notes() {
-    const auto list = [](const std::vector<std::string>& names) {
-      constexpr size_t kShown = 6;
-      std::string text;
-      for (size_t i = 0; i < std::min(names.size(), kShown); ++i) text += (i > 0 ? ", " : "") + names[i];
-      return names.size() > kShown ? text + " and " + std::to_string(names.size() - kShown) + " more" : text;
-    };
+  void add_warnings() {
     if (!colors_.left_out.empty()) {
-      const std::string chosen = colors_.layer.empty() ? "" : " of layer '" + colors_.layer + "'";
-      header_.notes.push_back("the image" + chosen +
-                              " is used; its other channels are ignored: " + list(colors_.left_out) + ".");
+      header_.warnings.push_back(warning<WarningCode::channels_ignored>(
+          {{"file", path_}, {"layer", colors_.layer}, {"channels", colors_.left_out}}));
     }
     if (part_count() > 1) {
-      const std::string name = exr_header().hasName() ? " '" + exr_header().name() + "'" : "";
-      header_.notes.push_back("part" + name + " of " + std::to_string(part_count()) +
-                              " is used; the other parts are ignored.");
+      header_.warnings.push_back(
+          warning<WarningCode::parts_ignored>({{"file", path_},
+                                               {"part", exr_header().hasName() ? exr_header().name() : ""},
+                                               {"parts", static_cast<uint64_t>(part_count())}}));
     }
-    if (colors_.kind == ExrColors::Kind::rgb && std::ranges::count(colors_.names, "") > 0)
-      header_.notes.push_back("one of the channels R, G and B is missing and is treated as 0.");
+    if (colors_.kind == ExrColors::Kind::rgb && std::ranges::count(colors_.names, "") > 0) {
+      header_.warnings.push_back(warning<WarningCode::channel_missing>({{"file", path_}}));
+    }
   }
 
   /// Uses OpenEXR's own reconstruction, which works in half floats.

@@ -24,12 +24,15 @@ PartSize part_size(std::vector<uint64_t> shape);
 /// into it with the first one's row width, so a wider or higher part would exceed it.
 bool covers(const PartSize& first, const PartSize& part);
 
-/// The pixels of one part in the form in which they are written. The tensor must outlive it.
+/// The pixels of one part in the form in which they are written. The tensor must outlive it. Not copied, because it may
+/// point to pixels of its own.
 class TensorPixels {
  public:
   explicit TensorPixels(const Tensor& tensor);
   /// The pixels of a pack, padded with zeros to cover `part`.
   TensorPixels(const std::vector<uint8_t>& pack, const PartSize& part);
+  TensorPixels(TensorPixels&&) = default;
+  TensorPixels& operator=(TensorPixels&&) = default;
 
   const PartSize& size() const { return size_; }
   Imf::PixelType type() const { return type_; }

@@ -18,8 +18,17 @@ using Rgb = glm::vec3;   // linear Rec. 709 unless stated
 inline constexpr float kPi = 3.14159265358979323846f;
 inline constexpr double kPiD = 3.14159265358979323846;
 
+/// (sqrt(5) - 1) / 2: its multiples modulo 1 are spread evenly, however many there are.
+inline constexpr double kGoldenRatio = 0.6180339887498949;
+
+/// Weights of the channels of linear Rec. 709 in its luminance.
+inline constexpr double kLuminance[3] = {0.2126, 0.7152, 0.0722};
+
 /// Rec. 709 luminance of linear `c`.
-inline float luminance(const Rgb& c) { return 0.2126f * c.r + 0.7152f * c.g + 0.0722f * c.b; }
+inline float luminance(const Rgb& c) {
+  return static_cast<float>(kLuminance[0]) * c.r + static_cast<float>(kLuminance[1]) * c.g +
+         static_cast<float>(kLuminance[2]) * c.b;
+}
 
 constexpr float radians_from(float degrees) { return degrees * (kPi / 180.0f); }
 constexpr double radians_from(double degrees) { return degrees * (kPiD / 180.0); }

@@ -56,7 +56,6 @@ WarpedLobe widened(const WarpedLobe& lobe, double by) {
 namespace {
 
 constexpr int kZeniths = 256, kDraws = 377;
-constexpr double kGolden = 0.6180339887498949;
 
 /// Share above the horizon of the directions at angle `zenith` from a center (both given by sine and cosine).
 double share_above(const glm::dvec2& center, const glm::dvec2& zenith) {
@@ -87,7 +86,7 @@ double reflected_light(const WarpedLobe& lobe, const Vec3d& wv) {
     sum += kernel * cosine / (kernel * warp_jacobian(lobe, wl, wv) / integral + cosine / kPiD);
   };
   for (int i = 0; i < kDraws; ++i) {  // a Fibonacci lattice samples both the lobe and the cosine
-    const double u = (i + 0.5) / kDraws, phi = 2 * kPiD * std::fmod(i * kGolden, 1.0);
+    const double u = (i + 0.5) / kDraws, phi = 2 * kPiD * std::fmod(i * kGoldenRatio, 1.0);
     const double c = std::cos(phi), s = std::sin(phi);
     const double d = kernel_sample(Kernel::gaussian, lobe.bandwidth, u), sine = std::sqrt(d * (2 - d));
     const Vec3d psi = sine * (c * Vec3d(frame.x) + s * Vec3d(frame.y)) + (1 - d) * lobe.center;

@@ -163,6 +163,7 @@ void Film::read_denoised(std::span<float> pixels) const {
 
 void Film::read_over(const Film* coarser, std::span<float> pixels) const {
   if (coarser == nullptr) return read_pass("Combined", pixels);
+  check_size("Combined", 4 * pixels_.size(), pixels.size());
   const std::lock_guard lock(mutex_), other(coarser->mutex_);
   float* out = pixels.data();
   for (int y = 0; y < height(); ++y) {
@@ -197,7 +198,14 @@ double Film::noise() const {
 namespace {
 
 constexpr size_t kOfPixel = 12;
-constexpr float kMaxWholeFloat = 16777216.0f;  // above, floats skip integers
+constexpr uint32_t kMaxCount = 1u << 24;  // above, floats skip integers
+
+float float_of(uint32_t count) {
+  if (count <= kMaxCount) return static_cast<float>(count);
+  throw Error(Status::unsupported, "A pixel of this part has " + std::to_string(count) +
+                                       " samples, but the sums of a part hold at most 16777216 per pixel. Render "
+                                       "several parts with fewer samples.");
+}
 
 void write(const PixelSum& p, float* out) {
   const float values[kOfPixel] = {p.radiance.r,
@@ -210,13 +218,14 @@ void write(const PixelSum& p, float* out) {
                                   p.depth,
                                   p.luminance[0],
                                   p.luminance[1],
-                                  static_cast<float>(p.camera_rays),
-                                  static_cast<float>(p.directions)};
+                                  float_of(p.camera_rays),
+                                  float_of(p.directions)};
   std::ranges::copy(values, out);
 }
 
 uint32_t count(float value) {
-  if (value >= 0.0f && value <= kMaxWholeFloat && value == std::floor(value)) return static_cast<uint32_t>(value);
+  if (value >= 0.0f && value <= static_cast<float>(kMaxCount) && value == std::floor(value))
+    return static_cast<uint32_t>(value);
   throw Error(Status::bad_data,
               "The given numbers are not the sums of a render: a pixel has " + std::to_string(value) + " rays.");
 }

@@ -47,7 +47,8 @@ class Film {
   /// `pixels` holds width x height x channels(pass). Pixels without samples are 0; depth is 1e10 where nothing was hit.
   /// Throws Error(invalid_argument) for a pass that was not requested, Error(invalid_state) if it does not exist yet.
   void read_pass(std::string_view pass, std::span<float> pixels) const;
-  /// "Combined", with pixels without samples taken from a `coarser` film of the same view; null: they are 0.
+  /// "Combined", with pixels without samples taken from a `coarser` film of the same view; null: they are 0. Throws
+  /// Error(invalid_argument) if `pixels` has the wrong size.
   void read_over(const Film* coarser, std::span<float> pixels) const;
 
   /// Number of light directions of all pixels.
@@ -76,7 +77,8 @@ class Film {
 size_t sums_per_pixel(const Film& film);
 
 /// Reads all pixels from the bottom row up, sums_per_pixel() each. Exact: added to an empty film, they reproduce the
-/// same bits. Throws Error(invalid_argument) if `sums` has the wrong size.
+/// same bits. Throws Error(invalid_argument) if `sums` has the wrong size, Error(unsupported) if a pixel has more than
+/// 2^24 camera rays or light directions, beyond which floats skip integers.
 void read_sums(const Film& film, std::span<float> sums);
 
 /// Adds the sums of the camera rays that follow those of `film`, which has the same passes. Throws

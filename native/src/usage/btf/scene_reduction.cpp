@@ -53,8 +53,7 @@ void reduce(const BtfMeasurement& measurement, size_t count, const CompressOptio
             SceneRecord& record, Progress& progress) {
   if (count == 0) return;
   if (std::holds_alternative<TensorBtf>(model.body)) {
-    model.btf->warnings.emplace_back(
-        "of clustered tensors the finest levels were left out, and no more: they are not refitted to the scene usage");
+    model.btf->warnings.push_back(warning<WarningCode::only_finest_levels_left_out>());
   }
   ModelBody levels = without_finest(model.body, count);
   auto refit = refit_for_scene(measurement, model.body, levels, options, progress);
@@ -84,7 +83,7 @@ Model compress_for_scene(const BtfMeasurement& measurement, const CompressOption
   record.full_texels = {grid_of(model)->width, grid_of(model)->height};
   const size_t count = unresolved_levels(model.body, observation.domain.surface);
   reduce(measurement, count, options, model, record, progress);
-  if (count == 0) model.btf->warnings.emplace_back("the scene resolves the finest texels, so it needs the full model");
+  if (count == 0) model.btf->warnings.push_back(warning<WarningCode::scene_shows_finest_texels>());
   model.scene = std::move(record);
   progress.update(1.0);
   return model;

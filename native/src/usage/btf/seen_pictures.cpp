@@ -7,6 +7,7 @@
 #include <numeric>
 
 #include "btf/fit/btf_compare.h"
+#include "image/picture.h"
 #include "math/sphere/frame.h"
 #include "usage/btf/scene_btf.h"
 
@@ -31,8 +32,8 @@ double relmse(const std::array<std::vector<float>, 2>& a, const std::array<const
     for (size_t i = c; i < count; i += 3) {
       const double first = static_cast<double>(a[0][i]) - (*b[0])[i],
                    second = static_cast<double>(a[1][i]) - (*b[1])[i];
-      const double y = 0.5 * (static_cast<double>((*b[0])[i]) + (*b[1])[i]), floor = 0.01 * mean * mean;
-      if (y * y + floor > 0) error += first * second / (y * y + floor);
+      const double y = 0.5 * (static_cast<double>((*b[0])[i]) + (*b[1])[i]);
+      if (y != 0 || mean != 0) error += first * second / (y * y + relmse_floor(mean));
     }
   }
   return error / static_cast<double>(count);

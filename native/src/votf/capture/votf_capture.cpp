@@ -175,11 +175,10 @@ class VotfCapturer {
 
   void inspect() {
     volume().closed = !is_open(tile_);
-    if (const auto warning = seam_warning(tile_)) result_.warnings.push_back(*warning);
+    if (const auto seam = seam_warning(tile_)) result_.warnings.push_back(*seam);
     const auto& materials = tile_.scene().materials();
     if (!std::ranges::all_of(materials, [](const SurfaceMaterial& m) { return m.material->opaque(); })) {
-      result_.warnings.emplace_back(
-          "A material of the tile is transparent (alpha). The silhouette (VOTF) treats its surface as opaque.");
+      result_.warnings.push_back(warning<WarningCode::tile_is_transparent>());
     }
   }
 
@@ -208,9 +207,8 @@ class VotfCapturer {
     const ShellColumns columns(tile_, places, 0.5f * v.pitch() * tile_.period().x, v.closed, share_);
     const bool sheets = !v.closed && columns.unclosed() > 0;
     if (sheets) {
-      result_.warnings.push_back(std::to_string(columns.unclosed()) + " of " + std::to_string(places.size()) +
-                                 " vertical lines meet a sheet without thickness, which was made about one texel "
-                                 "thick. Give it a thickness, or increase the number of texels.");
+      result_.warnings.push_back(
+          warning<WarningCode::sheets_thickened>({{"lines", columns.unclosed()}, {"sampled", places.size()}}));
     }
     const float thicker = sheets ? kSheet * v.pitch() : 0.0f;
     v.distance.resize(distance.size());

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 #include "base/progress.h"
+#include "base/warning.h"
 #include "capture/btf/repeated_tile.h"
 #include "votf/eval/occlusion_volume.h"
 #include "votf/eval/visibility_mask.h"
@@ -28,7 +29,7 @@ struct VotfCapture {
   std::optional<VotfErrors> errors;
   double seconds = 0;
   std::optional<double> ray_share;  // relative to the bare Embree rate for the same rays, including the checks
-  std::vector<std::string> warnings;
+  std::vector<Warning> warnings;
 };
 
 /// `scene` must be committed. Inside and outside are distinguished along vertical rays by the facing of the surfaces

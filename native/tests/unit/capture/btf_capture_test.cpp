@@ -11,6 +11,7 @@
 
 #include "base/job.h"
 #include "support/captured.h"
+#include "support/warnings.h"
 
 namespace velour {
 namespace {
@@ -200,7 +201,8 @@ TEST(BtfCapture, SaysThatATileIsNotPeriodic) {
   const Mesh ramp = Corners().quad({0, 0, 0}, {1, 0, 0.3f}, {1, 1, 0.3f}, {0, 1, 0}).mesh();
   const Captured captured(*tile_of(ramp, lambert(0.5f)), small_capture({{0, 0}}, {{0, 0}}), "ramp");
   ASSERT_EQ(captured.report.warnings.size(), 1u);
-  EXPECT_NE(captured.report.warnings[0].find("does not repeat seamlessly along x"), std::string::npos);
+  EXPECT_EQ(captured.report.warnings[0].code, WarningCode::tile_seam);
+  EXPECT_EQ(test::value_of<std::string>(captured.report.warnings[0], "axis"), "x");
   const Captured grooves(*tile_of(test::sawtooth(), lambert(0.5f)), small_capture({{0, 0}}, {{0, 0}}), "grooves");
   EXPECT_TRUE(grooves.report.warnings.empty()) << "control";
 }

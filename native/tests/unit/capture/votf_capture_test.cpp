@@ -67,7 +67,7 @@ TEST(VotfCapture, ASheetWithAHoleBecomesThinWithAWarning) {
   options.reference_height = 0.3;
   const VotfCapture c = capture_votf(*scene, options, progress);
   ASSERT_FALSE(c.warnings.empty());  // of the seam as well
-  EXPECT_NE(c.warnings.back().find("without thickness"), std::string::npos);
+  EXPECT_EQ(c.warnings.back().code, WarningCode::sheets_thickened);
   const ShellField field(std::make_shared<const VotfVolume>(c.volume));
   EXPECT_TRUE(line_meets(field, {0.5f, 0.25f}, {0, 0, 1}));
   EXPECT_FALSE(line_meets(field, {0.5f, 0.75f}, {0, 0, 1}));

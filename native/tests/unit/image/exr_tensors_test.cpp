@@ -16,6 +16,7 @@
 
 #include "base/error.h"
 #include "image/formats/exr_scan.h"
+#include "image/tensors/tensor_pixels.h"
 
 namespace velour {
 namespace {
@@ -27,6 +28,10 @@ Tensor ramp(std::vector<uint64_t> shape) {
   for (uint64_t i = 0; i < count; ++i) tensor.data.push_back(static_cast<float>(i) * 0.37f - 3.0f);
   return tensor;
 }
+
+// A copy would point to the pixels of the original.
+static_assert(!std::is_copy_constructible_v<TensorPixels> && !std::is_copy_assignable_v<TensorPixels>);
+static_assert(std::is_nothrow_move_constructible_v<TensorPixels>);
 
 TensorFile sample_file() {
   TensorFile file;

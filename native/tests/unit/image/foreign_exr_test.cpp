@@ -27,6 +27,7 @@
 #include "image/picture.h"
 #include "support/inputs.h"
 #include "support/test_data.h"
+#include "support/warnings.h"
 
 namespace velour {
 namespace {
@@ -105,7 +106,7 @@ TEST_F(ForeignExr, SmallLettersAreColors) {
   const Picture picture = read_picture(path_);
   EXPECT_EQ(pixel_of(picture, 1, 1), (std::vector<float>{1, 2, 3}));
   EXPECT_EQ(pixel_of(picture, 0, kHeight - 1), (std::vector<float>{0.1f, 0.2f, 0.3f}));
-  EXPECT_TRUE(picture.notes.empty());
+  EXPECT_TRUE(picture.warnings.empty());
 }
 
 TEST_F(ForeignExr, PassesAreLeftOutAloud) {
@@ -114,9 +115,10 @@ TEST_F(ForeignExr, PassesAreLeftOutAloud) {
   write(path_, {{"AO.R", 9}, {"B", 3}, {"G", 2}, {"R", 1}, {"depth.Z", 8}});
   const Picture picture = read_picture(path_);
   EXPECT_EQ(pixel_of(picture, 1, 1), (std::vector<float>{1, 2, 3}));
-  ASSERT_EQ(picture.notes.size(), 1u);
-  EXPECT_NE(picture.notes[0].find("AO.R, depth.Z"), std::string::npos);
-  EXPECT_TRUE(picture.notes[0].starts_with(path_));
+  ASSERT_EQ(picture.warnings.size(), 1u);
+  EXPECT_EQ(picture.warnings[0],
+            warning<WarningCode::channels_ignored>(
+                {{"file", path_}, {"layer", ""}, {"channels", std::vector<std::string>{"AO.R", "depth.Z"}}}));
   EXPECT_EQ(pixel_of(read_picture(path_, {.layer = "depth"}), 1, 1), std::vector<float>{8});
 }
 
@@ -158,8 +160,9 @@ TEST_F(ForeignExr, PixelsLieInTheDisplayWindow) {
   const Picture stored = read_picture(path_, {.as_stored = true});
   EXPECT_EQ(stored.width, 4);
   EXPECT_EQ(stored.height, 2);
-  ASSERT_EQ(stored.notes.size(), 1u);
-  EXPECT_NE(stored.notes[0].find("6 x 4 pixels"), std::string::npos) << stored.notes[0];
+  ASSERT_EQ(stored.warnings.size(), 1u);
+  EXPECT_EQ(stored.warnings[0],
+            warning<WarningCode::window_ignored>({{"file", path_}, {"width", uint64_t{6}}, {"height", uint64_t{4}}}));
 }
 
 TEST_F(ForeignExr, AnEmptyDisplayWindowIsNotAllocated) {
@@ -205,8 +208,9 @@ TEST_F(ForeignExr, TheFirstPartWithColors) {
   }
   const Picture picture = read_picture(path_);
   EXPECT_EQ(pixel_of(picture, 1, 1), (std::vector<float>{1, 2, 3}));
-  ASSERT_EQ(picture.notes.size(), 1u);
-  EXPECT_NE(picture.notes[0].find("part 'beauty' of 3"), std::string::npos);
+  ASSERT_EQ(picture.warnings.size(), 1u);
+  EXPECT_EQ(picture.warnings[0],
+            warning<WarningCode::parts_ignored>({{"file", path_}, {"part", "beauty"}, {"parts", uint64_t{3}}}));
   EXPECT_EQ(pixel_of(read_picture(path_, {.layer = "other"}), 1, 1), (std::vector<float>{4, 5, 6}));
 }
 
@@ -232,7 +236,7 @@ TEST_F(ForeignExr, PrimariesAreConverted) {
     for (int c = 0; c < 3; ++c) EXPECT_NEAR(picture.pixel(2, 2)[c], rgb[static_cast<size_t>(c)], 2e-4) << space.red.x;
     const Picture stored = read_picture(path_, {.as_stored = true});
     EXPECT_FLOAT_EQ(stored.pixel(2, 2)[0], there.x);
-    EXPECT_EQ(stored.notes.size(), space.red.x == rec709.red.x ? 0u : 1u);
+    EXPECT_EQ(stored.warnings.size(), space.red.x == rec709.red.x ? 0u : 1u);
   }
 }
 
@@ -265,11 +269,10 @@ TEST_F(ForeignExr, InfiniteSunsStayBright) {
   write(path_, {{"B", inf}, {"G", 2}, {"R", std::numeric_limits<float>::quiet_NaN()}});
   const Picture picture = read_picture(path_);
   EXPECT_EQ(pixel_of(picture, 1, 1), (std::vector<float>{0, 2, 65504}));
-  ASSERT_EQ(picture.notes.size(), 2u);
-  EXPECT_NE(picture.notes[0].find("24 values are infinite and were replaced by 65504"), std::string::npos)
-      << picture.notes[0];
-  EXPECT_NE(picture.notes[1].find("24 values are not numbers (NaN) and were replaced by 0"), std::string::npos)
-      << picture.notes[1];
+  ASSERT_EQ(picture.warnings.size(), 2u);
+  EXPECT_EQ(picture.warnings[0], warning<WarningCode::infinite_values>(
+                                     {{"file", path_}, {"values", uint64_t{24}}, {"replacement", 65504.0}}));
+  EXPECT_EQ(picture.warnings[1], warning<WarningCode::nan_values>({{"file", path_}, {"values", uint64_t{24}}}));
 }
 
 TEST_F(ForeignExr, CubeMapsAreRefused) {

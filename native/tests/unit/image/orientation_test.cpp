@@ -88,7 +88,7 @@ TEST(PictureOrientation, FollowsExif) {
     EXPECT_NEAR(seen(ends.first_x + ends.step_x, ends.first_y + ends.step_y), 0.2140411f, 0.003f);
     const Picture stored = read_picture(turned, {.as_stored = true});
     EXPECT_EQ(stored.width, kStoredWidth);
-    EXPECT_EQ(stored.notes.size(), ends.orientation == 1 ? 0u : 1u);
+    EXPECT_EQ(stored.warnings.size(), ends.orientation == 1 ? 0u : 1u);
   }
 }
 

@@ -91,7 +91,7 @@ TEST_F(RadiancePicture, AllEightOrientations) {
         write_file(path_, file_of("FORMAT=32-bit_rle_rgbe\n", resolution));
         expect_the_picture(read_picture(path_));
         const bool usual = resolution == "-Y 9 +X 12";
-        EXPECT_EQ(read_picture(path_, {.as_stored = true}).notes.size(), usual ? 0u : 1u);
+        EXPECT_EQ(read_picture(path_, {.as_stored = true}).warnings.size(), usual ? 0u : 1u);
       }
 }
 
@@ -119,7 +119,7 @@ TEST_F(RadiancePicture, ExposuresAreUndone) {
   expect_the_picture(read_picture(path_), 0.1f);
   const Picture stored = read_picture(path_, {.as_stored = true});
   expect_the_picture(stored);
-  EXPECT_EQ(stored.notes.size(), 1u);
+  EXPECT_EQ(stored.warnings.size(), 1u);
   write_file(path_, file_of("COLORCORR=1 2 4\n", "-Y 9 +X 12"));
   const Picture picture = read_picture(path_);
   EXPECT_FLOAT_EQ(picture.pixel(0, 8)[1], value_of(3) / 2);

@@ -26,7 +26,10 @@ inline Model example_record() {
                .seed = 12345678901234567ull,
                .all_data = true,
                .order = {},
-               .warnings = {"view 60 degrees: relative L2 0.03 exceeds 0.02", "\"quoted\" and accented: \xc3\xa9"}};
+               .warnings = {warning<WarningCode::stored_sentence>({{"text", "\"quoted\" and accented: \xc3\xa9"}}),
+                            warning<WarningCode::views_exceed_tolerance>({{"views", std::vector<double>{60}},
+                                                                          {"errors", std::vector<double>{0.03}},
+                                                                          {"tolerance", 0.02}})}};
   model.fit.order.points = {{1, 52, 12.5, 0.25}, {2, 80, 2.125, 0.0425}, {4, 136, 0.875, 0.0175}};
   model.fit.order.chosen = 2;
   model.source = {"metal", "merl", std::string(64, 'a')};
@@ -90,7 +93,8 @@ inline Model example_reduced() {
 
 inline Model example_btf_model(bool two_sided = false) {
   Model model{example_factored(two_sided), {}, {"weave", "velour-btf", std::string(64, 'b')}};
-  model.btf = BtfRecord{"svd", 23.5, 21.25, 0.01, 0.5, 123456, 1.5, 2e6, 42, {"a sentence"}, 0.125, 0.25, {}, {}, {}};
+  model.btf = BtfRecord{"svd", 23.5, 21.25, 0.01, 0.5, 123456, 1.5, 2e6, 42, {}, 0.125, 0.25, {}, {}, {}};
+  model.btf->warnings = {warning<WarningCode::values_not_finite>({{"values", uint64_t{12}}})};
   model.btf->order = {{{1, 100, 1.5, 0.375}, {3, 300, 0.5, 0.125}}, 1};
   model.btf->search = {{3, 300, 0.25, 0.125}};
   return model;

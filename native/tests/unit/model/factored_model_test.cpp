@@ -5,6 +5,7 @@
 #include "base/error.h"
 #include "image/tensors/exr_tensors.h"
 #include "model/model_file.h"
+#include "support/warnings.h"
 #include "unit/model/example_model.h"
 #include "unit/model/refusals.h"
 
@@ -86,7 +87,7 @@ TEST(FactoredModel, KeepsItsRecord) {
   EXPECT_EQ(record.raw_bytes, 123456u);
   EXPECT_EQ(record.evaluations_per_second, 2e6);
   EXPECT_EQ(record.seed, 42u);
-  EXPECT_EQ(record.warnings, std::vector<std::string>{"a sentence"});
+  EXPECT_EQ(record.warnings, written.warnings);
 }
 
 TEST(FactoredModel, RefusesADamagedFileByItsField) {

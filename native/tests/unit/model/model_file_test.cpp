@@ -10,6 +10,7 @@
 #include "example_model.h"
 #include "model/model_material.h"
 #include "support/test_data.h"
+#include "support/warnings.h"
 
 namespace velour {
 namespace {

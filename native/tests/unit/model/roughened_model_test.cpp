@@ -11,6 +11,7 @@
 #include "support/albedo.h"
 #include "support/parametric_models.h"
 #include "support/proof_materials.h"
+#include "support/warnings.h"
 #include "unit/model/example_model.h"
 
 namespace velour {
@@ -60,7 +61,7 @@ TEST(RoughenedModel, RefusesWhatItCannotDo) {
 
 TEST(RoughenedModel, SaysSoAndIsAFileLikeAnyOther) {
   const Model rougher = roughened(test::example_parametric(false), 0.25f);
-  EXPECT_NE(rougher.fit.warnings.back().find("rougher by 0.25"), std::string::npos);
+  EXPECT_EQ(rougher.fit.warnings.back(), warning<WarningCode::roughened>({{"roughness", 0.25}}));
   const Model again = decode_model(encode_model(rougher), "again");
   EXPECT_EQ(std::get<ParametricBrdf>(again.body).control.size(), std::get<ParametricBrdf>(rougher.body).control.size());
 }

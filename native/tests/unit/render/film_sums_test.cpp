@@ -123,6 +123,23 @@ TEST(FilmSums, TheErrorIsThatOfAllRays) {
   EXPECT_GT(apart, 1e-2f);
 }
 
+/// Beyond, floats skip integers: the count that is added would be another one.
+TEST(FilmSums, RefuseMoreRaysThanAFloatCounts) {
+  Film film(1, 1);
+  std::vector<float> sums(sums_per_pixel(film));
+  const auto with_rays = [&](uint32_t rays, uint32_t directions) {
+    std::vector<PixelSum> pixels(1);
+    pixels[0].camera_rays = rays;
+    pixels[0].directions = directions;
+    film.store({0, 0, 1, 1}, pixels);
+    read_sums(film, sums);
+  };
+  constexpr uint32_t kMost = 1u << 24;
+  EXPECT_NO_THROW(with_rays(kMost, kMost)) << "control";
+  EXPECT_THROW(with_rays(kMost + 1, kMost + 1), Error);
+  EXPECT_THROW(with_rays(1, kMost + 1), Error);
+}
+
 TEST(FilmSums, RefuseWhatIsNone) {
   const Scene scene = uneven_scene();
   FilmOf film(scene, {0, 9});

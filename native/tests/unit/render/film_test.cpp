@@ -42,6 +42,9 @@ TEST(Film, RefusesUnknownPassesAndWrongSizes) {
   std::vector<float> pixels(16);
   EXPECT_THROW(film.read_pass("combined", pixels), Error);
   EXPECT_THROW(film.read_pass("Depth", pixels), Error);
+  const Film coarser(1, 1);
+  EXPECT_NO_THROW(film.read_over(&coarser, pixels)) << "control";
+  EXPECT_THROW(film.read_over(&coarser, std::span(pixels).first(12)), Error);
   EXPECT_THROW(Film(0, 2), Error);
 }
 

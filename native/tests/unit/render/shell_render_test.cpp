@@ -11,6 +11,7 @@
 #include "render/vertex.h"
 #include "support/example_shell.h"
 #include "support/test_scene.h"
+#include "support/warnings.h"
 
 namespace velour {
 namespace {
@@ -379,7 +380,7 @@ TEST(ShellRender, WithoutTextureCoordinatesTheSurfaceStaysAndSaysSo) {
   Shot bare(test::square(1), shelled(field_of(test::wires(16, kRadius))));
   EXPECT_EQ(bare.alpha(0.5f), 1.0);
   ASSERT_EQ(bare.scene.info().warnings.size(), 1u);
-  EXPECT_NE(bare.scene.info().warnings[0].find("silhouette (VOTF)"), std::string::npos);
+  EXPECT_EQ(bare.scene.info().warnings[0].code, WarningCode::silhouettes_without_uvs);
 }
 
 TEST(ShellRender, AShellHigherThanTheSurfaceBendsSaysSo) {
@@ -408,8 +409,9 @@ TEST(ShellRender, AShellHigherThanTheSurfaceBendsSaysSo) {
   EXPECT_TRUE(warnings(1.8f, true).empty());
   const auto folded = warnings(2.2f, true);
   ASSERT_EQ(folded.size(), 1u);
-  EXPECT_NE(folded[0].find("radii of curvature down to 1 m"), std::string::npos) << folded[0];
-  EXPECT_NE(folded[0].find("they are 2.2 m wide"), std::string::npos) << folded[0];
+  EXPECT_EQ(folded[0].code, WarningCode::silhouette_folds);
+  EXPECT_NEAR(test::value_of<double>(folded[0], "radius"), 1, 0.005);
+  EXPECT_FLOAT_EQ(static_cast<float>(test::value_of<double>(folded[0], "tile")), 2.2f);
 }
 
 TEST(ShellRender, StaysSaneWhereItHasNoMeaning) {

@@ -9,6 +9,7 @@
 #include "base/error.h"
 #include "support/inputs.h"
 #include "support/test_data.h"
+#include "support/warnings.h"
 
 namespace velour {
 namespace {
@@ -152,9 +153,13 @@ TEST(ObjFile, FacesKeepWhatTheyName) {
   EXPECT_EQ(mesh.shading_normal(2, {0.2f, 0.2f}), Vec3(0, 0, 1));
   EXPECT_EQ(mesh.corner_uvs(0)[0], Vec2(0.25f, 0.5f));
   EXPECT_EQ(mesh.corner_uvs(2)[0], Vec2(0));
-  ASSERT_EQ(mesh.notes().size(), 2u);
-  EXPECT_NE(mesh.notes()[0].find("1 of 2 faces have no normals"), std::string::npos) << mesh.notes()[0];
-  EXPECT_NE(mesh.notes()[1].find("1 of 2 faces have no texture coordinates"), std::string::npos);
+  ASSERT_EQ(mesh.warnings().size(), 2u);
+  EXPECT_EQ(mesh.warnings()[0].code, WarningCode::faces_without_normals);
+  EXPECT_EQ(mesh.warnings()[1].code, WarningCode::faces_without_uvs);
+  for (const Warning& told : mesh.warnings()) {
+    EXPECT_EQ(test::value_of<uint64_t>(told, "faces"), 1u);
+    EXPECT_EQ(test::value_of<uint64_t>(told, "all"), 2u);
+  }
 }
 
 TEST(ObjFile, AllWaysToNameACorner) {

@@ -199,6 +199,7 @@ TEST(ObservationFile, CountsThatLieAreNamed) {
     expect_named(complaint([=](Json& json) { json["terms"]["count"] = uint64_t{1} << 40 | count; }), "terms.count");
   }
   expect_named(complaint([](Json& json) { json["terms"]["count"] = 3; }), "terms");
+  expect_named(complaint([](Json& json) { json["terms"] = {{"count", 0}, {"wl", ""}, {"light", ""}}; }), "hits.terms");
   expect_named(complaint(put("hits", "terms", 4, 0xffffffffu)), "hits.terms");
   expect_named(complaint(put("hits", "terms", 11, 0u)), "hits.terms");
 }

@@ -250,7 +250,7 @@ constexpr int kOwnLights = 2048;
 /// Appends directions that the material's own sampler generates from a rank-1 lattice.
 void append_own(const Material& material, const PreparedBrdf& point, std::vector<Vec3>& out) {
   for (int i = 0; i < kOwnLights; ++i) {
-    const double u = (i + 0.5) / kOwnLights, v = 0.6180339887498949 * i;
+    const double u = (i + 0.5) / kOwnLights, v = kGoldenRatio * i;
     out.push_back(material.sample_one(point, Vec2(u, v - std::floor(v))));
   }
 }

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <cstdio>
 #include <limits>
 #include <vector>
 #include "brdf/fit/fit_report.h"
@@ -21,44 +20,34 @@ constexpr double kBrushed = 0.1;      // logarithm of a factor
 constexpr double kDarkest = 0.001;    // albedo; black velvet and soot are brighter
 constexpr double kBrokenReciprocity = 0.1;
 
-std::string three_digits(double x) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.3g", x);
-  return text;
-}
-
-void warn_of_entries(const Measurement& measurement, std::vector<std::string>& warnings) {
+void warn_of_entries(const Measurement& measurement, std::vector<Warning>& warnings) {
   const EntryCounts& n = measurement.counts();
   const uint64_t possible = n.valid + n.invalid();
   if (static_cast<double>(n.invalid()) > kManyInvalid * static_cast<double>(possible)) {
-    warnings.push_back(std::to_string(n.invalid()) + " of " + std::to_string(possible) +
-                       " entries are invalid and were left out; errors are measured on the others");
+    warnings.push_back(warning<WarningCode::invalid_entries>({{"invalid", n.invalid()}, {"entries", possible}}));
   }
 }
 
-void warn_of_few_samples(size_t samples, bool all_data, std::vector<std::string>& warnings) {
+void warn_of_few_samples(size_t samples, bool all_data, std::vector<Warning>& warnings) {
   if (samples == 0 || samples >= kFewSamples) return;
   uint64_t judges = 0;
   for (uint64_t i = 0; i < samples; ++i) judges += held_out_sample(i);
-  warnings.push_back("the measurement has " + std::to_string(samples) +
-                     " samples: what lies between them is a guess, and the errors are measured on " +
-                     std::to_string(judges) + (all_data ? " fitted samples" : " held-out samples"));
+  warnings.push_back(
+      warning<WarningCode::few_samples>({{"samples", samples}, {"judged", judges}, {"held_out", !all_data}}));
 }
 
-void warn_of_azimuth(std::span<const IrregularSample> samples, std::vector<std::string>& warnings) {
+void warn_of_azimuth(std::span<const IrregularSample> samples, std::vector<Warning>& warnings) {
   const std::optional<AzimuthSpread> spread = azimuth_spread(samples);
   if (!spread || spread->turned < kBrushed || spread->turned < 2 * spread->alike) return;
-  warnings.push_back("the surface is anisotropic: " + std::to_string(spread->turned_pairs) +
-                     " pairs of samples that differ only in azimuth differ by a factor of " +
-                     three_digits(std::exp(spread->turned)) + " (median), pairs with the same azimuth by " +
-                     three_digits(std::exp(spread->alike)) +
-                     "; irregular samples are fitted as isotropic, so the model is a mean over azimuths. Use a table "
-                     "with azimuths (docs/reference/measurement_formats.md, velour-table) to keep them");
+  warnings.push_back(warning<WarningCode::anisotropic_samples>({{"pairs", spread->turned_pairs},
+                                                                {"factor", std::exp(spread->turned)},
+                                                                {"same_azimuth_factor", std::exp(spread->alike)}}));
 }
 
 /// Names the view whose noise exceeds its tolerance by the largest factor.
-void warn_of_noise(const Comparison& errors, double tolerance, std::vector<std::string>& warnings) {
-  int worst = 0, count = 0;
+void warn_of_noise(const Comparison& errors, double tolerance, std::vector<Warning>& warnings) {
+  int worst = 0;
+  uint64_t count = 0;
   double most = 1;
   for (const int degrees : kHeldOutViews) {
     const auto noise = errors.noise_by_view_angle.at(std::to_string(degrees));
@@ -68,67 +57,52 @@ void warn_of_noise(const Comparison& errors, double tolerance, std::vector<std::
     if (*noise / limit > most) most = *noise / limit, worst = degrees;
   }
   if (count == 0) return;
-  warnings.push_back("the measurement's own noise exceeds the tolerance at " + std::to_string(count) +
-                     " of the reported views; at " + std::to_string(worst) +
-                     " degrees, values that symmetry or reciprocity should make equal differ by " +
-                     three_digits(*errors.noise_by_view_angle.at(std::to_string(worst))) +
-                     ". A smaller error is meaningless there, and a larger tolerance saves lobes");
+  warnings.push_back(warning<WarningCode::noise_exceeds_tolerance>(
+      {{"count", count},
+       {"worst", static_cast<double>(worst)},
+       {"difference", *errors.noise_by_view_angle.at(std::to_string(worst))}}));
 }
 
-/// Names views as "view 5 degrees" or "views 5, 30 degrees", with the smallest of their values.
-class Views {
- public:
-  void add(int degrees, double value) {
-    angles_ += (count_++ == 0 ? "" : ", ") + std::to_string(degrees);
-    least_ = std::min(least_, value);
-  }
-  bool empty() const { return count_ == 0; }
-  std::string names() const { return (count_ == 1 ? "view " : "views ") + angles_ + " degrees"; }
-  std::string least() const { return three_digits(least_); }
+/// Views, in degrees, and the smallest of their shares.
+struct Views {
+  std::vector<double> degrees;
+  double share = std::numeric_limits<double>::infinity();
 
- private:
-  std::string angles_;
-  int count_ = 0;
-  double least_ = std::numeric_limits<double>::infinity();
+  void add(int view, double value) {
+    degrees.push_back(view);
+    share = std::min(share, value);
+  }
 };
 
-void warn_of_narrow_views(const Comparison& errors, std::vector<std::string>& warnings) {
+void warn_of_narrow_views(const Comparison& errors, std::vector<Warning>& warnings) {
   Views views;
   for (const auto& [degrees, share] : errors.narrow_views) views.add(degrees, share);
-  if (views.empty()) return;
-  warnings.push_back(views.names() +
-                     ": the highlight, or a lobe of the model, is narrower than the spacing of the 4096 directions "
-                     "that measure the error, which capture as little as " +
-                     views.least() + " of its energy; the error was measured with closer directions instead");
+  if (views.degrees.empty()) return;
+  warnings.push_back(warning<WarningCode::narrow_highlight>({{"views", views.degrees}, {"share", views.share}}));
 }
 
-void warn_of_holes(const Comparison& errors, std::vector<std::string>& warnings) {
+void warn_of_holes(const Comparison& errors, std::vector<Warning>& warnings) {
   Views views;
   for (const auto& [degrees, share] : errors.covered_share) {
     if (share < kFewLights && errors.by_view_angle.at(std::to_string(degrees))) views.add(degrees, share);
   }
-  if (views.empty()) return;
-  warnings.push_back(views.names() + ": the measurement covers as little as " + views.least() +
-                     " of the light directions; errors are measured on these, and elsewhere the model is a guess");
+  if (views.degrees.empty()) return;
+  warnings.push_back(warning<WarningCode::partial_coverage>({{"views", views.degrees}, {"share", views.share}}));
 }
 
-void warn_of_nothing_to_judge(const Comparison& errors, std::vector<std::string>& warnings) {
+void warn_of_nothing_to_judge(const Comparison& errors, std::vector<Warning>& warnings) {
   const bool judged = std::any_of(errors.by_view_angle.begin(), errors.by_view_angle.end(),
                                   [](const auto& entry) { return entry.second.has_value(); });
-  if (!judged) {
-    warnings.emplace_back("no reported view is covered: the error is not known and is reported as 1");
-  }
+  if (!judged) warnings.push_back(warning<WarningCode::no_view_covered>());
 }
 
-void warn_of_darkness(double albedo, double error, std::vector<std::string>& warnings) {
+void warn_of_darkness(double albedo, double error, std::vector<Warning>& warnings) {
   if (albedo == 0 && error > 0) {
-    warnings.push_back(
-        "the model is black: the measurement is darker than any value that can be fitted; check its scale");
+    warnings.push_back(warning<WarningCode::black_model>());
   } else if (albedo == 0) {
-    warnings.push_back("the measurement is black at every view; check that it is the right file");
+    warnings.push_back(warning<WarningCode::black_measurement>());
   } else if (albedo < kDarkest) {
-    warnings.push_back("albedo at most " + three_digits(albedo) +
-                       " at every view, darker than any known material; check the scale of the measurement");
+    warnings.push_back(warning<WarningCode::dark_measurement>({{"albedo", albedo}}));
   }
 }
 
@@ -138,15 +112,11 @@ bool is_not_reciprocal(const FitRecord& record) {
   return measured > kBrokenReciprocity && record.reciprocity > 0.5 * measured;
 }
 
-void warn_of_reciprocity(const FitRecord& record, std::vector<std::string>& warnings) {
+void warn_of_reciprocity(const FitRecord& record, std::vector<Warning>& warnings) {
   if (is_not_reciprocal(record)) {
-    warnings.push_back("the measurement is not reciprocal: exchanging light and view changes it by " +
-                       three_digits(*record.measured_reciprocity) +
-                       " (relative L2), and so does the model; paths traced from the camera and from the lights will "
-                       "give different images");
+    warnings.push_back(warning<WarningCode::measurement_not_reciprocal>({{"change", *record.measured_reciprocity}}));
   } else if (record.reciprocity > kBrokenReciprocity) {
-    warnings.push_back("the model is not reciprocal: exchanging light and view changes it by " +
-                       three_digits(record.reciprocity) + " (relative L2)");
+    warnings.push_back(warning<WarningCode::model_not_reciprocal>({{"change", record.reciprocity}}));
   }
 }
 

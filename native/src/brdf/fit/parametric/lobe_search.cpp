@@ -94,7 +94,7 @@ Start start_at(LobeSpace space, const LobeCandidate& candidate, const FitView& v
   for (int c = 0; c < 3; ++c) {
     const double moment = std::max(p.moment[c], 0.0);
     start.coefficient[c] = moment / p.norm_sq;
-    start.gain += view.scale() * kLuminanceShare[c] * moment * start.coefficient[c];
+    start.gain += view.scale() * kLuminance[c] * moment * start.coefficient[c];
   }
   return start;
 }

@@ -89,8 +89,8 @@ void leave_residual(const Linear& linear, FitView& view) {
   double plain = 0, pictures = 0;
   for (int c = 0; c < 3; ++c) {
     const ResidualSums squares = residual_sums(view.residual[c], view.share);
-    plain += kLuminanceShare[c] * squares.shared;
-    pictures += kLuminanceShare[c] * (squares.all - squares.shared);
+    plain += kLuminance[c] * squares.shared;
+    pictures += kLuminance[c] * (squares.all - squares.shared);
   }
   view.error = std::sqrt(plain / view.energy);
   view.picture_error = std::sqrt(std::max(pictures, 0.0) / view.picture_share());
@@ -108,7 +108,7 @@ LocalNormal local_normal(const P& model, const Linear& linear, const FitView& vi
 
   const Eigen::MatrixXd& beta = linear.coefficient;
   Eigen::MatrixXd weighted = beta;  // channel weight x coefficient
-  for (int c = 0; c < 3; ++c) weighted.col(c) *= kLuminanceShare[c];
+  for (int c = 0; c < 3; ++c) weighted.col(c) *= kLuminance[c];
   const Eigen::MatrixXd mixed = weighted * beta.transpose();
   LocalNormal out{Eigen::MatrixXf::Zero(model.parameter_count() * lobes, model.parameter_count() * lobes),
                   Eigen::VectorXd::Zero(model.parameter_count() * lobes)};
@@ -211,7 +211,7 @@ double error_of(const ParametricBrdf& brdf, const FitView& view) {
     for (int c = 0; c < 3; ++c) {
       const double weight = static_cast<double>(samples.sqrt_weight()[i]);
       const double left = weight * wl.z * f[c] - static_cast<double>(samples.target(c)[i]);
-      sum += kLuminanceShare[c] * left * left * static_cast<double>(view.share[i]);
+      sum += kLuminance[c] * left * left * static_cast<double>(view.share[i]);
     }
   }
   return std::sqrt(sum / view.energy);

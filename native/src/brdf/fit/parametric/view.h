@@ -29,9 +29,6 @@ inline constexpr double kHiding = 100;
 // Weight of the squared error of a guide.
 inline constexpr double kGuideWeight = 0.01;
 
-// Weights of the channels in the luminance.
-inline constexpr double kLuminanceShare[3] = {0.2126, 0.7152, 0.0722};
-
 /// A view of the fit. `error` is the relative L2 error of its f cos with channels weighted as in luminance, which is
 /// never below that of the luminance.
 struct FitView {

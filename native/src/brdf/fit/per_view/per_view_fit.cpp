@@ -59,9 +59,10 @@ Model bounded_model(const Measurement& measurement, const FittedSlices& all, con
     const FittedSlices fitted = within(budget, all, measurement.isotropic(), options);
     Model model = reported(measurement, all, fitted, options, progress);
     if (budget < whole) {
-      model.fit.warnings.push_back("the bound of " + std::to_string(options.max_bytes) + " bytes leaves " +
-                                   std::to_string(fitted.slices.size()) + " views and " +
-                                   std::to_string(std::get<PerViewBrdf>(model.body).lobe_count()) + " lobes");
+      model.fit.warnings.push_back(
+          warning<WarningCode::model_bounded>({{"bytes", options.max_bytes},
+                                               {"views", fitted.slices.size()},
+                                               {"lobes", std::get<PerViewBrdf>(model.body).center.size()}}));
     }
     const uint64_t size = size_of_per_view(model, options);
     if (size <= options.max_bytes) return model;
@@ -82,7 +83,7 @@ Model fit_per_view(const Measurement& measurement, const FitOptions& options, Pr
   check_options(options, LobeMixture::kCapacity / PerViewBrdf::usual_neighbors(measurement.isotropic()));
   progress.stage("sampling", 0.0, 0.1);
   MeasuredSlices measured = read_slices(measurement, kGrid, options, progress);
-  std::vector<std::string> warnings;
+  std::vector<Warning> warnings;
   warn_of_slices(measured, warnings);
   progress.stage("fitting", 0.1, 0.95);
   auto paths = fit_slices(measured.slices, options, progress);

@@ -42,7 +42,7 @@ class CoarseResidual {
     double gain = 0;
     for (size_t c = 0; c < 3; ++c) {
       const double moment = std::max(0.0, p.moment[c]);
-      gain += SliceSolver::kChannelWeight[c] * moment * moment;
+      gain += kLuminance[c] * moment * moment;
     }
     return gain / std::max(p.norm_sq, 1e-30);
   }

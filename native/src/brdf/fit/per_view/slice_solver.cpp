@@ -53,7 +53,7 @@ void SliceSolver::add_lobe(const LobeShape& shape) {
 }
 
 double SliceSolver::relative_l2() const {
-  const Eigen::Vector3d w(kChannelWeight.data());
+  const Eigen::Vector3d w(kLuminance);
   const double error = std::max(0.0, w.dot(state_.residual_products * w));
   if (samples_.luminance_energy() > 0) return std::sqrt(error / samples_.luminance_energy());
   return error > 0 ? 1.0 : 0.0;
@@ -123,7 +123,7 @@ void SliceSolver::solve(State& state) const {
   gram(state.residual.first(3), padded, residual_products);
   state.residual_products = residual_products;
   state.objective = 0;
-  for (int c = 0; c < 3; ++c) state.objective += kChannelWeight[static_cast<size_t>(c)] * residual_products(c, c);
+  for (int c = 0; c < 3; ++c) state.objective += kLuminance[c] * residual_products(c, c);
 }
 
 /// Adds a channel to the normal equations, eliminating its positive peaks; peaks of 0 stay fixed.
@@ -143,7 +143,7 @@ void SliceSolver::eliminate_peaks(const Eigen::MatrixXd& products, int channel, 
   const Eigen::MatrixXd mixed = products(term, derivative);
   const Eigen::MatrixXd own = products(derivative, derivative);
   const Eigen::MatrixXd reduced = own - mixed.transpose() * values.ldlt().solve(mixed);
-  const double weight = kChannelWeight[static_cast<size_t>(channel)];
+  const double weight = kLuminance[channel];
   for (size_t p = 0; p < row.size(); ++p) {
     const double peak_p = weight * state_.peaks(row[p] / 3, channel);
     step.scale[row[p]] +=
@@ -175,7 +175,7 @@ SliceSolver::Step SliceSolver::linearize() {
   for (int c = 0; c < 3; ++c) {
     eliminate_peaks(products, c, step);
     for (Index r = 0; r < unknowns; ++r) {
-      step.slope[r] += kChannelWeight[static_cast<size_t>(c)] * state_.peaks(r / 3, c) * slopes(r, c);
+      step.slope[r] += kLuminance[c] * state_.peaks(r / 3, c) * slopes(r, c);
     }
   }
   // Both tangents share one scale, so that the step does not depend on their rotation about the center.
@@ -245,8 +245,7 @@ int SliceSolver::least_important() const {
   for (int j = 0; j < count(); ++j) {
     double cost = 0;  // rise of E if lobe j is removed and the other peaks are solved for again
     for (int c = 0; c < 3; ++c) {
-      cost += kChannelWeight[static_cast<size_t>(c)] * state_.peaks(j, c) * state_.peaks(j, c) /
-              std::max(inverse(j, j), 1e-300);
+      cost += kLuminance[c] * state_.peaks(j, c) * state_.peaks(j, c) / std::max(inverse(j, j), 1e-300);
     }
     if (cost < least_cost) least_cost = cost, least = j;
   }

@@ -2,7 +2,6 @@
 // (docs/engine/brdf_fitting.md).
 #pragma once
 
-#include <array>
 #include <vector>
 
 #include "base/progress.h"
@@ -26,7 +25,6 @@ struct SliceLobe {
 /// so one Gram matrix of the J values and 3 J derivatives serves all channels.
 class SliceSolver {
  public:
-  static constexpr std::array<double, 3> kChannelWeight{0.2126, 0.7152, 0.0722};
 
   SliceSolver(Kernel kernel, const SliceSamples& samples, const Progress& progress);
 

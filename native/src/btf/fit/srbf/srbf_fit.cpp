@@ -214,10 +214,8 @@ uint32_t SrbfFitter::search_points(size_t most) {
   const FitExtent extent = extent_of(measurement_, options_, sides_[0].directions, sides_.size(), most);
   const uint32_t points = search_points_within(options_.memory, extent);
   if (points < usual) {
-    warnings_.push_back("within the memory allowed lobes are chosen by " + std::to_string(points) +
-                        " places in place of " + std::to_string(usual) +
-                        ", which makes another model, as a rule a worse one; " +
-                        megabytes(memory_for_all_points(extent)) + " would leave them all");
+    warnings_.push_back(warning<WarningCode::memory_limits_fit>(
+        {{"points", points}, {"usual", usual}, {"memory", memory_for_all_points(extent)}}));
   }
   return points;
 }

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <nlohmann/json.hpp>
+#include <regex>
 
 #include "brdf/fit/fit_report.h"
 #include "brdf/fit/parametric/parametric_fit.h"
@@ -54,12 +56,6 @@ FitOptions fit_options() {
   FitOptions options;
   options.max_lobes = 6;
   return options;
-}
-
-std::string all_of(const std::vector<std::string>& sentences) {
-  std::string all;
-  for (const std::string& s : sentences) all += s + '\n';
-  return all;
 }
 
 /// Random light directions with solid angles: a third even, a third about the mirror direction and a third about the
@@ -188,12 +184,13 @@ TEST_P(FailureModes, AreSurvivedAndTold) {
   const auto material = make_material(model, 0);
   expect_sound(*material);
   expect_honest(*material, hostile, model->fit);
-  const std::string warnings = all_of(model->fit.warnings);
+  const std::string warnings = warnings_json(model->fit.warnings).dump();
   RecordProperty("warnings", warnings);
   RecordProperty("reciprocity", std::to_string(model->fit.reciprocity));
-  for (const std::string& sentence : hostile.told) {
-    if (sentence == "exceeds" && keeps_its_tolerance(model->fit)) continue;  // and says so truly: expect_honest
-    EXPECT_NE(warnings.find(sentence), std::string::npos) << warnings;
+  for (const std::string& told : hostile.told) {
+    const bool of_error = told.find("views_exceed_tolerance") != std::string::npos;
+    if (of_error && keeps_its_tolerance(model->fit)) continue;  // and says so truly: expect_honest
+    EXPECT_TRUE(std::regex_search(warnings, std::regex(told))) << told << " in " << warnings;
   }
 }
 

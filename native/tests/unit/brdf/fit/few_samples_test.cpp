@@ -9,6 +9,7 @@
 #include "math/sphere/random.h"
 #include "math/sphere/warp.h"
 #include "support/analytic_measurement.h"
+#include "support/warnings.h"
 
 namespace velour {
 namespace {
@@ -63,9 +64,10 @@ TEST(FewSamples, TooFewToHoldSomeOutAreFittedWholeOrNot) {
 
 TEST(FewSamples, AFewDozenAreTold) {
   const Model model = fitted(60);
-  bool told = false;
-  for (const std::string& w : model.fit.warnings) told |= w.find("has 60 samples") != std::string::npos;
-  EXPECT_TRUE(told);
+  const Warning* told = test::find_warning(model.fit.warnings, WarningCode::few_samples);
+  ASSERT_NE(told, nullptr);
+  EXPECT_EQ(test::value_of<uint64_t>(*told, "samples"), 60u);
+  EXPECT_EQ(test::value_of<uint64_t>(*told, "held_out"), 1u);
   EXPECT_LT(model.fit.albedo_max, 10);
 }
 

@@ -11,6 +11,7 @@
 #include "brdf/fit/error/compare.h"
 #include "brdf/measure/held_out.h"
 #include "support/analytic_measurement.h"
+#include "support/warnings.h"
 
 namespace velour {
 namespace {
@@ -40,7 +41,7 @@ TEST_P(PerViewFit, ADiffuseMaterialMeetsTheTolerance) {
   Progress progress;
   const Model model = fit_per_view(AnalyticMeasurement(test::lambert), options, progress);
   expect_sound(model);
-  EXPECT_TRUE(model.fit.warnings.empty()) << model.fit.warnings.front();
+  EXPECT_EQ(model.fit.warnings, std::vector<Warning>{});
   for (const auto& [view, error] : model.fit.by_view_angle)
     EXPECT_LE(error.value(), view == "85" ? 0.04 : 0.02) << view;
   EXPECT_NEAR(model.fit.albedo_max, 0.5, 0.01);
@@ -169,9 +170,9 @@ TEST(PerViewFitRules, UncoveredViewsAreLeftOutAndNamed) {
   const Model model = fit_per_view(half, options, progress);
   for (const Vec3& v : lobes_of(model).views) EXPECT_GT(v.z, std::cos(radians_from(70.0f)));
   EXPECT_FALSE(model.fit.by_view_angle.at("75").has_value());
-  std::string all;
-  for (const std::string& w : model.fit.warnings) all += w + '\n';
-  EXPECT_NE(all.find("view 75 degrees: the measurement does not cover it"), std::string::npos) << all;
+  const Warning* told = test::find_warning(model.fit.warnings, WarningCode::views_not_covered);
+  ASSERT_NE(told, nullptr);
+  EXPECT_EQ(test::value_of<std::vector<double>>(*told, "views"), (std::vector<double>{75, 85}));
 }
 
 TEST(PerViewFitRules, ViewsThatMissTheToleranceAreNamed) {
@@ -181,8 +182,13 @@ TEST(PerViewFitRules, ViewsThatMissTheToleranceAreNamed) {
   Progress progress;
   const Model model = fit_per_view(AnalyticMeasurement(test::ggx(0.3f, 0.3f)), options, progress);
   ASSERT_FALSE(model.fit.warnings.empty());
-  EXPECT_EQ(model.fit.warnings[0].find("view 5 degrees: relative L2 "), 0u);
-  EXPECT_NE(model.fit.warnings[4].find("exceeds the tolerance 0.002"), std::string::npos);
+  const Warning& told = model.fit.warnings[0];
+  EXPECT_EQ(told.code, WarningCode::views_exceed_tolerance);
+  EXPECT_EQ(test::value_of<std::vector<double>>(told, "views"), (std::vector<double>{5, 30, 60, 75, 85}));
+  const auto errors = test::value_of<std::vector<double>>(told, "errors");
+  EXPECT_EQ(errors.front(), *model.fit.by_view_angle.at("5"));
+  EXPECT_GT(errors.back(), 0.002);
+  EXPECT_EQ(test::value_of<double>(told, "tolerance"), 0.001);
 }
 
 TEST(PerViewFitRules, OfManyViewsThatMissTheToleranceTwelveAreNamed) {
@@ -191,12 +197,12 @@ TEST(PerViewFitRules, OfManyViewsThatMissTheToleranceTwelveAreNamed) {
   options.tolerance = 0.001;
   Progress progress;
   const Model model = fit_per_view(AnalyticMeasurement(test::ggx(0.3f, 0.3f)), options, progress);
-  const auto& warnings = model.fit.warnings;
-  const auto found = std::ranges::find_if(warnings, [](auto& w) { return w.starts_with("fitted views that miss"); });
-  ASSERT_NE(found, warnings.end());
-  const std::string names = found->substr(0, found->find(';'));
-  EXPECT_EQ(std::ranges::count(names, ','), 11) << names;
-  EXPECT_NE(names.find(" more of "), std::string::npos) << names;
+  const Warning* found = test::find_warning(model.fit.warnings, WarningCode::fitted_views_exceed_tolerance);
+  ASSERT_NE(found, nullptr);
+  EXPECT_EQ(test::value_of<std::vector<double>>(*found, "views").size(), 12u);
+  EXPECT_TRUE(test::value_of<std::vector<double>>(*found, "azimuths").empty()) << "isotropic";
+  EXPECT_GT(test::value_of<uint64_t>(*found, "missed"), 12u);
+  EXPECT_LE(test::value_of<uint64_t>(*found, "missed"), test::value_of<uint64_t>(*found, "fitted"));
 }
 
 TEST(PerViewFitRules, TheBoundInBytesHolds) {
@@ -209,7 +215,7 @@ TEST(PerViewFitRules, TheBoundInBytesHolds) {
     const Model model = fit_per_view(glossy, options, progress);
     expect_sound(model);
     EXPECT_LE(lobes_of(model).parameter_bytes(), bytes);
-    EXPECT_NE(model.fit.warnings.back().find("the bound of"), std::string::npos);
+    EXPECT_EQ(model.fit.warnings.back().code, WarningCode::model_bounded);
   }
 }
 

@@ -100,7 +100,7 @@ TEST(SliceSolver, GradientFollowsCentralDifferencesOfTheObjective) {
     for (int c = 0; c < 3; ++c) {
       for (size_t i = 0; i < samples.count(); ++i) {
         slope -=
-            2 * SliceSolver::kChannelWeight[static_cast<size_t>(c)] * solver.residual(c)[i] * lobes[j].peak[c] * k[i];
+            2 * kLuminance[c] * solver.residual(c)[i] * lobes[j].peak[c] * k[i];
       }
     }
     double objective[2];

@@ -76,6 +76,20 @@ TEST(Load, CornellBehindCommentsOfAnyLength) {
   }
 }
 
+TEST(Load, IrregularSamplesCanBeCancelled) {
+  const std::string path = test::scratch_folder() / "a.brdf";
+  write_file(path, bytes_of(text_of_cornell("", "\n")));
+  Progress progress;
+  EXPECT_EQ(load_measurement(path, progress)->samples().size(), 60u) << "control";
+  progress.cancel();
+  try {
+    load_measurement(path, progress);
+    FAIL() << "was read to the end";
+  } catch (const Error& error) {
+    EXPECT_EQ(error.status(), Status::cancelled);
+  }
+}
+
 TEST(Load, NamesOtherFormatsAndWhatToDo) {
   const std::pair<std::string, const char*> others[] = {
       {"\x89HDF\r\n\x1a\n....", "AxF"},       {"7z\xbc\xaf\x27\x1c....", ".sbsar"},

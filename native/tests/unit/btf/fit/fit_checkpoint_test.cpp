@@ -9,6 +9,7 @@
 #include "base/file.h"
 #include "btf/fit/btf_fit.h"
 #include "support/striped_btf.h"
+#include "support/warnings.h"
 
 namespace velour {
 namespace {
@@ -59,7 +60,9 @@ TEST_F(Checkpoint, OfAnotherFitIsIgnoredWithASentence) {
   const FitCheckpoint other = made(true, "another key");
   EXPECT_FALSE(other.matrix("matrix", 5, 4));
   ASSERT_EQ(other.warnings().size(), 1u);
-  EXPECT_NE(other.warnings()[0].find("belongs to a fit of another BTF"), std::string::npos) << other.warnings()[0];
+  EXPECT_EQ(other.warnings()[0].code, WarningCode::fit_not_resumed);
+  const auto reason = test::value_of<std::string>(other.warnings()[0], "reason");
+  EXPECT_NE(reason.find("belongs to a fit of another BTF"), std::string::npos) << reason;
   EXPECT_FALSE(made(false).matrix("matrix", 5, 4));  // not asked for
 }
 

@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <functional>
+#include "support/warnings.h"
 
 namespace velour {
 namespace {
@@ -70,12 +71,16 @@ TEST(SizeSearch, SaysByHowMuchTheToleranceIsMissed) {
   const SizeSearch bounded = searched(0.1, 49, expected);
   EXPECT_FALSE(bounded.met());
   EXPECT_EQ(bounded.best(), 49u);
-  EXPECT_NE(bounded.shortfall().find("0.1414"), std::string::npos) << bounded.shortfall();
-  EXPECT_NE(bounded.shortfall().find("about 100000 bytes"), std::string::npos) << bounded.shortfall();
-  const SizeSearch far = searched(0.01, 49, expected);
-  EXPECT_NE(far.shortfall().find("more than 200000 bytes"), std::string::npos) << far.shortfall();
-  const SizeSearch never = searched(0.01, kPoints - 1, expected);
-  EXPECT_NE(never.shortfall().find("a tolerance of 0.0728"), std::string::npos) << never.shortfall();
+  const Warning told = bounded.shortfall();
+  EXPECT_EQ(told.code, WarningCode::tolerance_needs_bytes);
+  EXPECT_NEAR(test::value_of<double>(told, "error"), 0.1414, 5e-5);
+  EXPECT_EQ(test::value_of<uint64_t>(told, "enough"), 100000u);
+  const Warning far = searched(0.01, 49, expected).shortfall();
+  EXPECT_EQ(far.code, WarningCode::tolerance_needs_more_bytes);
+  EXPECT_EQ(test::value_of<uint64_t>(far, "largest"), 200000u);
+  const Warning never = searched(0.01, kPoints - 1, expected).shortfall();
+  EXPECT_EQ(never.code, WarningCode::tolerance_out_of_reach);
+  EXPECT_NEAR(test::value_of<double>(never, "reachable"), 0.0728, 5e-5);
 }
 
 TEST(SizeSearch, KeepsTheCurveAtTheHeightsThatWereMeasured) {

@@ -9,6 +9,7 @@
 #include "btf_support.h"
 #include "support/inputs.h"
 #include "support/test_data.h"
+#include "support/warnings.h"
 
 namespace velour {
 namespace {
@@ -83,8 +84,11 @@ TEST(BtfExport, PicturesOutsideTheFolderOfTheirIndexAreToldOf) {
   moved.close();
   const auto read = load_btf(elsewhere);
   ASSERT_EQ(read->warnings().size(), 1u);
-  EXPECT_NE(read->warnings()[0].find("20 of 20 images are outside"), std::string::npos) << read->warnings()[0];
-  EXPECT_EQ(read->details().back().second, read->warnings()[0]);
+  const Warning told = read->warnings()[0];
+  EXPECT_EQ(told.code, WarningCode::images_outside_folder);
+  EXPECT_EQ(test::value_of<uint64_t>(told, "outside"), 20u);
+  EXPECT_EQ(test::value_of<uint64_t>(told, "images"), 20u);
+  EXPECT_NE(test::value_of<std::string>(told, "first").find("pictures"), std::string::npos);
   test::record_input("CSV index of a BTF", "pictures outside its folder", "read, with a warning");
 }
 

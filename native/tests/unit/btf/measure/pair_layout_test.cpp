@@ -9,6 +9,7 @@
 
 #include "base/error.h"
 #include "support/test_data.h"
+#include "support/warnings.h"
 
 namespace velour {
 namespace {
@@ -67,12 +68,15 @@ TEST(PairLayout, HoldsViewsWithLightsOfTheirOwn) {
 }
 
 TEST(PairLayout, TellsOfDirectionsThatAreThereTwice) {
-  EXPECT_EQ(repeated_directions({capture_directions(), even_directions(250)}), "");
-  EXPECT_EQ(repeated_directions({{{30, 0}, {30, 0.01}}, below({{30, 0}, {30.01, 0}})}), "");
+  EXPECT_FALSE(repeated_directions({capture_directions(), even_directions(250)}));
+  EXPECT_FALSE(repeated_directions({{{30, 0}, {30, 0.01}}, below({{30, 0}, {30.01, 0}})}));
   const std::vector<PolarAngles> pole{{0, 0}, {0, 90}, {0, 180}, {30, 7}},
       seam{{40, 0}, {40, 360}, {50, -30}, {50, 330}};
-  EXPECT_NE(repeated_directions({pole, {{10, 0}}}).find("2 of its views and 0 of its lights"), std::string::npos);
-  EXPECT_NE(repeated_directions({{{10, 0}}, seam}).find("0 of its views and 2 of its lights"), std::string::npos);
+  const auto repeated = [](uint64_t views, uint64_t lights) {
+    return warning<WarningCode::repeated_directions>({{"views", views}, {"lights", lights}});
+  };
+  EXPECT_EQ(repeated_directions({pole, {{10, 0}}}), repeated(2, 0));
+  EXPECT_EQ(repeated_directions({{{10, 0}}, seam}), repeated(0, 2));
 }
 
 TEST(PairLayout, RefusesWhatIsNoLayout) {
