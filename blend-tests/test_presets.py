@@ -70,7 +70,7 @@ class Presets(BlenderTest):
             "repeats": 0,
         }
         path = folder / "velour_presets.blend"
-        _script("presets_blend").write({"path": str(path), "presets": [preset]})
+        _script("bench.inside.presets").write({"path": str(path), "presets": [preset]})
         return path
 
     def test_assets_say_what_they_are_and_hold_their_models(self):

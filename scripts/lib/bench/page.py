@@ -25,8 +25,8 @@ def table(rows: Iterable, header: str, cells: str) -> str:
     """A Markdown table. `header`: the titles, between bars; `cells`: the template of a row, likewise.
 
     Fields of the template are those of str.format, for the entries of a row. None is "-", or empty if the
-    field has no format. Formats may begin with a factor: k and M divide by a thousand and a million, m
-    multiplies by a thousand.
+    field has no format. The format p is a percentage; others may begin with a factor: k and M divide by a
+    thousand and a million, m multiplies by a thousand.
     """
     lines = [header, " | ".join(["---"] * len(header.split("|"))), *(filled(cells, row) for row in rows)]
     return "".join(f"| {line} |\n" for line in lines)
@@ -36,6 +36,8 @@ class _Cells(string.Formatter):
     def format_field(self, value, spec):
         if value is None:
             return "-" if spec else ""
+        if spec == "p":
+            return f"{100 * value:.2f} %"
         if spec[:1] in _SCALES:
             value, spec = value * _SCALES[spec[0]], spec[1:]
         return super().format_field(value, spec)

@@ -15,7 +15,7 @@ NAME = "tile"  # name of the material of a captured tile; its BTF is in NAME.btf
 def empty(size, samples, bounces):
     """An empty scene for Velour, with the display transform that changes least."""
     bpy.ops.wm.read_factory_settings(use_empty=True)
-    addon_utils.enable("velour", default_set=False, handle_error=_raise)
+    addon_utils.enable("velour", default_set=False, handle_error=refuse)
     scene = bpy.context.scene
     scene.render.engine = "VELOUR"
     scene.render.resolution_x, scene.render.resolution_y = size
@@ -24,7 +24,7 @@ def empty(size, samples, bounces):
     return scene
 
 
-def _raise(error):
+def refuse(error):
     raise error
 
 
