@@ -8,26 +8,25 @@ import uuid
 from collections import Counter
 
 import numpy as np
+import presets
 import pytest
 from command_line import environment
-from conftest import ROOT
-
-sys.path.insert(0, str(ROOT / "scripts/lib"))
-
-import preset_build
-import preset_preview
-from preset_table import CATALOGS, CLOTHS, METALS, PAINTS, PLAIN, PRESETS, Surface, Weave
+from conftest import ADDONS, ROOT
+from preset_table import CATALOGS, PRESETS, Surface, Weave
 from velour.native import Model, Tile
 
-SMALL = preset_build.Sizes(
-    rays=60_000, yarn_rays=60_000, texels=4, directions=20, samples=1, outline_texels=32
-)
+SMALL = presets.Sizes(rays=60_000, yarn_rays=60_000, texels=4, directions=20, samples=1, outline_texels=32)
 
 
 def test_has_what_it_is_to_have():
-    assert Counter(preset.catalog for preset in PRESETS) == {METALS: 8, PAINTS: 6, PLAIN: 4, CLOTHS: 6}
+    assert Counter(preset.catalog for preset in PRESETS) == {
+        "Metals": 8,
+        "Paints": 6,
+        "Plastics and Papers": 4,
+        "Cloths": 6,
+    }
     for preset in PRESETS:
-        assert isinstance(preset.made_of, Weave if preset.catalog == CLOTHS else Surface), preset.name
+        assert isinstance(preset.made_of, Weave if preset.catalog == "Cloths" else Surface), preset.name
         assert preset.description, preset.name
         assert preset.tags, preset.name
 
@@ -52,7 +51,7 @@ def test_numbers_are_those_of_surfaces():
 
 @pytest.fixture(scope="module")
 def workshop(tmp_path_factory):
-    return preset_build.Workshop(tmp_path_factory.mktemp("presets"), SMALL, threads=2)
+    return presets.Workshop(tmp_path_factory.mktemp("presets"), SMALL, threads=2)
 
 
 def _preset(name):
@@ -74,15 +73,15 @@ def test_a_cloth_has_a_look_and_an_outline_and_is_made_once(workshop):
     assert workshop.build(tulle) == path
     assert path.stat().st_mtime_ns == before
     # Other numbers are another model; --fresh makes the same one anew, and once.
-    assert preset_build.Workshop(workshop.work, SMALL._replace(texels=5), 2).model_path(tulle) != path
-    fresh = preset_build.Workshop(workshop.work, SMALL, 2, fresh=True)
+    assert presets.Workshop(workshop.work, SMALL._replace(texels=5), 2).model_path(tulle) != path
+    fresh = presets.Workshop(workshop.work, SMALL, 2, fresh=True)
     assert fresh.model_path(tulle) == path
     assert not fresh.is_built(tulle)
 
 
 def test_a_picture_shows_the_material_on_a_backdrop(workshop):
     gold = _preset("Polished Gold")
-    pixels = preset_preview.picture(gold, workshop.build(gold), spp=8)
+    pixels = presets.picture(gold, workshop.build(gold), spp=8)
     assert (pixels.shape, pixels.dtype) == ((256, 256, 4), np.float32)
     assert 0 <= pixels.min() < pixels.max() <= 1
     assert (pixels[..., 3] == 1).all()
@@ -96,7 +95,7 @@ def test_the_script_refuses_what_is_not_there():
         [sys.executable, "-P", ROOT / "scripts/lib/presets.py", "--only", "Mithril"],
         capture_output=True,
         text=True,
-        env=environment(),
+        env=environment(PYTHONPATH=f"{ADDONS}:{ROOT / 'scripts/lib'}"),
     )
     assert done.returncode == 1
     assert "'mithril'" in done.stderr

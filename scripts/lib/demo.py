@@ -24,8 +24,18 @@ from bench.steps import Steps
 from bench.velour_cli import ROOT
 from velour.core import files
 from velour.core.machine import machine
-from velour.native import Measurement, Model, Scene, Tile, VelourError, fit_job, images, library, microsurface_job
-from velour.native import render_job
+from velour.native import (
+    Measurement,
+    Model,
+    Scene,
+    Tile,
+    VelourError,
+    fit_job,
+    images,
+    library,
+    microsurface_job,
+    render_job,
+)
 
 OUT = ROOT / "out/demo"
 _PICTURES = tuple(f"{n}.{suffix}" for n in ("model", "reference", "difference") for suffix in ("exr", "png"))
@@ -122,7 +132,10 @@ class Capture(NamedTuple):
 
 
 def default_measurement(parts: Parts) -> Capture:
-    step, folder = "capturing the default measurement", Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache")
+    step, folder = (
+        "capturing the default measurement",
+        Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache"),
+    )
     # Another build of the library may measure another surface.
     known = json.dumps([CAPTURE_SETTINGS, hashlib.sha256(library.library_path().read_bytes()).hexdigest()])
     stem = folder / f"velour/microsurface-{hashlib.sha256(known.encode()).hexdigest()[:16]}"
@@ -168,7 +181,11 @@ def _show_material(folder: Path, capture: Capture, parts: Parts) -> None:
     folder.mkdir(parents=True, exist_ok=True)
     make = lambda steps: _make_material(folder, capture.path, steps)  # noqa: E731
     made = parts.make(MATERIAL, folder, {"measurement": capture.path}, make)
-    report = made["numbers"] | {"capture_seconds": capture.seconds, "cached": capture.cached, "kept": made["kept"]}
+    report = made["numbers"] | {
+        "capture_seconds": capture.seconds,
+        "cached": capture.cached,
+        "kept": made["kept"],
+    }
     errors = ", ".join(f"{a} deg {e:.3f}" for a, e in report["by_view_angle"].items() if e is not None)
     print(f"fit     {report['lobes']} lobes, {report['bytes']} bytes, {report['fit_seconds']:.1f} s")
     print(f"        error {errors}")
@@ -194,7 +211,12 @@ def _make_material(folder: Path, measurement: Path, steps: Steps) -> dict:
     chart, axes = folder / "error_against_time.png", ("seconds", "relmse against the reference")
     charts.curves(chart, [("", rendered["curves"])], *axes, title=title)
     numbers = {name: fit[name] for name in ("relative_l2", "by_view_angle", "lobes", "bytes")}
-    numbers |= {"fit_seconds": fit["seconds"], "render_seconds": rendered["seconds"], "relmse": relmse, "rmse": rmse}
+    numbers |= {
+        "fit_seconds": fit["seconds"],
+        "render_seconds": rendered["seconds"],
+        "relmse": relmse,
+        "rmse": rmse,
+    }
     numbers["samples_per_second"] = rendered["samples_per_second"]
     return {"numbers": numbers, "warnings": fit["warnings"]}
 
@@ -265,7 +287,9 @@ def make_votf_pictures(
 def _add_objects(scene: Scene, tile: Tile, model: Model, geometry: bool) -> None:
     net, period = scene.add_model_material(model), tile.info()["period"][0]
     for surface, place in _placed(period):
-        structure = structured_mesh(surface, tile.mesh()._asdict(), period) if geometry else smooth_mesh(surface)
+        structure = (
+            structured_mesh(surface, tile.mesh()._asdict(), period) if geometry else smooth_mesh(surface)
+        )
         scene.add_instance(scene.add_mesh(**structure)[0], place, [net])
     if not geometry:
         scene.set_shell_tile(net, period)

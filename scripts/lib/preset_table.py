@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-import tomllib
 from dataclasses import dataclass, field
 from pathlib import Path
+
+import tomllib
 
 
 @dataclass(frozen=True)
@@ -43,7 +44,9 @@ def _surface(values: dict) -> Surface:
     return Surface(**{name: tuple(v) if isinstance(v, list) else v for name, v in values.items()})
 
 
-def _preset(name: str, catalog: str, description: str, tags: list, surface: dict | None = None, **weave) -> Preset:
+def _preset(
+    name: str, catalog: str, description: str, tags: list, surface: dict | None = None, **weave
+) -> Preset:
     if surface:
         made_of = _surface(surface)
     else:

@@ -22,27 +22,30 @@ class Page(NamedTuple):
 
 PAGES = {
     "blender_support": Page("features that render as in Cycles, and seconds of the export of large scenes"),
-    "btf_chart": Page("methods of BTF compression at equal bytes, on captured tiles and measured sets", (), "metrics"),
-    "chart": Page("error against time of every strategy, beside Mitsuba and Cycles", ("product_bound",), "peers"),
+    "btf_chart": Page("methods of BTF compression at equal bytes, on tiles and measured sets", (), "metrics"),
+    "chart": Page(
+        "error against time of every strategy, beside other renderers", ("product_bound",), "peers"
+    ),
+    "denoise": Page("the compositor's Denoise node with Velour's passes"),
     "equal_noise": Page("processor time of Cycles and Velour at the same noise"),
-    "failure_modes": Page("claimed and true errors of models of hostile measurements", ("test_failure_modes",)),
+    "failure_modes": Page("errors of models of hostile measurements", ("test_failure_modes",)),
     "figures": Page("the dissertation's figures 7.11 to 7.13, with its strategy, beside references"),
-    "figures_check": Page("the check of the references of the figures by uniform samples", ("uniform_moments",)),
+    "figures_check": Page("the references of the figures beside uniform samples", ("uniform_moments",)),
     "for_scene": Page("what scene models save and cost, and what is reported outside of their scene"),
-    "inputs": Page("files of other programs, from the tests of the readers",
-                   ("test_image", "test_mesh", "test_brdf", "test_btf")),
+    "inputs": Page("files of other programs", ("test_image", "test_mesh", "test_brdf", "test_btf")),
     "measure": Page("fits and renders of the test scenes"),
     "mesostructures": Page("pictures of the procedural tiles"),
     "models": Page("every model of every material beside GGX and Principled", ("evaluation_cost",)),
     "normal_maps": Page("approximations in Cycles with and without their normal maps"),
     "perceptual": Page("what a tolerance of the fit looks like: FLIP against the tolerance", (), "metrics"),
-    "performance": Page("where the time of a render goes, and how close kernels come to the machine's peak"),
+    "performance": Page("where the time of a render goes, and the speed of kernels"),
     "real_geometry": Page("objects with a tile's geometry beside the same objects with its BTF"),
+    "realtime": Page("frames per second and errors of the real-time viewport"),
     "test_times": Page("seconds of the last run of scripts/test"),
     "viewport": Page("how long the rendered viewport takes to show a change"),
     "votf": Page("silhouettes, light and time of VOTFs beside real geometry"),
     "votf_tables": Page("ways to store which texels are covered in each view", ("occlusion_tables",)),
-}  # fmt: skip
+}
 
 
 def main(words: list[str]) -> int:
@@ -104,7 +107,11 @@ def _arguments(module, name: str, words: list[str]) -> argparse.Namespace:
     parser = argparse.ArgumentParser(prog=f"scripts/bench {name}", description=about)
     add = parser.add_argument
     add("--quick", action="store_true", help="a small version, to try the script; its page stays in build")
-    add("--page", action="store_true", help="writes the page from the numbers of the last run, measures nothing")
+    add(
+        "--page",
+        action="store_true",
+        help="writes the page from the numbers of the last run, measures nothing",
+    )
     add("--fresh", action="store_true", help="makes again what an earlier run has kept")
     add("--output", metavar="FOLDER", type=Path, help="folder of the page instead of docs/results")
     add("--work", metavar="FOLDER", type=Path, help=f"folder of what is kept instead of build/{name}")
@@ -129,7 +136,9 @@ def _reader(name: str, value):
     if not isinstance(value, tuple):
         return type(value)
     kind = type(value[0]) if value else str
-    return lambda text: tuple(kind(part) for part in text.split("x" if name.endswith("size") else ",") if part)
+    return lambda text: tuple(
+        kind(part) for part in text.split("x" if name.endswith("size") else ",") if part
+    )
 
 
 def _measure(module, name: str, args: argparse.Namespace) -> None:

@@ -34,7 +34,8 @@ def run(
     report = log.with_suffix(".report.json")
     report.unlink(missing_ok=True)
     done = f"bench.inside.start({script!r}, {json.dumps(task)!r}, {str(report)!r})"
-    code = f"import sys; sys.path[:0] = {[str(ROOT / 'scripts/lib'), str(ROOT / 'blend-tests')]!r}; import bench.inside; {done}"
+    path = [str(ROOT / "scripts/lib"), str(ROOT / "blend-tests")]
+    code = f"import sys; sys.path[:0] = {path!r}; import bench.inside; {done}"
     command = [*_blender(version), "-b", "--factory-startup", "-noaudio"]
     # The order matters: --python-exit-code applies only to the arguments after it.
     command += ["--python-exit-code", "7", *options, "--python-expr", code]

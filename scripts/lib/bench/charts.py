@@ -59,8 +59,8 @@ def curves(
     """Panels of a title and curves: name -> points (x, y).
 
     `y`: the label of the axis, or one per row of panels, whose titles stand on top of the columns then.
-    `levels`: dotted lines, in all panels or by title. `log`: the logarithmic axes, on which points that are not
-    positive are left out. `shared`: all panels have the same axes.
+    `levels`: dotted lines, in all panels or by title. `log`: the logarithmic axes; points that are not
+    positive there are left out. `shared`: all panels have the same axes.
     """
     columns = min(columns, len(panels))
     rows = -(-len(panels) // columns)

@@ -142,7 +142,9 @@ def _scene(run: Run, name: str, material: str) -> Scene:
 
 
 def _ours(run: Run, scene: Scene, rays: int, strategy: str) -> Picture:
-    return run.render(scene, DIRECTIONS * rays, size=run.settings.peer_size, split=DIRECTIONS, strategy=strategy)
+    return run.render(
+        scene, DIRECTIONS * rays, size=run.settings.peer_size, split=DIRECTIONS, strategy=strategy
+    )
 
 
 def _reference(run: Run, scene: Scene) -> Reference:

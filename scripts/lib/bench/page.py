@@ -59,8 +59,8 @@ def replaced(page: str, part: str, text: str, script: str = "models") -> str:
 
 
 def text(template: str, values: Mapping) -> str:
-    """A template of the folder `pages`, filled. `values`: its fields, among them the conditions of the numbers,
-    which the field `conditions` states."""
+    """A template of the folder `pages`, filled. `values`: its fields, among them the conditions, which the
+    field `conditions` states."""
     source = (_TEMPLATES / f"{template}.md").read_text(encoding="utf-8")
     sentence = {"conditions": provenance.sentence(values)} if "commit" in values else {}
     return filled(source, {**sentence, **values})

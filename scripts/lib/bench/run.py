@@ -88,7 +88,13 @@ class Run:
         self.progress.expect(_cost(spp, size or self.settings.size), count)
 
     def render(
-        self, scene: Scene, spp: int, *, seed: int | None = None, size: tuple[int, int] | None = None, **options
+        self,
+        scene: Scene,
+        spp: int,
+        *,
+        seed: int | None = None,
+        size: tuple[int, int] | None = None,
+        **options,
     ) -> Picture:
         """`options`: command line options of `velour render`."""
         size = size or self.settings.size
@@ -176,7 +182,9 @@ def read_rgb(path: Path) -> np.ndarray:
 
 def key(parameters: dict) -> str:
     """Hash of the parameters (files by content, not by name), the library and the machine."""
-    known = {name: _hash(value) if isinstance(value, Path) else str(value) for name, value in parameters.items()}
+    known = {
+        name: _hash(value) if isinstance(value, Path) else str(value) for name, value in parameters.items()
+    }
     text = json.dumps([known, _hash(_LIBRARY), machine()], sort_keys=True)
     return hashlib.sha256(text.encode()).hexdigest()[:16]
 

@@ -209,4 +209,6 @@ def write_sheet(path: Path, strips: int = 96, half_angle: float = np.radians(80)
     v, a = np.meshgrid([0.0, 1.0], angle)
     normals = np.stack([0 * a, np.sin(a), np.cos(a)], axis=-1)
     points = normals + np.stack([length * (v - 0.5), 0 * a, 0 * a], axis=-1)
-    return write_grid(path, points[::-1], normals[::-1], np.stack([v, (a + half_angle) / length], axis=-1)[::-1])
+    return write_grid(
+        path, points[::-1], normals[::-1], np.stack([v, (a + half_angle) / length], axis=-1)[::-1]
+    )

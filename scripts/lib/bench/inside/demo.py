@@ -1,5 +1,5 @@
-"""The demo's scene: renders it with a model and with its measurement or BTF itself, and measures the points of the
-plot of error against time."""
+"""The demo's scene, rendered with a model and with its measurement or BTF itself, and the points of the plot
+of error against time."""
 
 import math
 

@@ -91,4 +91,3 @@ def _errors(material, sun, sockets, angle, folder):
 def _picture(engine, folder):
     bpy.context.scene.render.engine = engine
     return scenes.render(folder)[..., :3]
-

@@ -1,5 +1,5 @@
-"""Captures and compresses a tile; renders objects covered with its geometry, and the same objects with its BTF and
-with the model of the BTF."""
+"""Captures and compresses a tile; renders objects covered with its geometry, and the same objects with its
+BTF and with the model of the BTF."""
 
 import json
 import math

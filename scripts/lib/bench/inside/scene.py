@@ -87,8 +87,8 @@ def material(name="Material", shader="Principled BSDF", **inputs):
 
 
 def world(picture=None, strength=1.0, color=(0, 0, 0), rotation=0.0):
-    """`picture`: the path of an environment map, or the name of one that comes with Blender. `rotation`: about
-    the z axis, in degrees."""
+    """`picture`: the path of an environment map, or the name of one that comes with Blender. `rotation`:
+    about z, in degrees."""
     found = bpy.context.scene.world = bpy.data.worlds.new("World")
     found.use_nodes = True
     nodes, links = found.node_tree.nodes, found.node_tree.links
@@ -98,7 +98,9 @@ def world(picture=None, strength=1.0, color=(0, 0, 0), rotation=0.0):
     if picture:
         own = os.path.join(bpy.utils.system_resource("DATAFILES"), "studiolights", "world")
         image = nodes.new("ShaderNodeTexEnvironment")
-        image.image = bpy.data.images.load(picture if os.sep in picture else os.path.join(own, f"{picture}.exr"))
+        image.image = bpy.data.images.load(
+            picture if os.sep in picture else os.path.join(own, f"{picture}.exr")
+        )
         links.new(image.outputs["Color"], background.inputs["Color"])
         if rotation:
             mapping, place = nodes.new("ShaderNodeMapping"), nodes.new("ShaderNodeTexCoord")
@@ -145,10 +147,10 @@ class _ReportHandler(logging.Handler):
 
 
 def capture_and_compress(folder, capture, megabytes, captured=lambda: None):
-    """Captures the active object, a tile, as a BTF and makes the material NAME of it. Returns seconds and bytes.
+    """Captures the active object, a tile, as a BTF and makes the material NAME of it.
 
     `capture`: arguments of the operator; `megabytes`: 0: the library chooses. `captured` is called before the
-    fit."""
+    fit. Returns seconds and bytes."""
     btf = os.path.join(folder, f"{NAME}.btf")
     start = time.perf_counter()
     bpy.ops.velour.capture_btf(directory=btf, sides="ONE", **capture)

@@ -15,8 +15,9 @@ import bpy
 _ROOT = Path(__file__).resolve().parents[4]
 sys.path[:0] = [str(_ROOT / "scripts/lib"), str(_ROOT / "blend-tests")]
 
-from bench.inside import viewport_scenes
-from support import blender, viewport, window
+from support import blender, viewport, window  # noqa: E402
+
+from bench.inside import viewport_scenes  # noqa: E402
 
 SAMPLES = 8
 PICTURE = (1280, 720)  # size in real time

@@ -54,7 +54,9 @@ def write(run: Run, found: dict) -> None:
     rows = found["parity"]
     sentence = f"{provenance.sentence(found['conditions'])} Blender and Cycles {rows[0]['blender']}."
     for row in rows:  # pictures without noise have no z
-        row["errors"] = None if row["z"] is None else f"{row['z']:.1f}" if row["z"] < 100 else f"{row['z']:.0f}"
+        row["errors"] = (
+            None if row["z"] is None else f"{row['z']:.1f}" if row["z"] < 100 else f"{row['z']:.0f}"
+        )
     parity = page.table(
         rows,
         "feature | verdict | largest block difference, % | in standard errors",

@@ -91,7 +91,9 @@ def measure(run: Run) -> dict:
         own.speed_ratio = sorted(own.ratios)[len(own.ratios) // 2]
     study = Study(run)
     study.announce(len(contenders))
-    tiles = [study.captured(kind) for kind in own.tiles] + [study.measured(Path(path)) for path in own.btf_set]
+    tiles = [study.captured(kind) for kind in own.tiles] + [
+        study.measured(Path(path)) for path in own.btf_set
+    ]
     added, rows, interpolated = _before(run)
     # Starts with the most informative ratio, so that an interrupted run has it for all tiles.
     for ratio in sorted(own.ratios, key=lambda r: r != own.speed_ratio):
@@ -99,8 +101,14 @@ def measure(run: Run) -> dict:
     rows = [row for row in rows if row]
     for tile in () if own.add else tiles:
         _sheet(run, study, tile, contenders, rows)
-    interpolated |= {tile.name: study.compare(tile.held_out, tile.btf)["psnr"] for tile in tiles if tile.held_out}
-    return {"conditions": run.conditions(added_to="; ".join(added)), "rows": rows, "interpolated": interpolated}
+    interpolated |= {
+        tile.name: study.compare(tile.held_out, tile.btf)["psnr"] for tile in tiles if tile.held_out
+    }
+    return {
+        "conditions": run.conditions(added_to="; ".join(added)),
+        "rows": rows,
+        "interpolated": interpolated,
+    }
 
 
 def _before(run: Run) -> tuple[list[str], list[dict], dict]:
@@ -212,7 +220,13 @@ class Study:
         series, name = self._series(tile, method), f"compress-{key(self._series(tile, method))}"
         out = self._run.stem(name, series | {"bytes": size}).with_suffix(".velour")
         options = {k: v for k, v in series.items() if k != "btf"}
-        words = ("compress", tile.btf, "-o", out, *flags(options | {"bytes": size, "threads": self._run.threads}))
+        words = (
+            "compress",
+            tile.btf,
+            "-o",
+            out,
+            *flags(options | {"bytes": size, "threads": self._run.threads}),
+        )
         label = f"{method.name} of {tile.name}, {size} bytes"
         how = {"cost": _FIT_COST, "refusable": True}
         found = self._run.velour(label, name, series | {"bytes": size}, *words, **how)
@@ -346,7 +360,9 @@ class Results:
         # A later row replaces an earlier one, which --add has kept.
         self._rows = {(row["tile"], row["method"], row["ratio"]): row for row in rows}
         self.all = list(self._rows.values())
-        self.tiles, self.methods = (list(dict.fromkeys(r[name] for r in self.all)) for name in ("tile", "method"))
+        self.tiles, self.methods = (
+            list(dict.fromkeys(r[name] for r in self.all)) for name in ("tile", "method")
+        )
         self.ratios = sorted({row["ratio"] for row in self.all})
 
     def get(self, tile: str, method: str, ratio: int) -> dict | None:
@@ -375,7 +391,9 @@ def verdicts(results: Results) -> Iterator[dict]:
     ):
         # The best of the methods, for each tile at the ratio where it gains least.
         for tile in results.tiles:
-            gains = {r: _largest([results.gain(tile, r, name, other) for name in names]) for r in results.ratios}
+            gains = {
+                r: _largest([results.gain(tile, r, name, other) for name in names]) for r in results.ratios
+            }
             known = {ratio: gain for ratio, gain in gains.items() if gain is not None}
             if not known:
                 yield judged(target, tile, "-", None)
@@ -424,8 +442,8 @@ def write(run: Run, found: dict) -> None:
             (row for row in at if row),
             "tile | method | KB | fit, s | processor s | million evaluations a second and core | "
             f"render to {conditions['level']}, processor s | brightness",
-            "{tile} | `{method}` | {bytes:k.0f} | {seconds:.1f} | {processor_seconds:.0f} | {evaluations:M.2f} | "
-            "{render_seconds:.2f} | {brightness:.3f}",
+            "{tile} | `{method}` | {bytes:k.0f} | {seconds:.1f} | {processor_seconds:.0f} | "
+            "{evaluations:M.2f} | {render_seconds:.2f} | {brightness:.3f}",
         ),
     }
     page.write(run.output, "chart_btf.md", page.text("btf_chart", conditions | values))

@@ -153,14 +153,16 @@ def _cycles(run: Run, bunny: Subject, scene: Scene) -> dict | str:
     # The difference of two renders excludes the work of each before its first sample.
     seconds = report["seconds"][1] - report["seconds"][0]
     if seconds <= 0:
-        return "Cycles is left out: its two renders are too short to tell their samples from their preparation."
+        return (
+            "Cycles is left out: its two renders are too short to tell their samples from their preparation."
+        )
     rays = size[0] * size[1] * (more - fewer) / seconds
     return {"version": report["version"], "cycles": rays, "ours": ours["samples_per_second"] / 2}
 
 
 def _sun_lobes(run: Run, scene: Scene) -> dict:
-    """What product sampling keeps of the synthetic sun, read from the mixture that a small render caches: lobes
-    within a diameter of its center, at most two diameters wide. Their number, their share of the mixture's
+    """What product sampling keeps of the sun, read from the mixture that a small render caches: lobes within
+    a diameter of its center, at most two diameters wide. Their number, their share of the mixture's
     energy, and the diameter of the disk with the same mean cosine, in degrees, as a mean by energy."""
     folder = run.kept / "sun"
     folder.mkdir(exist_ok=True)
@@ -180,7 +182,11 @@ def _sun_lobes(run: Run, scene: Scene) -> dict:
     diameter = 4 / np.sqrt(bandwidth)
     kept = (center @ SUN > np.cos(SUN_DIAMETER)) & (diameter <= 2 * SUN_DIAMETER)
     mean = np.degrees(np.average(diameter[kept], weights=energy[kept])) if kept.any() else 0.0
-    return {"count": int(kept.sum()), "energy": float(energy[kept].sum() / energy.sum()), "diameter": float(mean)}
+    return {
+        "count": int(kept.sum()),
+        "energy": float(energy[kept].sum() / energy.sum()),
+        "diameter": float(mean),
+    }
 
 
 class Result:
@@ -284,7 +290,10 @@ def verdicts(results: list[Result], sun: Mapping, peers: list[Mapping], spp: int
     for result in figures:
         most = _EQUAL_SAMPLES.get((result.about["material"], result.about["world"]))
         if most is not None:
-            gain, target = result.gain("product", DEFAULT, spp), f"relmse of `product` / `mis` at {spp} spp at most {most}"
+            gain, target = (
+                result.gain("product", DEFAULT, spp),
+                f"relmse of `product` / `mis` at {spp} spp at most {most}",
+            )
             yield judged(target, result.about["name"], _gain(gain), gain[0] <= most)
     for result in figures:
         target = "relmse of `product` / `mis` at equal time at most 1.2"

@@ -1,5 +1,5 @@
-"""The demo's scene with few samples, the same denoised by the compositor's Denoise node with Velour's two passes for
-it, and with many samples: docs/guide/images/denoise.png, and the errors in docs/reference/panels.md.
+"""The demo's scene with few samples, the same denoised by the compositor's Denoise node with Velour's two
+passes, and with many samples: docs/guide/images/denoise.png, and the errors in docs/reference/panels.md.
 
 Uses the module bpy of Blender 4.5 (scripts/blenders), because Debian's Blenders have no OpenImageDenoise.
 """
@@ -29,7 +29,9 @@ def measure(run: Run) -> dict:
     height, width = whole[0][1].shape[:2]
     detail = slice(2 * height // 5, 11 * height // 15), slice(31 * width // 80, 231 * width // 320)
     output = run.output / "images" if own.few < 16 else ROOT / "docs/guide/images"
-    charts.sheet(output / "denoise.png", [whole, [("", p[detail]) for _, p in whole]], (2.3, 1.84), few_colors=True)
+    charts.sheet(
+        output / "denoise.png", [whole, [("", p[detail]) for _, p in whole]], (2.3, 1.84), few_colors=True
+    )
     print(output / "denoise.png")
     # Root of the library's relmse: the relative error, in dark parts relative to a tenth of the mean.
     errors = {n: images.compare(shown[n], shown["many"])[1] ** 0.5 for n in ("few", "without", "denoised")}

@@ -1,7 +1,7 @@
 """Processor time of Cycles and Velour at the same noise, in one run. Nothing else should run meanwhile.
 
---only renders some of the scenes, --blender in a version of scripts/blenders instead of Debian's 3.4, with the
-packaged add-on; their page stays in build/equal_noise.
+--only renders some of the scenes, --blender in a version of scripts/blenders with the packaged add-on; their
+page stays in build/equal_noise.
 """
 
 from __future__ import annotations
@@ -76,8 +76,8 @@ def _compared(run: Run, name: str) -> tuple[dict, dict[str, np.ndarray], str]:
 
 
 def _side(files: list[Path], seconds: list[float]) -> tuple[dict, np.ndarray]:
-    """Processor seconds and noise (relmse, from the spread of the seeds) of one render, the mean light, and the
-    fireflies; the mean picture of all seeds."""
+    """Processor seconds and noise (relmse, from the spread of the seeds) of one render, mean light,
+    fireflies; and the mean picture of all seeds."""
     pictures = np.stack([read_rgb(file).astype(np.float64) for file in files])
     mean, variance = pictures.mean(0), pictures.var(0, ddof=1)
     noise = float((variance / (mean**2 + 0.01 * mean.mean() ** 2)).mean())
@@ -114,8 +114,9 @@ def write(run: Run, found: dict) -> None:
         rows,
         "scene | Cycles: s | relmse | Velour: s | relmse | time to equal noise | mean light | "
         "fireflies: Cycles | Velour",
-        "{scene} | {cycles[seconds]:.1f} | {cycles[noise]:.2e} | {velour[seconds]:.1f} | {velour[noise]:.2e} | "
-        "{ratio:.2f} | {apart:+.1f} % | {cycles[fireflies]:.0f} | {velour[fireflies]:.0f}",
+        "{scene} | {cycles[seconds]:.1f} | {cycles[noise]:.2e} | {velour[seconds]:.1f} | "
+        "{velour[noise]:.2e} | {ratio:.2f} | {apart:+.1f} % | {cycles[fireflies]:.0f} | "
+        "{velour[fireflies]:.0f}",
     )
     values = {"scenes": scenes, "firefly": _FIREFLY, "denoised": _denoised(rows)}
     page.write(run.output, "equal_noise.md", page.text("equal_noise", conditions | values))

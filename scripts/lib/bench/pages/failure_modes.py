@@ -1,4 +1,4 @@
-"""Claimed and true errors of every kind of model on every hostile measurement, from the test that compares them."""
+"""Claimed and true errors of all models of hostile measurements, from the test that compares them."""
 
 from __future__ import annotations
 
@@ -24,8 +24,8 @@ def measure(run: Run) -> dict:
 
 
 def rows(tests: dict) -> list[list[str]]:
-    """A row per case and model of GoogleTest's report. Refused fits and views that a measurement does not cover
-    have no numbers."""
+    """A row per case and model of GoogleTest's report. Refused fits, and views that a measurement does not
+    cover, have no numbers."""
     found = {}
     for test in tests["testsuites"][0]["testsuite"]:
         kind, case = test["value_param"].strip("()").split(", ", 1)
@@ -41,10 +41,11 @@ def _cell(test: dict, view: str) -> str:
 
 
 def write(run: Run, found: dict) -> None:
+    commit, date = (found["conditions"][name] for name in ("commit", "date"))
     lines = ({"cells": " | ".join(row)} for row in found["rows"])
     claims = f"""
 Claimed / true relative L2 at the reported views, of scattered models of at most 6 Gaussian lobes a view and
-of parametric models of at most 6 lobes in all. Commit {found["conditions"]["commit"]}, {found["conditions"]["date"]}.
+of parametric models of at most 6 lobes in all. Commit {commit}, {date}.
 
 {page.table(lines, f"case | model | {' | '.join(_VIEWS)}", "{cells}")}"""
     page.write_parts(run.output, "failure_modes.md", "failure_modes", claims=claims)

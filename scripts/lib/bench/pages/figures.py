@@ -91,14 +91,17 @@ def _converge(pictures: dict[tuple, Picture], reference: Reference, most: int) -
         errors = {name: picture.errors(mean) for name, picture in pictures.items()}
         smallest = min(rmse for (sampler, _), (rmse, _) in errors.items() if sampler == "dissertation")
         margin = smallest / reference.noise()[0]
-        print(f"    reference of {reference.spp} spp: the smallest error is {margin:.1f} times its own", flush=True)
+        print(
+            f"    reference of {reference.spp} spp: the smallest error is {margin:.1f} times its own",
+            flush=True,
+        )
         if margin >= MARGIN or len(reference.pictures) >= most:
             return errors
         reference.add()
 
 
 def _relative(pixels: np.ndarray, reference: np.ndarray) -> np.ndarray:
-    """Error of the channels' sum, relative to the reference and a tenth of its mean, as in relmse, as colors."""
+    """Error of the channels' sum, relative to the reference and a tenth of its mean, as in relmse."""
     x, r = pixels.sum(axis=-1), reference.sum(axis=-1)
     return charts.colored(np.abs(x - r) / np.sqrt(r**2 + 0.01 * r.mean() ** 2), "inferno", 0, _WORST)
 
@@ -112,14 +115,14 @@ def write(run: Run, found: dict) -> None:
         "errors": page.table(
             (line for rows in figures.values() for line in _lines(rows, samplers)),
             "figure | spp | " + " | ".join(f"relmse {s} | rmse {s} | seconds {s}" for s in samplers),
-            "{figure} | {spp} | " + " | ".join("{%s}" % s for s in samplers),
+            "{figure} | {spp} | " + " | ".join(f"{{{s}}}" for s in samplers),
         ),
         "references": page.table(
             (_reference(rows, samplers) for rows in figures.values()),
             f"figure | spp | renders | seconds | RMS standard error | smallest RMSE, {samplers[0]} | ratio | "
             f"at least 10 | smallest RMSE, {samplers[1]} | ratio",
-            "{figure} | {spp} | {renders} | {seconds:.0f} | {rmse:.2e} | {smallest[0]:.2e} | {ratios[0]:.1f} | "
-            "{met} | {smallest[1]:.2e} | {ratios[1]:.1f}",
+            "{figure} | {spp} | {renders} | {seconds:.0f} | {rmse:.2e} | {smallest[0]:.2e} | "
+            "{ratios[0]:.1f} | {met} | {smallest[1]:.2e} | {ratios[1]:.1f}",
         ),
     }
     page.write(run.output, "figures/README.md", page.text("figures", found["conditions"] | parts))

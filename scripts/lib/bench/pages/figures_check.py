@@ -102,7 +102,8 @@ def write(run: Run, found: dict) -> None:
         pairs += [figure | {"pair": name} | _agree(check[name]) for name in ("uniform", "control")]
         spreads += [figure | {"pair": name} | _agree(of) for name, of in check["by_spread"].items()]
     titles = "figure | pair | tests | largest z | Sidak's bound | p | ratio of means | agree"
-    cells = "{figure} | {pair} | {tests} | {largest_z:.2f} | {sidak_z:.2f} | {p_value:.2g} | {ratio:.5f} | {agree}"
+    cells = "{figure} | {pair} | {tests} | {largest_z:.2f} | {sidak_z:.2f} | {p_value:.2g} | {ratio:.5f}"
+    cells += " | {agree}"
     parts = {
         "level": LEVEL,
         "control": f"{TOO_BRIGHT - 1:.0%} too bright",

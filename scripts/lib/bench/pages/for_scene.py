@@ -10,7 +10,15 @@ import numpy as np
 
 from .. import data_files, page
 from ..run import Run, flags
-from ..scenes import MOVED_PATCH_CAMERA, PATCH_CAMERA, Scene, made, write_patch, write_soft_sky, write_sunny_sky
+from ..scenes import (
+    MOVED_PATCH_CAMERA,
+    PATCH_CAMERA,
+    Scene,
+    made,
+    write_patch,
+    write_soft_sky,
+    write_sunny_sky,
+)
 
 CSV = "for_scene.csv"
 SETTINGS = {"size": ((120, 90), (32, 24)), "spp": (4096, 64), "materials": (99, 1)}

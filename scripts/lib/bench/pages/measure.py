@@ -91,7 +91,9 @@ def write(run: Run, found: dict) -> None:
     for row in found["rows"]:
         # A field of a template cannot have dots.
         quantity = row["quantity"].replace(".", "_")
-        cases.setdefault(row["what"], {}).setdefault(row["case"], {"case": row["case"]})[quantity] = row["value"]
+        cases.setdefault(row["what"], {}).setdefault(row["case"], {"case": row["case"]})[quantity] = row[
+            "value"
+        ]
     fits = cases["fits"]
     missed = [f"- {r['case']}: {r[key]}" for r in fits.values() for key in r if key.startswith("warning ")]
     (render,) = cases["render"].values()
@@ -100,7 +102,8 @@ def write(run: Run, found: dict) -> None:
     parts = {
         "fits": page.table(
             fits.values(),
-            "material | seconds | lobes | bytes | relative_l2 | " + " | ".join(f"{angle}°" for angle in ANGLES),
+            "material | seconds | lobes | bytes | relative_l2 | "
+            + " | ".join(f"{angle}°" for angle in ANGLES),
             "{case} | {seconds:.1f} | {lobes} | {bytes} | {relative_l2:.4f} | " + " | ".join(angles),
         ),
         "missed": "\n".join(missed) or "No view misses the tolerance.",
@@ -108,7 +111,8 @@ def write(run: Run, found: dict) -> None:
         "stages": ", ".join(f"{name} {seconds:.2f} s" for name, seconds in stages.items()),
         "lobes": page.table(
             cases["lobes"].values(),
-            "lobes a view | fit seconds | bytes | relative_l2 | relmse of the picture | rmse | seconds | raw seconds",
+            "lobes a view | fit seconds | bytes | relative_l2 | relmse of the picture | rmse | seconds | "
+            "raw seconds",
             "{case} | {fit_seconds:.1f} | {fit_bytes} | {fit_relative_l2:.4f} | {relmse:.2e} | {rmse:.2e} | "
             "{seconds:.1f} | {reference_seconds:.1f}",
         ),

@@ -1,4 +1,4 @@
-"""Pictures of the procedural tiles, each repeated 3 x 3 times, under a sun and a gray environment. Needs no data."""
+"""Pictures of the procedural tiles, repeated 3 x 3 times, under a sun and a gray environment."""
 
 from __future__ import annotations
 

@@ -34,8 +34,8 @@ def measure(run: Run) -> dict:
     points = len(run.settings.lobes) + len(run.settings.bytes)
     each = 2 + len(table.MODELS) * (points + 2) + 2 * len(PEERS)
     run.progress.expect(1, 1 + len(subjects) * each)
-    rows = [{"material": None, "model": "floor", **_cost(run, "nothing", "floor")}]
-    values = {}
+    floor, values = _cost(run, "nothing", "floor"), {}
+    rows = [{"material": None, "model": "floor", **floor}] if floor else []
     for name, measurement in subjects:
         own, values[name] = _rows(run, name, measurement)
         rows += own
@@ -49,7 +49,16 @@ def _rows(run: Run, name: str, measurement: Path) -> tuple[list[dict], dict]:
         errors = report.get("by_view_angle", {})
         sizes = {key: report.get(key) for key in SIZES}
         angles = {f"error_{angle}": errors.get(angle) for angle in ANGLES}
-        return {"material": name, "model": model, "bound": None, "value": None, **sizes, **angles, **cost, **more}
+        return {
+            "material": name,
+            "model": model,
+            "bound": None,
+            "value": None,
+            **sizes,
+            **angles,
+            **cost,
+            **more,
+        }
 
     fits, options = [], {"threads": run.threads, "tolerance": TOLERANCE}
     for model in table.MODELS:
@@ -59,7 +68,11 @@ def _rows(run: Run, name: str, measurement: Path) -> tuple[list[dict], dict]:
     peers = {peer: run.compare_peer(measurement, peer) for peer in PEERS}
     noise = peers["ggx"]["noise_by_view_angle"]
     raw = {"bytes": measurement.stat().st_size}
-    rows = [row("noise", {"by_view_angle": noise}), row("measurement", raw, _cost(run, name, measurement)), *fits]
+    rows = [
+        row("noise", {"by_view_angle": noise}),
+        row("measurement", raw, _cost(run, name, measurement)),
+        *fits,
+    ]
     for peer, report in peers.items():
         more = {"alpha": report["ggx"]["alpha"][0]} if peer == "ggx" else {}
         rows.append(row(peer, report, _cost(run, f"{name}, {peer}", measurement, peer), **more))
@@ -107,7 +120,7 @@ def met(row: Mapping, noise: Mapping = {}) -> int:
 
 def write(run: Run, found: dict) -> None:
     rows, conditions = found["rows"], found["conditions"]
-    (floor,) = (row for row in rows if row["model"] == "floor")
+    floor = next((row for row in rows if row["model"] == "floor"), {})
     materials: dict[str, dict[str, dict]] = {}
     for row in rows:
         if row["material"] and not row["bound"]:
@@ -158,7 +171,8 @@ def _summary(materials: Mapping) -> str:
     return page.table(
         (of(row["model"]) for row in _models(first)),
         f"model | relative_l2 | met | without noise | parameter bytes | seconds | {_COST_TITLES}",
-        f"{{model}} | {{relative_l2:.4f}} | {{met}} | {{plain}} | {{parameter_bytes:.0f}} | {{seconds:.2f}} | {_COST_CELLS}",
+        f"{{model}} | {{relative_l2:.4f}} | {{met}} | {{plain}} | {{parameter_bytes:.0f}} | "
+        f"{{seconds:.2f}} | {_COST_CELLS}",
     )
 
 
@@ -218,7 +232,8 @@ def _principled(materials: Mapping, values: Mapping) -> str:
     )
     names = list(next(iter(values.values())))
     rows = [
-        {"material": name} | {key: ", ".join(f"{v:.3f}" for v in (x if isinstance(x, list) else [x])) for key, x in own.items()}
+        {"material": name}
+        | {key: ", ".join(f"{v:.3f}" for v in (x if isinstance(x, list) else [x])) for key, x in own.items()}
         for name, own in values.items()
     ]
     titles, cells = " | ".join(names), " | ".join(f"{{{name}}}" for name in names)

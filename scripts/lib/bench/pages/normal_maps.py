@@ -1,4 +1,4 @@
-"""Approximations of textured materials in Cycles, with and without their normal maps, beside Velour's renders under
+"""Approximations of textured materials in Cycles, with and without normal maps, beside Velour's renders under
 a sun from the side. The table is printed, for docs/results/principled.md.
 
 Tiles are captured and compressed once, into build/normal_maps. --names measures some of the materials.

@@ -99,10 +99,10 @@ def write(run: Run, found: dict) -> None:
         "ending": " The others are named below." if failed else "",
         "by_tolerance": page.table(
             (_of_order(*item) for item in orders.items()),
-            "tolerance | error, median | error, largest | mean, median | mean, largest | 99th percentile, median"
-            " | largest | below the threshold",
-            "{order} | {relative_l2[0]:.4f} | {relative_l2[1]:.4f} | {flip_mean[0]:.4f} | {flip_mean[1]:.4f} | "
-            "{flip_99[0]:.4f} | {flip_99[1]:.4f} | {below} of {count}",
+            "tolerance | error, median | error, largest | mean, median | mean, largest | "
+            "99th percentile, median | largest | below the threshold",
+            "{order} | {relative_l2[0]:.4f} | {relative_l2[1]:.4f} | {flip_mean[0]:.4f} | "
+            "{flip_mean[1]:.4f} | {flip_99[0]:.4f} | {flip_99[1]:.4f} | {below} of {count}",
         ),
         "default_table": page.table(
             at,

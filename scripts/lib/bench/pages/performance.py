@@ -53,7 +53,9 @@ def measure(run: Run) -> dict:
         """The report of the fastest of a few renders: only other programs make one slower."""
         words = _words(scene, size, spp, **options)
         print("rendering", *words[-3:], "...", flush=True)
-        return min((velour("render", *words) for _ in range(own.repeats)), key=lambda report: report["seconds"])
+        return min(
+            (velour("render", *words) for _ in range(own.repeats)), key=lambda report: report["seconds"]
+        )
 
     return {
         "conditions": run.conditions(load=load),
@@ -82,10 +84,22 @@ def _may_profile() -> bool:
 
 
 def _profile(run: Run, scene: Mapping, strategy: str) -> dict[str, float]:
-    """Share of each part in the processor time of all parts of a render, by perf's samples of the function."""
+    """Share of each part in the processor time of all parts of a render, by perf's samples."""
     words = _words(scene, run.settings.small_size, run.settings.profile_spp, strategy=strategy, threads=1)
     data = run.work / f"{strategy}.perf"
-    record = ["perf", "record", "-q", "-e", "cpu-clock", "-F", "1999", "-o", data, "--", ROOT / "scripts/velour"]
+    record = [
+        "perf",
+        "record",
+        "-q",
+        "-e",
+        "cpu-clock",
+        "-F",
+        "1999",
+        "-o",
+        data,
+        "--",
+        ROOT / "scripts/velour",
+    ]
     subprocess.run([*record, "render", *words, "--quiet"], check=True, stdout=subprocess.DEVNULL)
     report = ["perf", "report", "-i", data, "-g", "none", "--percent-limit", "0"]
     fields = ["--field-separator", "\t", "--sort", "dso,symbol"]
@@ -94,14 +108,16 @@ def _profile(run: Run, scene: Mapping, strategy: str) -> dict[str, float]:
     for line in text.splitlines():
         percent, library, function, *_ = *line.strip().split("\t"), "", "", ""
         if not line.startswith("#") and re.search(r"libvelour|libembree|libm\.|libc\.", library):
-            found = (name for name, known in _PARTS if re.search(known, f"{library.strip()} {function.strip()}"))
+            found = (
+                name for name, known in _PARTS if re.search(known, f"{library.strip()} {function.strip()}")
+            )
             if part := next(found, None):
                 totals[part] += float(percent.strip().rstrip("%"))
     return {name: total / sum(totals.values()) for name, total in totals.items()}
 
 
 def _bench(program: str, wanted: str) -> list[dict]:
-    """The results of benchmarks, with the parts of their names, of the build that scripts/performance makes."""
+    """The results of benchmarks of the build that scripts/performance makes, with the parts of names."""
     print(f"running {program} ...", flush=True)
     command = [ROOT / "build/bench/native/bench" / program, f"--benchmark_filter={wanted}"]
     options = ["--benchmark_format=json", "--benchmark_min_time=0.5"]

@@ -1,5 +1,5 @@
-"""Objects with a tile's geometry beside the same objects with its BTF and the BTF's model: a sheet of pictures, and
-errors, seconds and megabytes for docs/engine/btf_models.md."""
+"""Objects with a tile's geometry beside the same objects with its BTF and the BTF's model: a sheet of
+pictures, and errors, seconds and megabytes for docs/engine/btf_models.md."""
 
 from __future__ import annotations
 
@@ -26,7 +26,13 @@ def measure(run: Run) -> dict:
     own, folder = run.settings, run.work / "pictures"
     shutil.rmtree(folder, ignore_errors=True)  # a capture overwrites nothing
     folder.mkdir(parents=True)
-    capture = {"texels": own.texels, "views": 105, "lights": 105, "samples": own.capture_samples, "bounces": 1}
+    capture = {
+        "texels": own.texels,
+        "views": 105,
+        "lights": 105,
+        "samples": own.capture_samples,
+        "bounces": 1,
+    }
     task = {"tile": "WEAVE", "options": {}, "capture": capture, "megabytes": 0, "side": own.side}
     task |= {"samples": own.samples, "shots": list(SHOTS), "folder": str(folder.resolve())}
     report = blender.run("real_geometry", task, run.work / "blender.log")
@@ -65,4 +71,6 @@ def write(run: Run, found: dict) -> None:
     print(page.filled("compress {compress_seconds:.1f} s, {model_bytes:M.2f} MB\n", found))
     rows = (dict.fromkeys(GeometryError._fields) | row for row in found["rows"])
     titles = "shot | what | error | of blocks | mean | seconds"
-    print(page.table(rows, titles, "{shot} | {what} | {pixels:.3f} | {blocks:.3f} | {mean:.3f} | {seconds:.2f}"))
+    print(
+        page.table(rows, titles, "{shot} | {what} | {pixels:.3f} | {blocks:.3f} | {mean:.3f} | {seconds:.2f}")
+    )

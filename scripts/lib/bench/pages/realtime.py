@@ -1,6 +1,6 @@
-"""Scenes of blend-tests in the real-time viewport on a virtual screen: frames per second, and the error against the
-ray tracer. The picture shows the ray tracer's image, the real-time image, and ten times their difference about gray.
-Frames per second are valid only on an idle machine."""
+"""Scenes of blend-tests in the real-time viewport on a virtual screen: frames per second, and the error
+against the ray tracer. The picture shows the ray tracer's image, the real-time image, and ten times their
+difference about gray. Frames per second are valid only on an idle machine."""
 
 from __future__ import annotations
 

@@ -20,7 +20,9 @@ def measure(run: Run) -> dict:
 
 
 def write(run: Run, found: dict) -> None:
-    page.write_parts(run.output, "test_times.md", "test_times", times=text(found["groups"], found["conditions"]))
+    page.write_parts(
+        run.output, "test_times.md", "test_times", times=text(found["groups"], found["conditions"])
+    )
 
 
 def text(groups: dict[str, dict], conditions: dict) -> str:

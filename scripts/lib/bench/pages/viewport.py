@@ -1,5 +1,5 @@
-"""How long the rendered viewport of the real Blender takes to show a change, on a virtual screen, and whether its
-memory grows when it is switched off and on. Leave the machine idle meanwhile.
+"""How long the rendered viewport of the real Blender takes to show a change, on a virtual screen, and whether
+its memory grows when it is switched off and on. Leave the machine idle meanwhile.
 
 Only a run of all scenes writes the page.
 """
@@ -55,7 +55,18 @@ def _measured(run: Run, scene: str) -> dict:
     (folder / "task.json").write_text(json.dumps(task))
     log, program = folder / "log.txt", shutil.which(run.settings.blender)
     screen = f"-screen 0 {'x'.join(SCREEN)}x24 -fbdir . -nocursor"
-    command = ["env", "-C", str(folder), "xvfb-run", "-a", "-s", screen, program, "--factory-startup", "-noaudio"]
+    command = [
+        "env",
+        "-C",
+        str(folder),
+        "xvfb-run",
+        "-a",
+        "-s",
+        screen,
+        program,
+        "--factory-startup",
+        "-noaudio",
+    ]
     command += ["--window-geometry", "0", "0", *SCREEN, "--python-exit-code", "1", "--python"]
     command += [str(ROOT / "scripts/lib/bench/inside/viewport.py"), "--", str(folder)]
     status = process.execute(command, process.environment(program, blender.STAGE), log, SECONDS)
@@ -95,10 +106,16 @@ While the object moves on and on: {result["dragged"]:.1f} pictures a second.
 Memory of Blender: {result["mib"]:.0f} MiB.
 """
     if "restarts" in result:
-        count, memory = result["restarts"]["count"], ", ".join(f"{mib:.0f}" for mib in result["restarts"]["mib"])
+        count, memory = (
+            result["restarts"]["count"],
+            ", ".join(f"{mib:.0f}" for mib in result["restarts"]["mib"]),
+        )
         text += f"Switched off and on {count} times; MiB after each tenth of them: {memory}.\n"
     if "real_time" in result:
-        seconds, (width, height) = statistics.median(result["real_time"]["seconds"]), result["real_time"]["size"]
+        seconds, (width, height) = (
+            statistics.median(result["real_time"]["seconds"]),
+            result["real_time"]["size"],
+        )
         text += f"""
 In real time ([realtime.md](../engine/realtime.md)) a picture of {width} x {height} of it takes
 {1000 * seconds:.0f} ms, {1 / seconds:.1f} a second, reading it back included; the target is 30 on a modest

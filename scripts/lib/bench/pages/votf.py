@@ -73,9 +73,11 @@ class Shot(NamedTuple):
         with Scene() as scene:
             number, _ = scene.add_mesh(**structured_mesh(self.surface, mesh, info["period"][0]))
             own = ({name: m[name] for name in m if name != "name"} for m in info["materials"])
-            slots = [scene.add_model_material(material)] if material else [
-                scene.add_principled_material(**values) for values in own
-            ]
+            slots = (
+                [scene.add_model_material(material)]
+                if material
+                else [scene.add_principled_material(**values) for values in own]
+            )
             scene.add_instance(number, tiles.UNMOVED, slots)
             return self.picture(scene)
 
@@ -188,7 +190,9 @@ def _edge(picture: np.ndarray, alpha: np.ndarray) -> np.ndarray:
 class ShellErrors(NamedTuple):
     outline: float  # soft intersection over union of alpha, with holes filled
     alpha: float  # likewise, with holes
-    light: float | None  # root mean square of the difference over that of the truth, where both show the object
+    light: (
+        float | None
+    )  # root mean square of the difference over that of the truth, where both show the object
 
 
 def soft_iou(a: np.ndarray, b: np.ndarray) -> float:

@@ -55,16 +55,26 @@ def _compared(run: Run, case: Case) -> dict:
 
 def _numbers(c: Mapping) -> dict:
     errors = {
-        f"{what}, {views} views": c[views][what] for views in ("stored", "unseen") for what in ("wrong", "border")
+        f"{what}, {views} views": c[views][what]
+        for views in ("stored", "unseen")
+        for what in ("wrong", "border")
     }
     times = {"stored view": "stored", "any view": "any", "any view, texels in order": "in_order"}
     nanoseconds = {f"ns, {name}": c["nanoseconds"][key] for name, key in times.items()}
-    return {**errors, "bytes": c["bytes"], "bytes, deflated": c["packed"], **nanoseconds, "seconds": c["seconds"]}
+    return {
+        **errors,
+        "bytes": c["bytes"],
+        "bytes, deflated": c["packed"],
+        **nanoseconds,
+        "seconds": c["seconds"],
+    }
 
 
 def write(run: Run, found: dict) -> None:
     sections = "".join(map(_section, found["results"]))
-    page.write(run.output, "votf_tables.md", page.text("votf_tables", found["conditions"] | {"sections": sections}))
+    page.write(
+        run.output, "votf_tables.md", page.text("votf_tables", found["conditions"] | {"sections": sections})
+    )
 
 
 def _section(result: dict) -> str:
@@ -77,8 +87,13 @@ def _section(result: dict) -> str:
         "{bytes:k,.0f} / {packed:k,.0f} | {nanoseconds[stored]:.0f} / {nanoseconds[any]:.0f} / "
         "{nanoseconds[in_order]:.0f} | {seconds:.1f}",
     )
-    made = (page.filled(_GENERATION, c | {"capital": c["name"].capitalize(), "grid": " x ".join(map(str, c["points"]))})
-            for c in result["candidates"] if "points" in c)
+    made = (
+        page.filled(
+            _GENERATION, c | {"capital": c["name"].capitalize(), "grid": " x ".join(map(str, c["points"]))}
+        )
+        for c in result["candidates"]
+        if "points" in c
+    )
     return page.filled(
         _SECTION,
         result
@@ -99,8 +114,9 @@ Distances, {texels} a tile, against the targets:
 {made}
 """
 _GENERATION = (
-    "- {capital} ({grid} points): {wall_seconds:.1f} seconds to make, {wall_seconds_checked:.1f} with the same "
-    "number of views checked by rays. Its rays reach, the checks' included, {ray_share:.2f} of Embree's bare rate.\n"
+    "- {capital} ({grid} points): {wall_seconds:.1f} seconds to make, {wall_seconds_checked:.1f} with the "
+    "same number of views checked by rays. Its rays reach, the checks' included, {ray_share:.2f} of Embree's "
+    "bare rate.\n"
 )
 
 
