@@ -14,7 +14,7 @@ import inputs
 import numpy as np
 import pytest
 from bench import __main__ as bench
-from bench import data_files, velour_cli
+from bench import data_files, progress, velour_cli
 from command_line import environment, velour
 from conftest import ADDONS, ROOT
 
@@ -52,6 +52,8 @@ class Campaign:
         monkeypatch.setenv("VELOUR_DATA", str(data))
         monkeypatch.setattr(data_files, "_EXPANDED", work / "merl")
         monkeypatch.setattr(velour_cli, "_run", run_in_this_process)
+        # A line of progress from another thread would stand in the report of a slow call.
+        monkeypatch.setattr(progress, "_LINE_SECONDS", 1e6)
 
     def run(self, name: str, *options: str) -> int:
         words = ["--quick", "--threads=2", f"--work={self.work}", f"--output={self.output}", *options]

@@ -261,7 +261,7 @@ def results_of(found: Mapping) -> list[Result]:
 
 
 def peers_of(found: Mapping) -> list[Mapping]:
-    """Of each material: seconds to the relmse of Mitsuba's longest render, and its seconds over ours."""
+    """For each material: seconds to the relmse of Mitsuba's longest render, and its seconds over ours."""
     materials = []
     for sphere in found["spheres"]:
         own = [row for row in found["rows"] if row["scene"] == sphere["material"]]
