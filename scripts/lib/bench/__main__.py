@@ -73,31 +73,26 @@ def _is_here(program: str) -> bool:
 
 
 def run(name: str, words: list[str]) -> int:
-    from . import data_files
+    from velour.native import VelourError
+
+    from .blender import BlenderError
+    from .data_files import NoDataError
+    from .flip_metric import NoFlipError
 
     module = importlib.import_module(f"{__package__}.pages.{name}")
     try:
         _measure(module, name, _arguments(module, name, words))
-    except data_files.NoDataError as absent:
+    except (NoDataError, NoFlipError) as absent:
         print(f"{name}: {absent}")
     except KeyboardInterrupt:
         print(f"{name}: stopped; the next run goes on from here.", file=sys.stderr)
         return 130
     except subprocess.CalledProcessError as error:
         return error.returncode
-    except module_errors() as error:
+    except (VelourError, BlenderError, OSError) as error:
         print(f"{name}: {error}", file=sys.stderr)
         return 1
     return 0
-
-
-def module_errors() -> tuple:
-    """Errors whose message is a sentence for the user."""
-    from velour.native import VelourError
-
-    from .blender import BlenderError
-
-    return VelourError, BlenderError, OSError
 
 
 def _arguments(module, name: str, words: list[str]) -> argparse.Namespace:
@@ -170,13 +165,15 @@ def _keep(module, run, found: dict | None) -> None:
 
 
 def load(module, folder: Path, name: str) -> dict:
-    """What the last run has kept. Raises OSError."""
+    """What the last run has kept. Raises FileNotFoundError."""
     from .page import read_rows
 
-    found, rest = {}, folder / f"{name}.json"
+    found, rest, rows = {}, folder / f"{name}.json", folder / getattr(module, "CSV", "")
+    if not rows.exists() or not (hasattr(module, "CSV") or rest.is_file()):
+        raise FileNotFoundError(f"{folder} has no numbers of an earlier run; run without --page.")
     if hasattr(module, "CSV"):
-        found["conditions"], found["rows"] = read_rows(folder / module.CSV)
-    if rest.is_file() or not found:
+        found["conditions"], found["rows"] = read_rows(rows)
+    if rest.is_file():
         found |= json.loads(rest.read_text(encoding="utf-8"))
     return found
 

@@ -49,19 +49,20 @@ def _approximate(material, path):
     """Creates the approximation, always with a normal map. Returns its own error estimates and seconds."""
     decided, normal_map._LEAST_GAIN = normal_map._LEAST_GAIN, -math.inf
     steps = Steps(Model.load(path), approximation_group.has_layers())
-    seconds = []
-    while job := steps.next_job():
-        begin = time.perf_counter()
+    seconds = dict.fromkeys(("fit", "colors", "normals"), 0.0)
+    # The fit and the colors take two jobs each: the first tabulates the model.
+    for step in ("fit", "fit", "colors", "colors", "normals"):
+        begin, job = time.perf_counter(), steps.next_job()
         job.start().wait()
-        seconds.append(time.perf_counter() - begin)
-        last = job
+        seconds[step] += time.perf_counter() - begin
+    steps.next_job()
     approximation_group.put(material, steps.result)
-    normals, without, with_map = last.result()
+    normals, without, with_map = job.result()
     return {
         "texels": steps.result.color_map.shape[1::-1],
         "judged": [without, with_map],
         "has_map": normals is not None and with_map <= (1 - decided) * without,
-        "seconds": dict(zip(("fit", "colors", "normals"), seconds, strict=True)),
+        "seconds": seconds,
     }
 
 
