@@ -7,7 +7,6 @@ from pathlib import Path
 import bpy
 import numpy as np
 from support import realtime, scenes, viewport, window
-from window_realtime import _ball
 from window_realtime_outline import _plane_of_its_btf
 
 _DATA = Path(scenes.__file__).parents[1] / "scenes/data"
@@ -32,7 +31,7 @@ def net(folder):
 
 def paint(folder):
     realtime.sky(folder)
-    _ball(scenes.measured_material((_DATA / "paint.velour").read_bytes()))
+    realtime.ball(scenes.measured_material((_DATA / "paint.velour").read_bytes()))
     yield from _shown("a ball of paint")
 
 

@@ -56,7 +56,7 @@ def measure(run: Run) -> dict:
         for line, (engine, picture) in zip(sheet, pictures.items(), strict=True):
             line.append((f"{name}, {engine}", charts.display(picture)))
     charts.sheet(run.output / "images/equal_noise.png", sheet, (2.2, 1.37), few_colors=True)
-    return {"conditions": run.conditions(load=load, blender=version), "rows": rows}
+    return {"conditions": run.conditions(load=load, blender=version, seed=0), "rows": rows}
 
 
 def _compared(run: Run, name: str) -> tuple[dict, dict[str, np.ndarray], str]:

@@ -26,7 +26,7 @@ ANGLES = ("5", "30", "60", "75", "85")
 def measure(run: Run) -> dict:
     own = run.settings
     materials = {name: data_files.merl(run.data, name) for name in data_files.merl_names(run.data)}
-    models = {name: run.fit(path, max_lobes=own.lobes[-1]) for name, path in materials.items()}
+    models = {name: run.fit(path, max_lobes=own.lobes[-1], threads=run.threads) for name, path in materials.items()}
     found = {("fits", name): fit for name, (_, fit) in models.items()}
     scenes = {
         f"{name}, {world}": _scene(run, name, models[name][0], world)
@@ -56,7 +56,7 @@ def _scene(run: Run, name: str, model, world: str) -> Scene:
 
 def _by_lobes(run: Run, measurement, lobes: int) -> dict:
     """Model against reference mode with the same light directions: the difference is the model's error."""
-    model, fit = run.fit(measurement, max_lobes=lobes)
+    model, fit = run.fit(measurement, max_lobes=lobes, threads=run.threads)
     scene, own = _scene(run, f"{lobes} lobes", model, SUNSET), run.settings
     shown, raw = (
         run.render(each, own.lobes_spp, size=own.small_size) for each in (scene, scene.measured(measurement))
