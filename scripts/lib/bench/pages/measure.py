@@ -26,7 +26,8 @@ ANGLES = ("5", "30", "60", "75", "85")
 def measure(run: Run) -> dict:
     own = run.settings
     materials = {name: data_files.merl(run.data, name) for name in data_files.merl_names(run.data)}
-    models = {name: run.fit(path, max_lobes=own.lobes[-1], threads=run.threads) for name, path in materials.items()}
+    options = {"max_lobes": own.lobes[-1], "threads": run.threads}
+    models = {name: run.fit(path, **options) for name, path in materials.items()}
     found = {("fits", name): fit for name, (_, fit) in models.items()}
     scenes = {
         f"{name}, {world}": _scene(run, name, models[name][0], world)
