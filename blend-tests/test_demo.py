@@ -18,7 +18,7 @@ SMALL = {
 }
 SMALL_BTF = {
     "SIZE": (32, 24),
-    "SAMPLES": 4,
+    "BTF_SAMPLES": 4,
     "CAPTURE": {"texels": 8, "views": 20, "lights": 20, "samples": 1, "bounces": 0},
 }
 
@@ -30,31 +30,22 @@ class Demo(BlenderTest):
             return importlib.import_module(name)
 
     def test_a_btf(self):
-        scene, folder = self._script("demo_btf_scene"), self.folder
-        task = {"folder": str(folder), "report": str(folder / "demo.json")}
+        scene, folder = self._script("bench.inside.demo"), self.folder
         with unittest.mock.patch.multiple(scene, **SMALL_BTF):
-            scene.main(task)
-        report = json.loads((folder / "demo.json").read_text())
+            report = scene.main({"folder": str(folder)})
         self.assertGreater(report["btf_bytes"], report["model_bytes"])
         for name in ("model.exr", "model.png", "reference.exr", "reference.png"):
             self.assertTrue((folder / name).is_file(), name)
         self.assertGreater(report["reference_seconds"], 0)
 
     def test_pictures_and_curves(self):
-        demo_scene = self._script("demo_scene")
-        folder = blender.folder()
+        scene, folder = self._script("bench.inside.demo"), blender.folder()
         model = folder / "demo.velour"
         model.write_bytes(inputs.model_bytes(inputs.glossy_measurement()))
-        task = {
-            "model": str(model),
-            "measurement": str(inputs.glossy_measurement()),
-            "folder": str(folder),
-            "report": str(folder / "demo.json"),
-        }
-        with unittest.mock.patch.multiple(demo_scene, **SMALL):
-            demo_scene.main(task)
-        report = json.loads((folder / "demo.json").read_text())
-        self.assertEqual(set(report["curves"]), set(demo_scene.PLOT_STRATEGIES))
+        task = {"model": str(model), "measurement": str(inputs.glossy_measurement()), "folder": str(folder)}
+        with unittest.mock.patch.multiple(scene, **SMALL):
+            report = json.loads(json.dumps(scene.main(task)))
+        self.assertEqual(set(report["curves"]), set(scene.PLOT_STRATEGIES))
         for points in report["curves"].values():
             self.assertEqual(len(points), 2)
         for name in ("model.exr", "model.png", "reference.exr", "reference.png"):

@@ -74,7 +74,7 @@ class Presets(BlenderTest):
         )
         (folder / presets.INDEX_FILE).write_text(presets.index_text([preset]))
         path = folder / presets.LIBRARY_FILE
-        _script("presets_blend").write(
+        _script("bench.inside.presets").write(
             {"path": str(path), "folder": str(folder), "catalogs": {"Paints": CATALOG}}
         )
         return path

@@ -1,7 +1,6 @@
 """A tile captured in Blender, its BTF and its model on a plane and a cylinder, beside its geometry."""
 
 import importlib
-import json
 import sys
 import unittest.mock
 from pathlib import Path
@@ -31,14 +30,14 @@ class RealGeometry(BlenderTest):
             folder.mkdir()
             scripts = str(Path(__file__).resolve().parents[1] / "scripts/lib")
             with unittest.mock.patch.object(sys, "path", [scripts, *sys.path]):
-                scene = importlib.import_module("real_geometry_scene")
-                error = importlib.import_module("geometry_error").geometry_error
-            scene.main({**TASK, "samples": 64, "shots": SHOTS, "folder": str(folder)})
-            type(self).taken = folder, error
+                scene = importlib.import_module("bench.inside.real_geometry")
+                error = importlib.import_module("bench.geometry_error").geometry_error
+            report = scene.main({**TASK, "samples": 64, "shots": SHOTS, "folder": str(folder)})
+            type(self).taken = folder, error, report
         return self.taken
 
     def _pictures(self, shot):
-        folder, error = self._taken()
+        folder, error, _ = self._taken()
         names = ("geometry", "btf", "model")
         return [scenes.read(folder / f"{shot}-{name}.exr") for name in names], error
 
@@ -64,8 +63,7 @@ class RealGeometry(BlenderTest):
         self.assert_close(error(model, geometry).mean, 1, 0.03)
 
     def test_the_report_has_seconds_and_bytes(self):
-        folder, _ = self._taken()
-        report = json.loads((folder / "report.json").read_text())
+        _, _, report = self._taken()
         self.assertLess(report["model_bytes"], 0.6e6)
         self.assertGreater(report["btf_bytes"], 20 * report["model_bytes"])
         for shot in SHOTS:

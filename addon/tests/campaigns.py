@@ -10,14 +10,13 @@ import subprocess
 import sys
 from pathlib import Path
 
-import data_files
 import inputs
 import numpy as np
 import pytest
-import script
-import velour_cli
+from bench import __main__ as bench
+from bench import data_files, progress, velour_cli
 from command_line import environment, velour
-from conftest import ROOT
+from conftest import ADDONS, ROOT
 
 _EXPAND = """
 import os, pathlib, sys
@@ -46,18 +45,19 @@ def made_up_data(folder: Path, measurement: Path) -> Path:
 
 
 class Campaign:
-    """Runs a script as `scripts/NAME --quick` does, in this process."""
+    """Measures a page as `scripts/bench NAME --quick` does, in this process."""
 
     def __init__(self, work: Path, output: Path, data: Path, monkeypatch: pytest.MonkeyPatch):
         self.work, self.output, self.patch = work, output, monkeypatch
         monkeypatch.setenv("VELOUR_DATA", str(data))
         monkeypatch.setattr(data_files, "_EXPANDED", work / "merl")
         monkeypatch.setattr(velour_cli, "_run", run_in_this_process)
+        # A line of progress from another thread would stand in the report of a slow call.
+        monkeypatch.setattr(progress, "_LINE_SECONDS", 1e6)
 
-    def run(self, module, *options: str) -> int:
+    def run(self, name: str, *options: str) -> int:
         words = ["--quick", "--threads=2", f"--work={self.work}", f"--output={self.output}", *options]
-        self.patch.setattr(sys, "argv", [module.__name__, *words])
-        return script.guarded(module.__name__, module.main)
+        return bench.run(name, words)
 
     def rows(self, name: str) -> list[dict]:
         with open(self.output / name, newline="", encoding="utf-8") as file:
@@ -82,11 +82,15 @@ def only_kept(said: str) -> bool:
 
 
 def script_command(name: str, folder: Path, *more: str) -> list[str]:
-    program = str(ROOT / f"scripts/lib/{name}.py")
-    return [sys.executable, "-P", program, "--quick", f"--work={folder}", f"--output={folder}/out", *more]
+    words = ["--built", "--quick", f"--work={folder}", f"--output={folder}/out", *more]
+    return [sys.executable, "-P", "-m", "bench", name, *words]
+
+
+def script_environment(data: Path) -> dict:
+    return environment(VELOUR_DATA=str(data), PYTHONPATH=f"{ADDONS}:{ROOT / 'scripts/lib'}")
 
 
 def run_script(name: str, folder: Path, *more: str, data: Path) -> subprocess.CompletedProcess:
-    """Runs a script in a process of its own, as its user does."""
-    command, env = script_command(name, folder, *more), environment(VELOUR_DATA=str(data))
+    """Measures a page in a process of its own, as its user does."""
+    command, env = script_command(name, folder, *more), script_environment(data)
     return subprocess.run(command, capture_output=True, text=True, timeout=900, env=env)

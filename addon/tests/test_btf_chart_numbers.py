@@ -1,17 +1,16 @@
-"""The arithmetic of scripts/chart --btf: each against what is known."""
+"""The arithmetic of the chart of BTFs: each against what is known."""
 
 from __future__ import annotations
 
-import btf_chart_rows
 import numpy as np
 import pytest
-from btf_chart import methods
-from btf_chart_numbers import (
+from bench import page
+from bench.pages.btf_chart import (
     HEADERS,
-    Entry,
     Results,
     fills,
     largest_within,
+    methods,
     packing,
     relative_error,
     verdicts,
@@ -86,8 +85,9 @@ def test_the_window_holds_what_differs():
     assert column <= 20 <= 24 <= column + 8
 
 
-def _entry(method: str, psnr: float, *, tile="weave", ratio=500, unseen=None, rate=2e6) -> Entry:
-    return Entry(tile, method, ratio, 1000, 1.0, 2.0, psnr, 0.1, rate, unseen)
+def _entry(method: str, psnr: float, *, tile="weave", ratio=500, unseen=None, rate=2e6) -> dict:
+    entry = {"tile": tile, "method": method, "ratio": ratio, "psnr": psnr, "psnr_unseen": unseen}
+    return entry | {"evaluations": rate}
 
 
 def test_results_are_compared_at_equal_bytes():
@@ -99,19 +99,24 @@ def test_results_are_compared_at_equal_bytes():
     assert results.gain("weave", 500, "cta", "svd") == 1
     assert results.gain("weave", 1000, "cta", "svd") is None
     assert results.gain("weave", 500, "cta", "svd", "psnr_unseen") is None
-    assert results.ratios() == [500, 1000]
+    assert results.ratios == [500, 1000]
 
 
 def test_rows_are_read_as_they_were_written(tmp_path):
-    entries = [_entry("svd", 1 / 3), _entry("kcta 2", 21, tile="net", ratio=50, unseen=19)]
-    btf_chart_rows.write(tmp_path / "a.csv", Results(entries), {"machine": "A, B", "note": "", "commit": "c"})
-    conditions, found = btf_chart_rows.read(tmp_path / "a.csv")
-    assert found == entries
-    assert conditions == {"machine": "A, B", "note": "", "commit": "c"}
+    rows = [_entry("svd", 1 / 3), _entry("kcta 2", 21, tile="net", ratio=50, unseen=19)]
+    conditions = {"machine": "A, B", "note": "", "commit": "123456789e12"}
+    page.write_rows(tmp_path / "a.csv", rows, conditions)
+    assert page.read_rows(tmp_path / "a.csv") == (conditions, rows)
 
 
-def _found(entries: list[Entry]) -> dict:
-    return {(v.target.split(",")[-1].strip(), v.where): v.met for v in verdicts(Results(entries))}
+def test_a_row_of_the_same_name_replaces_an_earlier_one():
+    (row,) = Results([_entry("svd", 20), _entry("svd", 21)]).all
+    assert row["psnr"] == 21
+
+
+def _found(entries: list[dict]) -> dict:
+    judged = verdicts(Results(entries))
+    return {(v["target"].split(",")[-1].strip(), v["where"]): v["met"] for v in judged}
 
 
 def test_targets_are_judged_where_they_are_missed_most():
@@ -140,24 +145,3 @@ def test_methods_that_the_library_does_not_know_are_left_out():
     assert [m.name for m in methods(("svd", "kcta"), ["kcta 3", "svd"])] == ["svd", "kcta 3"]
     (sought,) = methods(("svd", "kcta"), ["kcta"])
     assert dict(sought.options) == {"method": "kcta"}
-
-
-def test_the_sheet_keeps_lengths(tmp_path):
-    import btf_chart_scene
-
-    lines = [
-        line.split() for line in btf_chart_scene.write_sheet(tmp_path / "sheet.obj").read_text().splitlines()
-    ]
-    v, vn, vt = (
-        np.array([line[1:] for line in lines if line[0] == kind], float) for kind in ("v", "vn", "vt")
-    )
-    np.testing.assert_allclose((v[:, 1:] * vn[:, 1:]).sum(axis=1), 1, atol=1e-5)
-    arc = np.linalg.norm(v[1] - v[0]) / (vt[1, 1] - vt[0, 1])
-    axis = (v[:, 0].max() - v[:, 0].min()) / (vt[:, 0].max() - vt[:, 0].min())
-    assert arc == pytest.approx(axis, rel=1e-3)
-    face = (
-        np.array([corner.split("/")[0] for corner in next(line for line in lines if line[0] == "f")[1:]], int)
-        - 1
-    )
-    normal = np.cross(v[face[1]] - v[face[0]], v[face[2]] - v[face[0]])
-    assert normal @ vn[face[0]] > 0

@@ -1,29 +1,19 @@
-"""The measuring scripts on made-up data: their pages are written, what is done is kept, and they go on."""
+"""Measured pages on made-up data: they are written, what is done is kept, and a run goes on."""
 
 from __future__ import annotations
 
-from dataclasses import replace
-
-import btf_chart
-import chart
-import figures
-import flip_metric
-import for_scene
-import headless_blender
 import inputs
-import models
-import perceptual
-import plots
-import provenance
 import pytest
-import uniform_moments
+from bench import __main__ as bench
+from bench import blender, charts, flip_metric, provenance
+from bench.mitsuba import Mitsuba
+from bench.pages import figures_check
 from campaigns import Campaign, made_up_data, only_kept, run_script
-from mitsuba_runs import Mitsuba
 
 
 @pytest.fixture(scope="module")
 def folders(tmp_path_factory, measurement_file):
-    """The folders of the data and of kept results: the scripts share fits."""
+    """The folders of the data and of kept results: the pages share fits."""
     folder = tmp_path_factory.mktemp("campaigns")
     return made_up_data(folder / "data", measurement_file), folder / "work"
 
@@ -33,24 +23,20 @@ def campaign(folders, tmp_path, monkeypatch):
     """Without Blender and Mitsuba, which have their place in the long tests."""
 
     def absent(*_arguments):
-        raise headless_blender.BlenderError("no Blender")
+        raise blender.BlenderError("no Blender")
 
-    monkeypatch.setattr(headless_blender, "run", absent)
+    monkeypatch.setattr(blender, "run", absent)
     monkeypatch.setattr(Mitsuba, "installed", lambda _self: False)
+    monkeypatch.setattr(provenance, "busy_threads", lambda: 0.0)  # looks for two seconds
     data, work = folders
     return Campaign(work, tmp_path / "out", data, monkeypatch)
 
 
-def _less(monkeypatch, module, **values):
-    """Makes --quick quicker."""
-    monkeypatch.setattr(module, "QUICK", replace(module.QUICK, **values))
-
-
-def _kept(campaign, module, capsys, *options) -> bool:
+def _kept(campaign, name, capsys, *options) -> bool:
     """Whether a second run makes nothing again; its plots are not drawn."""
     capsys.readouterr()
-    campaign.patch.setattr(plots, "save", lambda *_arguments, **_options: None)
-    assert campaign.run(module, *options) == 0
+    campaign.patch.setattr(charts, "save", lambda *_arguments, **_options: None)
+    assert campaign.run(name, *options) == 0
     return only_kept(capsys.readouterr().out)
 
 
@@ -61,51 +47,54 @@ def test_without_data_a_sentence(name, tmp_path):
     assert "there is no test data" in done.stdout
 
 
-def test_figures(campaign, monkeypatch, capsys):
-    small = {"size": (16, 12), "batch_spp": 16, "check_size": (8, 6), "uniform_spp": 500, "floor_spp": 8}
-    _less(monkeypatch, figures, **small)
-    assert campaign.run(figures) == 0
+def test_figures(campaign, capsys):
+    small = ("--size=16x12", "--batch-spp=16", "--floor-spp=8")
+    assert campaign.run("figures", *small) == 0
     assert "Suzanne is left out: no Blender" in capsys.readouterr().out
-    page = campaign.page("README.md")
+    page = campaign.page("figures/README.md")
     assert "contact_sheet.png" in page
-    assert (campaign.output / "contact_sheet.png").stat().st_size > 5000
-    rows = [row for row in campaign.rows("figures.csv") if row["what"] == "picture"]
-    assert {row["figure"] for row in rows} == {"7.11", "7.12"}
+    assert (campaign.output / "figures/contact_sheet.png").stat().st_size > 5000
+    rows = [row for row in campaign.rows("figures/figures.csv") if row["what"] == "picture"]
+    assert {row["figure"].split()[0] for row in rows} == {"7.11", "7.12"}
     assert all(0 < float(row["relmse"]) < 1 for row in rows)
-    if uniform_moments.built():
-        assert "| 7.11 " in campaign.page("check.md")
-    assert _kept(campaign, figures, capsys)
-    assert campaign.page("README.md") == page
+    assert _kept(campaign, "figures", capsys, *small)
+    assert campaign.page("figures/README.md") == page
 
 
-def test_chart(campaign, monkeypatch, capsys):
-    _less(monkeypatch, chart, size=(16, 12), bound_hits=2)
-    assert campaign.run(chart) == 0
-    page = campaign.page("README.md")
+def test_the_check_of_figures(campaign, capsys):
+    if not figures_check._PROGRAM.is_file():
+        pytest.skip("uniform_moments is not built")
+    small = ("--size=8x6", "--uniform-spp=500")
+    assert campaign.run("figures_check", *small) == 0
+    assert "| 7.11 " in campaign.page("figures/check.md")
+    assert _kept(campaign, "figures_check", capsys, *small)
+
+
+def test_chart(campaign, capsys):
+    small = ("--size=16x12", "--bound-hits=2")
+    assert campaign.run("chart", *small) == 0
+    page = campaign.page("chart/README.md")
     for heading in ("Targets", "Equal error", "Equal time", "Equal samples", "Mitsuba", "Cycles"):
         assert f"\n## {heading}\n" in page
     assert "Mitsuba is left out" in page
-    tables = [
-        path for path in campaign.output.glob("*.csv") if path.name not in ("targets.csv", "mitsuba.csv")
-    ]
-    assert len(tables) == 3
-    for table in tables:
-        assert f"({table.with_suffix('.png').name})" in page
-        assert table.with_suffix(".png").stat().st_size > 5000
-        curves = {row["curve"] for row in campaign.rows(table.name)}
+    assert "seconds of `mis` to equal error at most 1/5 of `uniform`" in page
+    rows = [row for row in campaign.rows("chart/chart.csv") if row["seconds"]]
+    scenes = {row["scene"] for row in rows}
+    assert len(scenes) == 3
+    for scene in scenes:
+        curves = {row["curve"] for row in rows if row["scene"] == scene}
         assert curves >= {"uniform", "mis", "mis-dissertation", "mis-ggx", "product"}
-    targets = campaign.rows("targets.csv")
-    assert {row["met"] for row in targets} <= {"True", "False", ""}
-    assert any("uniform" in row["target"] for row in targets)
-    assert _kept(campaign, chart, capsys)
+        assert f"![{scene}]" in page
+    assert all(path.stat().st_size > 5000 for path in (campaign.output / "chart").glob("*.png"))
+    assert _kept(campaign, "chart", capsys, *small)
 
 
-def test_btf_chart(campaign, monkeypatch, capsys, tmp_path):
+def test_btf_chart(campaign, capsys, monkeypatch, tmp_path):
     monkeypatch.chdir(tmp_path)
     inputs.write_ribs(tmp_path / "ribs.obj")
-    small = {"tiles": ("ribs.obj",), "texels": 8, "directions": 16, "held_out": 4, "size": (16, 12), "spp": 8}
-    _less(monkeypatch, btf_chart, **small, speed_size=(12, 9), speed_reference=16)
-    assert campaign.run(btf_chart, "--methods=svd") == 0
+    small = ("--tiles=ribs.obj", "--texels=8", "--directions=16", "--held-out=4", "--size=16x12", "--spp=8")
+    small += ("--speed-size=12x9", "--speed-reference=16", "--methods=svd")
+    assert campaign.run("btf_chart", *small) == 0
     rows = campaign.rows("chart_btf.csv")
     assert {(row["tile"], row["method"], row["ratio"]) for row in rows if row["ratio"]} == {
         ("ribs.obj", "svd", "10"),
@@ -114,41 +103,59 @@ def test_btf_chart(campaign, monkeypatch, capsys, tmp_path):
     page = campaign.page("chart_btf.md")
     for words in ("## Targets", "## ribs.obj", "## Costs at 1:20", "commit", "seed 1"):
         assert words in page
-    assert _kept(campaign, btf_chart, capsys, "--methods=svd")
-    campaign.run(btf_chart, "--methods=svd", "--ratios=5", "--add")
+    assert _kept(campaign, "btf_chart", capsys, *small)
+    campaign.run("btf_chart", *small, "--ratios=5", "--add")
     assert "Its rows were added to those of" in campaign.page("chart_btf.md")
     assert {row["ratio"] for row in campaign.rows("chart_btf.csv") if row["ratio"]} == {"5", "10", "20"}
 
 
-def test_models(campaign, monkeypatch, capsys):
-    monkeypatch.setattr(provenance, "busy_threads", lambda: 0.0)  # looks for two seconds
-    _less(monkeypatch, models, lobes=(1,), bytes=(2000,))
-    assert campaign.run(models) == 0
+def test_models(campaign, capsys):
+    small = ("--lobes=1", "--bytes=2000")
+    assert campaign.run("models", *small) == 0
     page = campaign.page("models.md")
     assert "| blue-metallic-paint | principled |" in page
     for picture in ("error_by_lobes", "error_by_bytes"):
         assert (campaign.output / f"models/{picture}.png").stat().st_size > 5000
-    assert _kept(campaign, models, capsys)
+    assert _kept(campaign, "models", capsys, *small)
     assert campaign.page("models.md") == page
 
 
-def test_perceptual(campaign, monkeypatch, capsys):
+def test_measurements(campaign, capsys):
+    small = ("--size=16x12", "--small-size=8x6", "--converged-spp=16")
+    assert campaign.run("measure", *small) == 0
+    page = campaign.page("measurements.md")
+    assert "16x12, 16 light directions a pixel" in page
+    assert "| product | " in page
+    assert _kept(campaign, "measure", capsys, *small)
+
+
+def test_perceptual(campaign, capsys):
     try:
         flip_metric._flip()
     except flip_metric.NoFlipError as absent:
         pytest.skip(str(absent))
-    _less(monkeypatch, perceptual, size=(16, 12))
-    assert campaign.run(perceptual) == 0
+    assert campaign.run("perceptual", "--size=16x12") == 0
     assert "(perceptual/flip_by_error.png)" in campaign.page("perceptual.md")
     rows = [row for row in campaign.rows("perceptual/perceptual.csv") if row["flip_mean"]]
     assert {row["scene"] for row in rows} == {"sphere, venice_sunset", "bunny, venice_sunset"}
     assert {row["max_lobes"] for row in rows} == {"16", "2"}
-    assert _kept(campaign, perceptual, capsys)
+    assert _kept(campaign, "perceptual", capsys, "--size=16x12")
 
 
-def test_for_scene(campaign, monkeypatch, capsys):
-    _less(monkeypatch, for_scene, spp=8)
-    assert campaign.run(for_scene) == 0
-    assert "moved camera" in campaign.page("for_scene.md")
+def test_for_scene(campaign, capsys):
+    assert campaign.run("for_scene", "--spp=8") == 0
+    page = campaign.page("for_scene.md")
+    assert "moved camera" in page
     assert "blue-metallic-paint" in {row["material"] for row in campaign.rows("for_scene.csv")}
-    assert _kept(campaign, for_scene, capsys)
+    assert _kept(campaign, "for_scene", capsys, "--spp=8")
+    # From the kept numbers alone.
+    (campaign.output / "for_scene.md").unlink()
+    assert campaign.run("for_scene", "--page") == 0
+    assert campaign.page("for_scene.md") == page
+
+
+def test_the_runner_lists_its_pages_and_refuses_others(capsys):
+    assert bench.main(["--list"]) == 0
+    assert all(f"\n  {name} " in capsys.readouterr().out for name in ["chart"])
+    assert bench.main(["unknown"]) == 2
+    assert "no page 'unknown'" in capsys.readouterr().err

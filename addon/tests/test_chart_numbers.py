@@ -2,13 +2,19 @@
 
 from __future__ import annotations
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
-from agreement import agreement
-from chart_result import Point, Result
-from curve import Curve, ratio
-from progress import Progress
-from scenes import Scene
+from bench import scenes
+from bench.agreement import agreement
+from bench.curve import Curve, ratio
+from bench.pages import chart
+from bench.pages.chart import Result
+from bench.progress import Progress
+from bench.reference import fit_error
+from bench.run import Run, key
+from bench.scenes import Scene
 
 SOMEWHERE = np.ones((30, 40), bool)
 
@@ -42,8 +48,6 @@ def test_one_wrong_pixel_is_seen_where_it_is_looked_for():
 
 
 def test_the_fits_error_is_found_under_noise():
-    from fit_error import fit_error
-
     rng = np.random.default_rng(3)
     reference = rng.uniform(0.5, 2.0, (60, 80, 3)).astype(np.float32)
     bias = rng.normal(0, 0.01, reference.shape)
@@ -87,19 +91,21 @@ def test_the_last_crossing_counts():
     ).value == pytest.approx(32**0.5)
 
 
-def _result(points: dict) -> Result:
-    return Result(None, points, None, 2, None, {})
+def _points(spp: int, seconds: float, mse: float, *errors: float) -> list[dict]:
+    return [
+        {"spp": spp, "seed": s, "seconds": seconds, "mse": mse, "relmse": e} for s, e in enumerate(errors)
+    ]
 
 
 def test_gains_and_levels():
     points = {
-        "mis": [Point(1, s, 1.0, 0.04, e) for s, e in ((1, 0.2), (2, 0.4))] + [Point(2, 1, 2.0, 0.01, 0.1)],
-        "product": [Point(1, s, 1.5, 0.01, e) for s, e in ((1, 0.1), (2, 0.2))]
-        + [Point(2, 1, 3.0, 0.0, 0.05)],
+        "mis": _points(1, 1.0, 0.04, 0.2, 0.4) + _points(2, 2.0, 0.01, 0.1),
+        "product": _points(1, 1.5, 0.01, 0.1, 0.2) + _points(2, 3.0, 0.0, 0.05),
     }
-    result = _result(points)
-    assert result.gain("product", "mis", 1).value == pytest.approx(0.5)
-    assert result.gain("product", "mis", 1).error == pytest.approx(0.5 * (2 * (1 / 3) ** 2) ** 0.5)
+    result = Result({}, points, 2)
+    value, error = result.gain("product", "mis", 1)
+    assert value == pytest.approx(0.5)
+    assert error == pytest.approx(0.5 * (2 * (1 / 3) ** 2) ** 0.5)
     assert (result.level, result.level_seconds) == (0.1, 2.0)
     assert result.means("mis")[1] == pytest.approx((1.0, 0.3, 0.2))
     assert result.seconds_to_level("product").value == pytest.approx(1.5 * 2 ** (np.log(1.5) / np.log(3)))
@@ -107,43 +113,40 @@ def test_gains_and_levels():
 
 def test_share_of_the_bound():
     bound = {"mis": 1.0, "product": 0.4, "exact": 0.2}
-    assert Result(None, {}, None, 2, bound, {}).share_of_bound() == pytest.approx(0.75)
+    assert Result({"bound": bound}, {}, 2).share_of_bound == pytest.approx(0.75)
 
 
 @pytest.fixture
-def renders(tmp_path):
-    from renders import Renders, Settings
+def run(tmp_path):
+    settings = SimpleNamespace(size=(8, 6), bound_hits=200)
+    return Run("it", tmp_path / "work", tmp_path / "out", settings, threads=1)
 
-    return Renders(Settings(tmp_path / "kept", (8, 6), 1, 1), Progress(), fresh=False)
 
-
-def test_the_bound_is_read_from_its_program(renders, tmp_path, monkeypatch):
-    import product_bound
-
+def test_the_bound_is_read_from_its_program(run, tmp_path, monkeypatch):
     scene = Scene("bunny", tmp_path / "mesh", "y", tmp_path / "world", tmp_path / "model")
+    program = tmp_path / "bench/product_bound"
+    program.parent.mkdir()
     for path in (scene.mesh, scene.world, scene.material):
         path.write_text("")
-    program = tmp_path / "product_bound"
-    program.write_text(
-        """#!/bin/sh\necho '{"hits": 200, "variance": {"mis": 3, "product": 2, "exact": 1}}'\n"""
-    )
-    monkeypatch.setattr(product_bound, "_PROGRAM", program)
+    said = '{"hits": 200, "variance": {"mis": 3, "product": 2, "exact": 1}}'
+    program.write_text(f"#!/bin/sh\necho '{said}'\n")
+    monkeypatch.setattr(chart, "BUILT", tmp_path)
     program.chmod(0o755)
     expected = {"mis": 3, "product": 2, "exact": 1}
-    assert product_bound.of(scene, renders, 200) == expected
+    assert chart._bound(run, scene) == expected
     program.chmod(0o644)  # kept: it is not run again
-    assert product_bound.of(scene, renders, 200) == expected
-    monkeypatch.setattr(product_bound, "_PROGRAM", tmp_path / "none")
-    assert product_bound.of(scene, renders, 200) is None
+    assert chart._bound(run, scene) == expected
+    monkeypatch.setattr(chart, "BUILT", tmp_path / "none")
+    assert chart._bound(run, scene) is None
 
 
-def test_work_that_fails_is_not_kept(renders):
-    def fail(report):
+def test_work_that_fails_is_not_kept(run):
+    def fail():
         raise RuntimeError
 
     for _ in range(2):
         with pytest.raises(RuntimeError):
-            renders.keep("it", "it", {}, fail)
+            run.keep("it", "it", {}, fail)
 
 
 def test_progress_counts_what_was_kept_but_not_its_time(capsys):
@@ -158,8 +161,6 @@ def test_progress_counts_what_was_kept_but_not_its_time(capsys):
 
 
 def test_a_key_depends_on_contents_and_not_on_names(tmp_path):
-    from renders import key
-
     a, b, c = (tmp_path / name for name in "abc")
     for path, text in ((a, "same"), (b, "same"), (c, "other")):
         path.write_text(text)
@@ -174,10 +175,9 @@ def test_reference_mode_is_the_same_scene_with_the_measurement(tmp_path):
 
 
 def test_the_synthetic_sun_is_small_and_has_its_share(tmp_path):
-    import synthetic_sky
     from velour.native import images
 
-    pixels = images.read(synthetic_sky.write(tmp_path / "sky.exr")).astype(np.float64) @ [
+    pixels = images.read(scenes.write_sunny_sky(tmp_path / "sky.exr")).astype(np.float64) @ [
         0.2126,
         0.7152,
         0.0722,
@@ -195,17 +195,33 @@ def test_the_synthetic_sun_is_small_and_has_its_share(tmp_path):
     assert np.degrees(np.pi * (1 - column / height)) == pytest.approx(-60, abs=0.05)
 
 
-def test_the_sphere_is_closed_and_its_normals_point_out(tmp_path):
-    import sphere
+def _obj(path) -> tuple[dict[str, np.ndarray], np.ndarray]:
+    """Arrays by kind, and the numbers of the faces' points."""
+    lines = [line.split() for line in path.read_text().splitlines()]
+    faces = [[part.split("/")[0] for part in line[1:]] for line in lines if line[0] == "f"]
+    arrays = {
+        kind: np.array([line[1:] for line in lines if line[0] == kind], float) for kind in ("v", "vn", "vt")
+    }
+    return arrays, np.array(faces, int) - 1
 
-    lines = [line.split() for line in sphere.write(tmp_path / "s.obj").read_text().splitlines()]
-    points = np.array([line[1:] for line in lines if line[0] == "v"], float)
-    faces = (
-        np.array([[part.split("//")[0] for part in line[1:]] for line in lines if line[0] == "f"], int) - 1
-    )
-    a, b, c = points[faces].transpose(1, 0, 2)
+
+def test_the_sphere_is_closed_and_its_normals_point_out(tmp_path):
+    arrays, faces = _obj(scenes.write_sphere(tmp_path / "s.obj"))
+    points, same = np.unique(arrays["v"].round(6), axis=0, return_inverse=True)
+    a, b, c = points[same[faces]].transpose(1, 0, 2)
     assert np.einsum("ij,ij->i", a, np.cross(b, c)).sum() / 6 == pytest.approx(4 / 3 * np.pi, rel=2e-3)
-    edges = np.unique(np.stack([faces, np.roll(faces, -1, axis=1)], axis=-1).reshape(-1, 2), axis=0)
-    off_poles = edges[(np.abs(points[edges, 2]) <= 1 - 1e-6).all(axis=1)]
-    assert len(off_poles) > 1000
-    np.testing.assert_array_equal(np.unique(off_poles[:, ::-1], axis=0), off_poles)
+    edges = np.stack([same[faces], np.roll(same[faces], -1, axis=1)], axis=-1).reshape(-1, 2)
+    edges = np.unique(edges, axis=0)
+    np.testing.assert_array_equal(np.unique(edges[:, ::-1], axis=0), edges)
+    np.testing.assert_allclose(arrays["v"], arrays["vn"])
+
+
+def test_the_sheet_keeps_lengths(tmp_path):
+    arrays, faces = _obj(scenes.write_sheet(tmp_path / "sheet.obj"))
+    v, vn, vt = (arrays[kind] for kind in ("v", "vn", "vt"))
+    np.testing.assert_allclose((v[:, 1:] * vn[:, 1:]).sum(axis=1), 1, atol=1e-5)
+    arc = np.linalg.norm(v[2] - v[0]) / np.abs(vt[2, 1] - vt[0, 1])
+    axis = np.ptp(v[:, 0]) / np.ptp(vt[:, 0])
+    assert arc == pytest.approx(axis, rel=1e-3)
+    a, b, c = v[faces[0]]
+    assert np.cross(b - a, c - a) @ vn[faces[0, 0]] > 0

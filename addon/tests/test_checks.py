@@ -6,7 +6,7 @@ import subprocess
 import sys
 
 import pytest
-import test_times
+from bench.pages import test_times
 from checks import campaign, cases, groups, measured_pages, running
 from checks.cases import FAILED, PASSED, SKIPPED, Case
 
@@ -118,7 +118,9 @@ def test_the_table_of_times_has_groups_their_sum_and_the_slowest():
             "slowest": [("Lobe.Integrates", 30.0)],
         },
     }
-    page = test_times.text(groups)
+    page = test_times.text(
+        groups, {"date": "d", "commit": "c", "machine": "m", "threads": 2, "seed": 0, "shown": 10}
+    )
     for line in (
         "| style | 5 | 12 | 20 |",
         "| all | 105 | 312 | 610 |",

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import threading
 
-import data_files
+from bench import data_files
 
 _EXPAND = """
 import pathlib, sys, time

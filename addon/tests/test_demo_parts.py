@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-import demo_parts
 import pytest
-from demo_parts import Part, Parts
-from progress import Progress
+from bench import parts
+from bench.parts import Part, Parts
+from bench.progress import Progress
 
 PART = Part("it", "the thing", {"first": 1, "second": 2}, ("file", "folder"))
 
@@ -65,7 +65,7 @@ def test_a_file_that_is_gone(maker):
 
 
 def test_other_code(maker, monkeypatch):
-    monkeypatch.setattr(demo_parts, "_code", lambda: "other")
+    monkeypatch.setattr(parts, "_code", lambda: "other")
     assert maker.make()["count"] == 2
 
 

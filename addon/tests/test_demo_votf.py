@@ -2,7 +2,7 @@
 
 import unittest.mock
 
-import demo_votf
+import demo
 import numpy as np
 import pytest
 from velour.native import Measurement, fit_job, images, microsurface_job
@@ -27,9 +27,9 @@ def blocks(picture: np.ndarray) -> np.ndarray:
 
 def test_shells_look_like_the_geometry_that_they_stand_for(metal, tmp_path):
     begun = []
-    with unittest.mock.patch.multiple(demo_votf, _ROWS=3, _CLOTH=2):
-        report = demo_votf.make_pictures(tmp_path, metal, (96, 54), 64, begin=begun.append)
-    assert begun == [*demo_votf.PART.steps][1:]
+    with unittest.mock.patch.multiple(demo, _ROWS=3, _CLOTH=2):
+        report = demo.make_votf_pictures(tmp_path, metal, (96, 54), 64, begin=begun.append)
+    assert begun == [*demo.VOTF.steps][1:]
     shell, geometry = (blocks(images.read(tmp_path / f"{name}.exr")) for name in ("model", "reference"))
     floor = geometry[-1:].mean(axis=1, keepdims=True)
     assert np.square(shell - geometry)[2:].sum() < 0.1 * np.square(floor - geometry[2:]).sum()

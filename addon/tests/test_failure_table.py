@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-import failure_modes
+from bench.page import replaced
+from bench.pages import failure_modes
 from conftest import ROOT
-from generated import replaced
 
 
 def _test(kind: str, case: str, **numbers: str) -> dict:
@@ -21,7 +21,7 @@ def test_models_of_a_case_stand_together_and_the_refused_are_left_out():
         _test("parametric", "black", **seen),
     ]
     numbers = ["0.010 / 0.200", "-", "-", "-", "1.000 / 0.900"]
-    assert failure_modes._rows({"testsuites": [{"testsuite": cases}]}) == [
+    assert failure_modes.rows({"testsuites": [{"testsuite": cases}]}) == [
         ["near-mirror, bandwidth 1e4", "scattered", *numbers],
         ["near-mirror, bandwidth 1e4", "parametric", *numbers],
         ["black", "parametric", *numbers],

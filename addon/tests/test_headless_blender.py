@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import subprocess
 
-import headless_blender
 import pytest
+from bench import blender as headless
+from bench import inside
 
 
 @pytest.fixture
@@ -24,15 +25,28 @@ def blender(tmp_path, monkeypatch):
 def test_its_lines_are_heard_and_kept(blender, tmp_path):
     blender("echo said; echo warned >&2; echo ${@: -1}")
     heard = []
-    headless_blender.run("demo_scene.py", {"size": 3}, tmp_path / "log", hear=heard.append)
-    assert heard == ["said\n", "warned\n", '{"size": 3}\n']
+    assert headless.run("demo", {"size": 3}, tmp_path / "log", hear=heard.append) is None
+    assert heard[:2] == ["said\n", "warned\n"]
+    assert """bench.inside.start('demo', '{"size": 3}', """ in heard[2]
     assert (tmp_path / "log").read_text() == "".join(heard)
+
+
+def test_what_a_script_returns_comes_back(tmp_path, monkeypatch):
+    monkeypatch.setattr(inside.importlib, "import_module", lambda _name: Doubling)
+    inside.start("doubling", '{"size": 3}', str(tmp_path / "report.json"))
+    assert (tmp_path / "report.json").read_text() == '{"size": 6}'
+
+
+class Doubling:
+    @staticmethod
+    def main(task):
+        return {"size": 2 * task["size"]}
 
 
 def test_its_failure_is_told_with_the_end_of_the_log(blender, tmp_path):
     blender("echo one; echo; echo its reason; exit 7")
-    with pytest.raises(headless_blender.BlenderError) as caught:
-        headless_blender.run("demo_scene.py", {}, tmp_path / "log")
+    with pytest.raises(headless.BlenderError) as caught:
+        headless.run("demo", {}, tmp_path / "log")
     assert str(caught.value) == f"Blender failed with status 7; {tmp_path}/log ends: one / its reason"
 
 
@@ -45,5 +59,5 @@ def test_it_does_not_outlive_ctrl_c(blender, tmp_path):
 
     heard = []
     with pytest.raises(KeyboardInterrupt):
-        headless_blender.run("demo_scene.py", {}, tmp_path / "log", hear=interrupt)
+        headless.run("demo", {}, tmp_path / "log", hear=interrupt)
     assert subprocess.run(["ps", "-p", heard[0].strip()], stdout=subprocess.DEVNULL).returncode == 1

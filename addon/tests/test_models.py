@@ -2,18 +2,18 @@
 
 from __future__ import annotations
 
-import csv
 import re
+from types import SimpleNamespace
 
-import models_tables
-import models_text
 import pytest
+from bench import page
+from bench.page import replaced
+from bench.pages import models
+from bench.pages.models import ANGLES, meets, met, target
+from bench.run import Run
 from campaigns import only_kept, run_script
 from command_line import undated
 from conftest import ROOT
-from generated import replaced
-from model_runs import Result, Row
-from models_targets import ANGLES, NO_NOISE, meets, met, target
 
 PAGE = "above\n<!-- fit: written by scripts/models -->\nold\n<!-- end of fit -->\nbelow\n"
 
@@ -35,64 +35,76 @@ def test_every_generated_page_has_its_part():
         replaced((ROOT / f"docs/results/{name}.md").read_text(encoding="utf-8"), name, "")
 
 
+def _row(errors, noise=()) -> tuple[dict, dict]:
+    """A row and its material's noise."""
+    return tuple(
+        {f"error_{a}": e for a, e in zip(ANGLES, list(x) or [None] * 5, strict=True)} for x in (errors, noise)
+    )
+
+
 def test_targets():
     assert [target(angle, None) for angle in ANGLES] == [0.02, 0.02, 0.02, 0.02, 0.04]
     assert target("75", 0.05) == 0.05
     assert target("85", 0.03) == 0.04
-    assert meets("5", 0.02, NO_NOISE)
-    assert not meets("5", 0.0201, NO_NOISE)
-    errors = dict(zip(ANGLES, (0.01, 0.03, 0.03, 0.02, None), strict=True))
-    assert met(errors, NO_NOISE) == 2
-    assert met(errors, {**NO_NOISE, "30": 0.04}) == 3
+    assert meets(*_row([0.02] * 5)[:1], "5", {})
+    assert not meets(*_row([0.0201] * 5)[:1], "5", {})
+    errors = (0.01, 0.03, 0.03, 0.02, None)
+    assert met(*_row(errors)) == 2
+    assert met(*_row(errors, (None, 0.04, None, None, None))) == 3
 
 
-def _result(name: str, seconds: float) -> Result:
-    errors = dict(zip(ANGLES, (0.01, 0.02, 0.03, 0.04, None), strict=True))
-    common = {"relative_l2": 0.02, "by_view_angle": errors, "parameter_bytes": 44, "seconds": seconds}
-    fit = {**common, "bytes": 4000, "lobes": 7}
-    cost = dict(zip(models_tables.COSTS, (50.0, 100.0, 10.0, 20.0), strict=True))
-    values = {"base_color": [0.1, 0.2, 0.3], "metallic": 1.0}
+def _material(name: str, seconds: float) -> list[dict]:
+    errors, noise = _row((0.01, 0.02, 0.03, 0.04, None), (None, None, 0.05, None, None))
+    cost = dict(zip(models.COSTS, (50.0, 100.0, 10.0, 20.0), strict=True))
+    common = {"relative_l2": 0.02, **errors, "parameter_bytes": 44, "seconds": seconds, **cost}
+    fit = common | {"bytes": 4000, "lobes": 7}
     rows = {
-        "scattered": Row(fit, cost, {"views": 47}),
-        "ggx": Row({**common, "ggx": {"alpha": [0.25, 0.25]}}, cost, {}),
-        "principled": Row({**common, "principled": values}, cost, {}),
+        "noise": noise,
+        "measurement": {"bytes": 35_000_000, "f": 40.0, "f_16": 30.0},
+        "scattered": fit | {"views": 47},
+        "ggx": common | {"alpha": 0.25},
+        "principled": common,
+        models.UNTURNED: fit,
     }
-    curves = {"scattered": {4: fit}}
-    noise = {**NO_NOISE, "60": 0.05}
-    return Result(name, 35_000_000, noise, {"f": 40.0, "f_16": 30.0}, rows, curves, curves, fit)
+    first = dict.fromkeys(("bound", "value", *fit, "views", "alpha"))
+    found = [first | {"material": name, "model": model} | own for model, own in rows.items()]
+    return [
+        *found,
+        found[2] | {"bound": "max-lobes", "value": 4},
+        found[2] | {"bound": "bytes", "value": 4000},
+    ]
 
 
 @pytest.fixture
-def results() -> list[Result]:
-    return [_result("nickel", 1.0), _result("paper", 3.0)]
-
-
-def test_tables_name_every_material_and_model(results):
-    errors = models_tables.errors(results).splitlines()
-    assert len(errors) == 2 + 2 * 4
-    assert errors[2] == "| nickel | noise |  | - | - | 0.0500 | - | - |"
-    assert errors[3] == "| nickel | scattered | 0.0200 | **0.0100** | **0.0200** | **0.0300** | 0.0400 | - |"
-    costs = models_tables.costs(results).splitlines()
-    assert costs[2] == "| nickel | measurement |  | 35000000 |  |  | 40 | - | 30 | - |"
-    assert costs[3] == "| nickel | scattered | 7 | 4000 | 44 | 1.00 | 50 | 100 | 10 | 20 |"
-    assert "| paper | 0.250 | 0.0200 |" in models_tables.ggx(results)
-    assert "| nickel | 0.100, 0.200, 0.300 | 1.000 |" in models_tables.principled(results)
-    assert "| nickel | 47, 7 | 4000 | 0.0200, 0.0100 / " in models_tables.scattered(results)
-
-
-def test_pages_and_rows_are_written(results, tmp_path):
-    (tmp_path / "models").mkdir()
+def pages(tmp_path):
+    """Writes the pages of two materials; returns the text of one."""
+    values = {"base_color": [0.1, 0.2, 0.3], "metallic": 1.0}
+    rows = [*_material("nickel", 1.0), *_material("paper", 3.0)]
     conditions = {"machine": "m", "date": "d", "commit": "c", "seed": 1, "threads": 2, "load": 1.25}
-    models_text.write(ROOT / "docs/results", tmp_path, results, {}, conditions)
-    page = (tmp_path / "models.md").read_text(encoding="utf-8")
-    assert "| scattered | 0.0200 | 6 of 8 | 4 | 44 | 2.00 | 50 | 100 | 10 | 20 |" in page
-    assert "commit c" in page
-    assert "other programs kept 1.2 processors busy" in page
-    with open(tmp_path / "models/models.csv", newline="") as file:
-        rows = list(csv.DictReader(file))
-    assert {row["model"] for row in rows if row["material"] == "paper"} == {
-        *("noise", "measurement", "scattered", "ggx", "principled", "scattered, unturned")
-    }
+    page.write_rows(tmp_path / models.CSV, rows, conditions)
+    conditions, rows = page.read_rows(tmp_path / models.CSV)
+    run = Run("models", tmp_path / "work", tmp_path, SimpleNamespace())
+    principled = {"nickel": values, "paper": values}
+    models.write(run, {"conditions": conditions, "rows": rows, "principled": principled})
+    return lambda name: (tmp_path / f"{name}.md").read_text(encoding="utf-8")
+
+
+def test_tables_name_every_material_and_model(pages):
+    shown = pages("models")
+    for line in (
+        "| nickel | noise |  | - | - | 0.0500 | - | - |",
+        "| nickel | scattered | 0.0200 | **0.0100** | **0.0200** | **0.0300** | 0.0400 | - |",
+        "| nickel | measurement |  | 35000000 |  |  | 40 | - | 30 | - |",
+        "| nickel | scattered | 7 | 4000 | 44 | 1.00 | 50 | 100 | 10 | 20 |",
+        "| scattered | 0.0200 | 6 of 8 | 4 | 44 | 2.00 | 50 | 100 | 10 | 20 |",
+    ):
+        assert f"\n{line}\n" in shown
+    assert shown.count("\n| paper | ggx |") == 2
+    assert "commit c" in shown
+    assert "other programs kept 1.2 processors busy" in shown
+    assert "| paper | 0.250 | 0.0200 |" in pages("ggx")
+    assert "| nickel | 0.100, 0.200, 0.300 | 1.000 |" in pages("principled")
+    assert "| nickel | 47, 7 | 4000 | 0.0200, 0.0100 / " in pages("fit")
 
 
 def _page(folder) -> str:

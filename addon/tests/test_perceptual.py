@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import csv
 
-import flip_metric
 import numpy as np
 import pytest
+from bench import charts, flip_metric
+from bench.pages.perceptual import flips
 from campaigns import only_kept, run_script
 
 SIDE = 64
@@ -56,7 +57,7 @@ def test_noise_is_larger_close_up(flip):
 
 def test_display_is_the_srgb_curve_upside_down():
     linear = np.array([[[0.0, 0.0031308, 0.18]], [[1.0, 7.0, -1.0]]])
-    found = flip_metric.display(linear)
+    found = charts.display(linear)
     np.testing.assert_allclose(found[0], [[1, 1, 0]])
     np.testing.assert_allclose(found[1], [[0, 0.04045, 0.46136]], atol=1e-5)
 
@@ -70,14 +71,12 @@ def test_exposure_makes_the_object_gray():
 
 
 def test_the_percentile_and_the_mean_are_the_objects(flip):
-    from perceptual_runs import Seen
-
     reference = 0.2 + 0 * _noise(3)
     test, where = reference.copy(), np.zeros((SIDE, SIDE), bool)
     test[:16] *= 3  # row 0 is the bottom
     where[40:] = True
-    assert Seen.of(reference, test, where).mean < 1e-3
-    assert Seen.of(reference, test, ~where).percentile > 0.2
+    assert flips(reference, test, where)[0] < 1e-3
+    assert flips(reference, test, ~where)[1] > 0.2
 
 
 @pytest.mark.long

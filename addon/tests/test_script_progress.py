@@ -9,8 +9,8 @@ import subprocess
 import sys
 import time
 
-import progress
 import pytest
+from bench import progress
 from command_line import hear_ctrl_c
 from conftest import ROOT
 

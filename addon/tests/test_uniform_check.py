@@ -2,17 +2,19 @@
 
 from __future__ import annotations
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
-import tail_bound
-import velour_cli
-from agreement import agreement
+from bench import tail_bound, velour_cli
+from bench.agreement import agreement
+from bench.pages import figures_check
+from bench.run import Run
+from bench.scenes import Scene
+from bench.tail_bound import Moments, log_p_of_pixels, log_p_of_sum
+from bench.uniform_check import uniform_agreement
 from campaigns import run_in_this_process
-from progress import Progress
-from scenes import Scene
 from scipy import stats
-from tail_bound import Moments, log_p_of_pixels, log_p_of_sum
-from uniform_check import uniform_agreement
 from velour.core.luminance import LUMINANCE
 
 SAMPLES = 400_000
@@ -157,33 +159,29 @@ def scene(mesh_file, world_file, measurement_file, model_file):
 
 
 @pytest.fixture
-def renders(tmp_path, monkeypatch):
-    from renders import Renders, Settings
-
+def run(tmp_path, monkeypatch):
     monkeypatch.setattr(velour_cli, "_run", run_in_this_process)
-    return Renders(Settings(tmp_path / "kept", SIZE, 2, 1), Progress(), fresh=False)
+    return Run("it", tmp_path / "work", tmp_path / "out", SimpleNamespace(size=SIZE))
 
 
-def test_its_moments_are_those_of_uniform_renders(scene, renders):
+def test_its_moments_are_those_of_uniform_renders(scene, run):
     """Under a soft sky without rare events the spread of renders is the true one."""
-    import uniform_moments
-
-    if not uniform_moments.built():
+    if not figures_check._PROGRAM.is_file():
         pytest.skip("uniform_moments is not built")
-    found = uniform_moments.of(scene, renders, SIZE, 1024, range(1, 5))
+    moments, error_of_second = figures_check.uniform_moments(run, scene, SIZE, 1024, range(1, 5))
     spp = 64
     stack = np.array(
         [
-            renders.render(scene, spp, seed=seed, strategy="uniform", sequence="random", split=1).pixels
+            run.render(scene, spp, seed=seed, strategy="uniform", sequence="random", split=1).pixels
             for seed in range(100, 100 + RENDERS)
         ]
     )
     luminance = stack @ LUMINANCE
-    np.testing.assert_allclose(luminance.mean(), found.moments.mean.mean(), rtol=0.01)
-    lit = found.moments.variance > 1e-6 * found.moments.second  # not the sky itself
-    ratio = luminance.var(axis=0, ddof=1)[lit] / (found.moments.variance[lit] / spp)
+    np.testing.assert_allclose(luminance.mean(), moments.mean.mean(), rtol=0.01)
+    lit = moments.variance > 1e-6 * moments.second  # not the sky itself
+    ratio = luminance.var(axis=0, ddof=1)[lit] / (moments.variance[lit] / spp)
     error = ratio.std() / ratio.size**0.5
     assert error < 0.05
     assert ratio.mean() == pytest.approx(1, abs=3 * error)
-    assert found.error.max() < 0.1
-    assert (found.moments.largest >= found.moments.second / found.moments.mean - 1e-6).all()
+    assert error_of_second.max() < 0.1
+    assert (moments.largest >= moments.second / moments.mean - 1e-6).all()

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from votf_errors import filled, shell_errors, soft_iou
-from votf_shapes import Cloth, Cylinder, Sphere, smooth_mesh, structured_mesh
+from bench.pages.votf import shell_errors, soft_iou, without_holes
+from bench.shapes import Cloth, Cylinder, Sphere, smooth_mesh, structured_mesh
 
 
 def _ring() -> np.ndarray:
@@ -25,7 +25,7 @@ def test_the_same_picture_has_no_error():
 
 def test_a_hole_counts_for_alpha_and_not_for_the_outline():
     ring = _ring()
-    disk = filled(ring)
+    disk = without_holes(ring)
     assert disk.sum() > ring.sum() + 90
     errors = shell_errors(_picture(disk, 0.6), _picture(ring, 0.5))
     assert errors.outline == 1

@@ -20,7 +20,7 @@ from support import blender, report
 
 ORDERS = "--orders"
 TURN = 0.05  # seconds
-IN_SCRIPTS = {file.stem for file in (Path(__file__).resolve().parents[2] / "scripts/lib").glob("*.py")}
+IN_SCRIPTS = {path.stem for path in (Path(__file__).resolve().parents[2] / "scripts/lib").iterdir()}
 
 
 class Result(unittest.TextTestResult):
@@ -103,8 +103,7 @@ def begin(path, folder):
 
 
 def _is_of_a_file(name):
-    """Whether no other file may find this module: a file of tests, or what scripts/lib has a name for:
-    `scenes` is a module there and a package here."""
+    """Whether no other file may find this module: a file of tests, or a module or package of scripts/lib."""
     return name.startswith(("test_", "window_")) or name.partition(".")[0] in IN_SCRIPTS
 
 

@@ -106,7 +106,7 @@ progress_line() {
   printf '%s: %d s%s' "$stage" "$seconds" "$left"
 }
 
-# duration SECONDS: formatted as in scripts/lib/progress.py.
+# duration SECONDS: formatted as in scripts/lib/bench/progress.py.
 duration() { if (($1 < 600)); then printf '%d s' "$1"; else printf '%d min' $((($1 + 30) / 60)); fi; }
 
 # Counters for with_progress.

@@ -7,7 +7,6 @@ import os
 from collections import Counter
 from pathlib import Path
 
-import markdown_table
 from mutant_faults import Fault
 from mutant_tests import GROUPS, LONG_SUITE, Outcome
 
@@ -101,7 +100,8 @@ def table(results: Results, faults: list[Fault]) -> str:
     rows = [_row(fault, results.faults.get(fault.name)) for fault in faults]
     commits = sorted({found["commit"][:8] for found in results.faults.values()})
     header = ["Fault", "Folder", "What is wrong then", "Seen by", "Seconds"]
-    return markdown_table.table(header, rows) + f"\nCommit: {', '.join(commits) or 'no results yet'}\n"
+    lines = [f"| {' | '.join(row)} |" for row in (header, ["---"] * len(header), *rows)]
+    return "\n".join([*lines, "", f"Commit: {', '.join(commits) or 'no results yet'}", ""])
 
 
 def _row(fault: Fault, found: dict | None) -> list[str]:

@@ -8,8 +8,8 @@ import shutil
 import sys
 from pathlib import Path
 
-import data_files
-from velour_cli import ROOT
+from bench import data_files
+from bench.velour_cli import ROOT
 
 from . import pages, pictures
 

@@ -3,7 +3,7 @@
 import importlib
 
 import bpy
-import data_files
+from bench import data_files
 from support import inputs, window
 
 from . import scene

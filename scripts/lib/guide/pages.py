@@ -5,11 +5,10 @@ from __future__ import annotations
 import re
 from pathlib import Path
 
-from generated import replaced
-from markdown_table import table
-from provenance import conditions
+from bench.page import replaced, table
+from bench.provenance import conditions
+from bench.velour_cli import ROOT
 from velour.core import files
-from velour_cli import ROOT
 
 GUIDE = ROOT / "docs/guide"
 
@@ -51,17 +50,9 @@ def _first_material(facts: dict) -> str:
 
 
 def _tolerances(facts: dict) -> str:
-    rows = [
-        [
-            f"{row['tolerance']:g}",
-            str(row["max_lobes"]),
-            str(row["lobes"]),
-            _kb(row["bytes"]),
-            f"{row['error']:.3f}",
-        ]
-        for row in facts["fits"]
-    ]
-    return table(["Max Error", "Max Lobes", "Lobes", "Size", "Relative error"], rows)
+    rows = (row | {"size": _kb(row["bytes"])} for row in facts["fits"])
+    titles = "Max Error | Max Lobes | Lobes | Size | Relative error"
+    return table(rows, titles, "{tolerance:g} | {max_lobes} | {lobes} | {size} | {error:.3f}")
 
 
 def _scene(facts: dict) -> str:

@@ -1,0 +1,1 @@
+"""Measures the pages of docs/results: scripts/bench NAME."""

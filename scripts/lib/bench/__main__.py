@@ -1,0 +1,183 @@
+"""scripts/bench: measures a page of docs/results, or writes it again from the numbers of its last run."""
+
+from __future__ import annotations
+
+import argparse
+import importlib
+import json
+import subprocess
+import sys
+from pathlib import Path
+from types import SimpleNamespace
+from typing import NamedTuple
+
+ROOT = Path(__file__).resolve().parents[3]
+
+
+class Page(NamedTuple):
+    about: str
+    targets: tuple[str, ...] = ()  # of the build, besides the library
+    tools: str = ""  # option of scripts/setup
+
+
+PAGES = {
+    "blender_support": Page("features that render as in Cycles, and seconds of the export of large scenes"),
+    "btf_chart": Page("methods of BTF compression at equal bytes, on tiles and measured sets", (), "metrics"),
+    "chart": Page(
+        "error against time of every strategy, beside other renderers", ("product_bound",), "peers"
+    ),
+    "denoise": Page("the compositor's Denoise node with Velour's passes"),
+    "equal_noise": Page("processor time of Cycles and Velour at the same noise"),
+    "failure_modes": Page("errors of models of hostile measurements", ("test_failure_modes",)),
+    "figures": Page("the dissertation's figures 7.11 to 7.13, with its strategy, beside references"),
+    "figures_check": Page("the references of the figures beside uniform samples", ("uniform_moments",)),
+    "for_scene": Page("what scene models save and cost, and what is reported outside of their scene"),
+    "gallery": Page("pictures of presets for README, with their times"),
+    "inputs": Page("files of other programs", ("test_image", "test_mesh", "test_brdf", "test_btf")),
+    "measure": Page("fits and renders of the test scenes"),
+    "mesostructures": Page("pictures of the procedural tiles"),
+    "models": Page("every model of every material beside GGX and Principled", ("evaluation_cost",)),
+    "normal_maps": Page("approximations in Cycles with and without their normal maps"),
+    "perceptual": Page("what a tolerance of the fit looks like: FLIP against the tolerance", (), "metrics"),
+    "performance": Page("where the time of a render goes, and the speed of kernels"),
+    "real_geometry": Page("objects with a tile's geometry beside the same objects with its BTF"),
+    "realtime": Page("frames per second and errors of the real-time viewport"),
+    "test_times": Page("seconds of the last run of scripts/test"),
+    "viewport": Page("how long the rendered viewport takes to show a change"),
+    "votf": Page("silhouettes, light and time of VOTFs beside real geometry"),
+    "votf_tables": Page("ways to store which texels are covered in each view", ("occlusion_tables",)),
+}
+
+
+def main(words: list[str]) -> int:
+    if words[:1] in (["--list"], ["-h"], ["--help"], []):
+        print("scripts/bench NAME [--help | OPTION...]: measures a page of docs/results. NAME is one of")
+        print(*(f"  {name:16} {page.about}" for name, page in PAGES.items()), sep="\n")
+        return 0
+    name, *words = words
+    if name not in PAGES:
+        print(f"bench: there is no page {name!r}; scripts/bench --list names them.", file=sys.stderr)
+        return 2
+    if "--built" not in words and not {"-h", "--help"} & set(words):
+        _build(PAGES[name])
+    return run(name, words)
+
+
+def _build(page: Page) -> None:
+    subprocess.run([ROOT / "scripts/setup", *([f"--{page.tools}"] if page.tools else [])], check=True)
+    targets = [name for name in page.targets if name.startswith("test_") or _is_here(name)]
+    subprocess.run([ROOT / "scripts/build", "release", "velour", *targets], check=True)
+
+
+def _is_here(program: str) -> bool:
+    return (ROOT / f"native/bench/{program}.cpp").is_file()
+
+
+def run(name: str, words: list[str]) -> int:
+    from velour.native import VelourError
+
+    from .blender import BlenderError
+    from .data_files import NoDataError
+    from .flip_metric import NoFlipError
+
+    module = importlib.import_module(f"{__package__}.pages.{name}")
+    try:
+        _measure(module, name, _arguments(module, name, words))
+    except (NoDataError, NoFlipError) as absent:
+        print(f"{name}: {absent}")
+    except KeyboardInterrupt:
+        print(f"{name}: stopped; the next run goes on from here.", file=sys.stderr)
+        return 130
+    except subprocess.CalledProcessError as error:
+        return error.returncode
+    except (VelourError, BlenderError, OSError) as error:
+        print(f"{name}: {error}", file=sys.stderr)
+        return 1
+    return 0
+
+
+def _arguments(module, name: str, words: list[str]) -> argparse.Namespace:
+    from velour.core.machine import threads
+
+    about = f"{PAGES[name].about}. {(module.__doc__ or '').partition(chr(10))[2]}"
+    parser = argparse.ArgumentParser(prog=f"scripts/bench {name}", description=about)
+    add = parser.add_argument
+    add("--quick", action="store_true", help="a small version, to try the script; its page stays in build")
+    add(
+        "--page",
+        action="store_true",
+        help="writes the page from the numbers of the last run, measures nothing",
+    )
+    add("--fresh", action="store_true", help="makes again what an earlier run has kept")
+    add("--output", metavar="FOLDER", type=Path, help="folder of the page instead of docs/results")
+    add("--work", metavar="FOLDER", type=Path, help=f"folder of what is kept instead of build/{name}")
+    add("--seed", metavar="K", type=int, default=1)
+    add("--threads", metavar="T", type=int, default=min(2, threads()))
+    add("--built", action="store_true", help="skips scripts/setup and scripts/build")
+    for setting, (value, _) in module.SETTINGS.items():
+        option = f"--{setting.replace('_', '-')}"
+        if isinstance(value, bool):
+            add(option, action="store_true", default=None)
+        else:
+            add(option, metavar="V,..." if isinstance(value, tuple) else "V", type=_reader(setting, value))
+    args = parser.parse_args(words)
+    for setting, (full, quick) in module.SETTINGS.items():
+        if getattr(args, setting) is None:
+            setattr(args, setting, quick if args.quick else full)
+    return args
+
+
+def _reader(name: str, value):
+    """Parses an option whose value has the type of `value`: WIDTHxHEIGHT, values between commas, or one."""
+    if not isinstance(value, tuple):
+        return type(value)
+    kind = type(value[0]) if value else str
+    return lambda text: tuple(
+        kind(part) for part in text.split("x" if name.endswith("size") else ",") if part
+    )
+
+
+def _measure(module, name: str, args: argparse.Namespace) -> None:
+    from .page import RESULTS
+    from .run import Run
+
+    # A small version only tries the script; it must not replace the numbers of a full run.
+    work = args.work or ROOT / "build" / name / ("quick" if args.quick else "full")
+    output = args.output or (work / "documents" if args.quick else RESULTS)
+    settings = SimpleNamespace(**{setting: getattr(args, setting) for setting in module.SETTINGS})
+    run = Run(name, work, output, settings, args.seed, args.threads, args.fresh)
+    if not args.page:
+        _keep(module, run, module.measure(run))
+    if hasattr(module, "write"):
+        module.write(run, load(module, run.output, name))
+
+
+def _keep(module, run, found: dict | None) -> None:
+    """Keeps the rows as the module's CSV, and the rest as JSON."""
+    from velour.core import files
+
+    from .page import write_rows
+
+    found = dict(found or {})
+    if hasattr(module, "CSV"):
+        write_rows(run.output / module.CSV, found.pop("rows"), found.pop("conditions"))
+    if found:
+        files.write_json(run.output / f"{run.name}.json", found)
+
+
+def load(module, folder: Path, name: str) -> dict:
+    """What the last run has kept. Raises FileNotFoundError."""
+    from .page import read_rows
+
+    found, rest, rows = {}, folder / f"{name}.json", folder / getattr(module, "CSV", "")
+    if not rows.exists() or not (hasattr(module, "CSV") or rest.is_file()):
+        raise FileNotFoundError(f"{folder} has no numbers of an earlier run; run without --page.")
+    if hasattr(module, "CSV"):
+        found["conditions"], found["rows"] = read_rows(rows)
+    if rest.is_file():
+        found |= json.loads(rest.read_text(encoding="utf-8"))
+    return found
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))

@@ -1,0 +1,12 @@
+"""Scripts that run inside Blender, each with a function main(task), and the scenes that they share."""
+
+import importlib
+import json
+
+
+def start(script, task, report):
+    """Calls main() of a script of this folder and writes what it returns to the file `report`."""
+    found = importlib.import_module(f"{__name__}.{script}").main(json.loads(task))
+    if found is not None:
+        with open(report, "w") as file:
+            json.dump(found, file)

@@ -1,0 +1,45 @@
+"""Writes a .blend of the preset materials with packed models, marked as assets."""
+
+import addon_utils
+import bpy
+import numpy as np
+from velour.core import presets
+from velour.core.presets import AUTHOR, LICENCE
+from velour.core.srgb import encoded
+from velour.native import images
+
+from . import scene as build
+
+_PLAIN_TEXT = f"{LICENCE}, made by Velour's virtual goniometer"
+
+
+def main(task):
+    bpy.ops.wm.read_factory_settings(use_empty=True)
+    addon_utils.enable("velour", default_set=False, handle_error=build.refuse)
+    write(task)
+
+
+def write(task):
+    """`task`: path of the .blend, folder of the presets, and the id of each catalog by name."""
+    for preset in presets.listed(task["folder"]):
+        bpy.ops.velour.add_preset(preset=preset.name, directory=task["folder"], assign=False)
+        _describe(bpy.data.materials[preset.name], preset, task["catalogs"][preset.catalog])
+    bpy.context.preferences.filepaths.save_version = 0
+    bpy.ops.wm.save_as_mainfile(filepath=task["path"], compress=True)
+
+
+def _describe(material, preset, catalog):
+    material.asset_mark()
+    asset = material.asset_data
+    asset.catalog_id = catalog
+    asset.author = AUTHOR
+    asset.description = f"{preset.description} ({_PLAIN_TEXT})"
+    if hasattr(asset, "license"):  # not in Blender 3.4; the description names the license as well
+        asset.license = LICENCE
+    for tag in (*preset.tags, "velour"):
+        asset.tags.new(tag, skip_if_exists=True)
+    pixels = encoded(images.read_picture(preset.picture))
+    opaque = np.concatenate([pixels, np.ones((*pixels.shape[:2], 1))], axis=-1)
+    preview = material.preview_ensure()
+    preview.image_size = pixels.shape[1], pixels.shape[0]
+    preview.image_pixels_float.foreach_set(opaque.astype(np.float32).ravel())

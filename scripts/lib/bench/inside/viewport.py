@@ -1,0 +1,165 @@
+"""Measures in Blender's window the seconds until the rendered viewport shows a change.
+
+`--python viewport.py -- FOLDER`. FOLDER/task.json names the scene, and how often the viewport is
+switched off and on; the results go to FOLDER/result.json.
+"""
+
+import json
+import math
+import sys
+import time
+from pathlib import Path
+
+import bpy
+
+_ROOT = Path(__file__).resolve().parents[4]
+sys.path[:0] = [str(_ROOT / "scripts/lib"), str(_ROOT / "blend-tests")]
+
+from support import blender, viewport, window  # noqa: E402
+
+from bench.inside import viewport_scenes  # noqa: E402
+
+SAMPLES = 8
+PICTURE = (1280, 720)  # size in real time
+REPEATS = 5  # repetitions of each change; the median counts
+DRAG = 5.0  # seconds of a continuous change
+_TURN = 0.005
+_PATIENCE = 120
+
+
+class Stopwatch:
+    """Times the add-on's viewport by wrapping the two methods that Blender calls."""
+
+    def __init__(self):
+        engine_viewport = viewport.addon("engine.viewport").Viewport
+        self._update, self._draw = engine_viewport.update, engine_viewport.draw
+        engine_viewport.update = lambda shown, *given: self._timed_update(shown, *given)
+        engine_viewport.draw = lambda shown, *given: self._timed_draw(shown, *given)
+        self.start()
+
+    def start(self):
+        self.begin = time.monotonic()
+        self.export, self.held = 0.0, 0.0
+        self.seen, self._is_drawn = None, False
+
+    def _timed_update(self, shown, *given):
+        begin = time.monotonic()
+        self._update(shown, *given)
+        self.export += time.monotonic() - begin
+
+    def _timed_draw(self, shown, *given):
+        begin, export = time.monotonic(), self.export
+        self._draw(shown, *given)
+        end = time.monotonic()
+        self.held = max(self.held, end - begin - (self.export - export))
+        self._is_drawn |= shown._job.picture.shown_at >= begin
+
+    def until_seen(self):
+        """Waits until the window with a picture is on the screen: Blender's next turn comes after that."""
+        while not self._is_drawn:
+            if time.monotonic() > self.begin + _PATIENCE:
+                raise TimeoutError("the viewport shows nothing")
+            yield _TURN
+        self.seen = time.monotonic() - self.begin
+
+    def row(self):
+        return {"seen": self.seen, "export": self.export, "held": self.held}
+
+
+def main():
+    folder = Path(sys.argv[sys.argv.index("--") + 1])
+    task = json.loads((folder / "task.json").read_text())
+    bpy.app.timers.register(lambda: _start(folder, task), first_interval=1.0)  # once the window exists
+
+
+def _start(folder, task):
+    blender.enable_addon()
+
+    def steps(folder):
+        result = {"blender": bpy.app.version_string, "samples": SAMPLES}
+        yield from _measure(folder, task, result)
+        (folder / "result.json").write_text(json.dumps(result))
+
+    window.run(folder, (steps,), seconds=math.inf, viewport=True)
+
+
+def _measure(folder, task, result):
+    bpy.context.scene.render.engine = "VELOUR"
+    viewport_scenes.start(task["scene"])
+    yield 1.0
+    watch = Stopwatch()
+    viewport.show(samples=SAMPLES)
+    yield from watch.until_seen()
+    yield from viewport.finished()
+    result["changes"] = {"switched on": [watch.row()]}
+    result["size"] = [viewport.region().width, viewport.region().height]
+    for name, change in viewport_scenes.CHANGES.items():
+        result["changes"][name] = yield from _repeated(watch, change)
+    result["dragged"] = yield from _dragged(viewport_scenes.move_object)
+    window.screenshot(folder, "viewport")
+    result["mib"] = _resident_mib()
+    if task["restarts"]:
+        result["restarts"] = yield from _restarted(watch, task["restarts"])
+        result["real_time"] = yield from _real_time()
+
+
+def _repeated(watch, change):
+    rows = []
+    for time_of_it in range(REPEATS):
+        watch.start()
+        change(time_of_it)
+        yield from watch.until_seen()
+        yield from viewport.finished()
+        rows.append(watch.row())
+    return rows
+
+
+def _dragged(change):
+    """Pictures per second while something changes in every turn of Blender's event loop."""
+    shown, times, begin = viewport.shown_picture(), set(), time.monotonic()
+    while time.monotonic() < begin + DRAG:
+        change(len(times))
+        yield _TURN
+        times.add(shown.shown_at)
+    rate = (len(times) - 1) / (time.monotonic() - begin)
+    yield from viewport.finished()
+    return rate
+
+
+def _restarted(watch, count):
+    """Switches the viewport off and on `count` times; memory in MiB after each tenth of them."""
+    shading, memory = viewport.space().shading, []
+    for i in range(count):
+        shading.type = "SOLID"
+        yield 0.05
+        watch.start()
+        shading.type = "RENDERED"
+        yield from watch.until_seen()
+        if (i + 1) % max(count // 10, 1) == 0:
+            memory.append(_resident_mib())
+    return {"count": count, "mib": memory}
+
+
+def _real_time():
+    """Seconds per real-time picture: redrawn and read back, so that drawing has completed."""
+    bpy.context.scene.velour.viewport_mode = "REAL_TIME"
+    yield from viewport.real_time_finished()
+    shown, (width, height) = viewport.real_time(), PICTURE
+    with viewport.override():
+        context = bpy.context
+        frame = viewport.addon("export.viewport").viewport_frame(context, context.evaluated_depsgraph_get())
+    drawing, view, seconds = shown._drawing, frame.view._replace(width=width, height=height), []
+    for _ in range(REPEATS):
+        begin = time.monotonic()
+        drawing.restart()
+        drawing.draw(shown._live.scene, view, 1.0, True).read()
+        seconds.append(time.monotonic() - begin)
+    return {"size": PICTURE, "seconds": seconds}
+
+
+def _resident_mib():
+    lines = Path("/proc/self/status").read_text(encoding="ascii").splitlines()
+    return next(int(line.split()[1]) for line in lines if line.startswith("VmRSS")) / 1024
+
+
+main()

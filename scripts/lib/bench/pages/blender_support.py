@@ -1,0 +1,72 @@
+"""Which features of a Blender scene render as in Cycles, and how long the export of large scenes takes.
+
+--last reuses the results of the last run of the parity tests.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import re
+import subprocess
+
+from .. import blender, page, provenance
+from ..run import Run
+from ..velour_cli import ROOT
+
+SETTINGS = {"last": (False, False), "renders": (3, 1)}  # renders: of each engine, in turn; the fastest counts
+_ROWS = ROOT / "build/blend-tests/parity"
+_SCENES = {
+    "one mesh of 5 million triangles": {"kind": "grid", "count": 5_000_000},
+    "100,000 instances of a sphere of 992 triangles": {"kind": "instances", "count": 100_000},
+    "10,000 objects, each with a mesh of its own": {"kind": "objects", "count": 10_000},
+}
+_OURS = re.compile(r"Exported .* (\d+) MiB in ([\d.]+) s, including ([\d.]+) s")
+_CYCLES = re.compile(r"Total time spent synchronizing data: ([\d.]+)")
+
+
+def measure(run: Run) -> dict:
+    if not run.settings.last:
+        long = os.environ | {"VELOUR_LONG_TESTS": "1"}
+        subprocess.run([ROOT / "blend-tests/run", "parity"], check=True, env=long)
+    lines = [line for file in sorted(_ROWS.glob("*/rows.jsonl")) for line in file.open(encoding="utf-8")]
+    if not lines:
+        raise FileNotFoundError(f"there is no row in {_ROWS}; run without --last.")
+    export = [_export(run, name, task) for name, task in _SCENES.items()]
+    return {"conditions": run.conditions(seed=0), "parity": list(map(json.loads, lines)), "export": export}
+
+
+def _export(run: Run, name: str, task: dict) -> dict:
+    """Seconds of a scene on its way to the renderer, beside Cycles' own."""
+    log, renders = run.work / f"{task['kind']}.log", run.settings.renders
+    blender.run("large_scenes", {**task, "renders": renders}, log, ("--debug-cycles",))
+    text = log.read_text(errors="replace")
+    ours, cycles = _OURS.findall(text), _CYCLES.findall(text)
+    if len(ours) != renders or len(cycles) != renders:
+        raise blender.BlenderError(f"{log} does not tell how long each export took")
+    seconds = min(float(total) - float(tracing) for _, total, tracing in ours)
+    theirs = min(map(float, cycles))
+    numbers = {"seconds": seconds, "cycles": theirs, "ratio": seconds / theirs, "mib": int(ours[0][0])}
+    return {"scene": name, "hierarchies": min(float(tracing) for _, _, tracing in ours), **numbers}
+
+
+def write(run: Run, found: dict) -> None:
+    rows = found["parity"]
+    sentence = f"{provenance.sentence(found['conditions'])} Blender and Cycles {rows[0]['blender']}."
+    for row in rows:  # pictures without noise have no z
+        row["errors"] = (
+            None if row["z"] is None else f"{row['z']:.1f}" if row["z"] < 100 else f"{row['z']:.0f}"
+        )
+    parity = page.table(
+        rows,
+        "feature | verdict | largest block difference, % | in standard errors",
+        "{feature} | {verdict} | {percent:.2f} | {errors:s}",
+    )
+    export = page.table(
+        found["export"],
+        "scene | export, s | Cycles' synchronisation, s | ratio | hierarchies for tracing, s | MiB",
+        "{scene} | {seconds:.2f} | {cycles:.2f} | {ratio:.2f} | {hierarchies:.2f} | {mib}",
+    )
+    for name, text in (("parity", parity), ("export", export)):
+        part = {name: f"\n{sentence}\n\n{text}\n"}
+        page.write_parts(run.output, f"blender_{name}.md", "blender_support", **part)

@@ -1,0 +1,449 @@
+"""Error against seconds for every strategy on seven scenes, beside Mitsuba and Cycles."""
+
+from __future__ import annotations
+
+import functools
+import subprocess
+from collections.abc import Iterator, Mapping
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+from velour.native import images
+from velour.native.table import STRATEGIES
+
+from .. import blender, charts, mitsuba, page
+from ..curve import Curve, Reading, ratio, shown
+from ..reference import Reference, points
+from ..run import BUILT, Run
+from ..scenes import (
+    BUNNY_CAMERA,
+    STUDIO,
+    SUN,
+    SUN_DIAMETER,
+    SUN_SHARE,
+    SUNSET,
+    Scene,
+    Subject,
+    made,
+    subjects,
+    write_sunny_sky,
+)
+
+CSV = "chart/chart.csv"
+SETTINGS = {
+    "size": ((320, 240), (48, 36)),
+    "worlds": ((STUDIO, SUNSET), (SUNSET,)),
+    "skipped": ((), ("cosine", "table", "srbf", "ggx", "light", "dissertation")),  # curves
+    "spp": ((16, 64, 256, 1024), (8, 32)),
+    "level_spp": (800, 16),  # the default strategy's error here is the level of the equal-error table
+    "equal_spp": (256, 32),  # one of `spp`, at which targets compare equal samples
+    "seeds": (3, 2),  # compared curves; others have one seed
+    "reference_spp": (2048, 64),  # per batch
+    "reference_batches": (4, 2),
+    "bound_hits": (200, 8),
+    "peer_materials": (3, 1),
+    "peer_size": ((160, 120), (32, 24)),
+    "peer_rays": ((8, 32, 128), (2, 4)),  # camera rays per pixel, with eight light directions each
+    "peer_reference_rays": (256, 8),
+    "cycles_rays": ((64, 512), (1, 512)),
+}
+SKY = "synthetic sky"
+DEFAULT, DISSERTATION = "mis", "mis-dissertation"
+# Curves that targets compare closely have more seeds. Curves that no target names end a step earlier.
+COMPARED = (DEFAULT, "mis-ggx", "product")
+LONG = (*COMPARED, "uniform", DISSERTATION)
+# Maximum relmse of `product` relative to the default strategy at equal samples.
+_EQUAL_SAMPLES = {
+    ("nickel", SUNSET): 0.6,
+    ("blue-metallic-paint", SUNSET): 0.4,
+    ("nickel", STUDIO): 0.5,
+    ("blue-metallic-paint", STUDIO): 0.5,
+    ("krylon-blue", STUDIO): 0.5,
+}
+_MOST_GGX_ERROR = 0.2  # relative L2 above which SRBF lobes must be clearly faster
+
+
+def measure(run: Run) -> dict:
+    shown_ = subjects(run)
+    scenes = [(s, world, s.scene(world, run.data)) for s in shown_ for world in run.settings.worlds]
+    sky, bunny = made(run.kept / "sunny.exr", write_sunny_sky), shown_[0]
+    scenes.append((bunny, SKY, Scene(f"{bunny.name}, {SKY}", bunny.mesh, "y", sky, bunny.model)))
+    for _ in scenes:
+        for name in _curves(run):
+            for spp, seeds in _ladder(run, name):
+                run.expect(spp, count=seeds)
+        run.expect(run.settings.reference_spp, count=run.settings.reference_batches)
+    rows, found = [], []
+    for subject, world, scene in scenes:
+        own, about = _scene(run, subject, world, scene)
+        rows += own
+        found.append(about)
+    return {
+        "conditions": run.conditions(),
+        "rows": rows,
+        "scenes": found,
+        "mitsuba": mitsuba.compare(run),
+        "cycles": _cycles(run, bunny, scenes[0][2]),
+        "sun": _sun_lobes(run, scenes[-1][2]),
+    }
+
+
+def _curves(run: Run) -> list[str]:
+    return [name for name in STRATEGIES if name not in run.settings.skipped]
+
+
+def _ladder(run: Run, name: str) -> list[tuple[int, int]]:
+    """Pairs (spp, number of seeds) of a curve."""
+    own = run.settings
+    steps = {*own.spp, own.level_spp} if name == DEFAULT else {*own.spp}
+    seeds = own.seeds if name in COMPARED else 1
+    return [(spp, seeds) for spp in sorted(steps) if name in LONG or spp < max(steps)]
+
+
+def _scene(run: Run, subject: Subject, world: str, scene: Scene) -> tuple[list[dict], dict]:
+    """The points of all curves, and what else is known of the scene."""
+    own = run.settings
+    reference = Reference(run, scene, own.reference_spp, strategy="product").add(own.reference_batches)
+    pictures = []
+    for name in _curves(run):
+        for spp, seeds in _ladder(run, name):
+            for seed in range(run.seed, run.seed + seeds):
+                # The dissertation's strategies have their own random numbers.
+                picture = run.render(scene, spp, seed=seed, strategy=name, sequence="sobol")
+                pictures.append((picture, {"scene": scene.name, "curve": name, "spp": spp, "seed": seed}))
+    about = {"name": scene.name, "material": subject.material, "world": world}
+    about |= {"noise": reference.noise()[1], "bound": _bound(run, scene)}
+    about |= {"ggx": run.compare_peer(subject.measurement, "ggx")["relative_l2"]}
+    return points(pictures, reference), about
+
+
+def _bound(run: Run, scene: Scene) -> dict | None:
+    """Variances of one direction by `mis`, `product` and exact product sampling, by a program that tabulates
+    f cos times radiance at some hits; None if it is not built."""
+    options = {"mesh": scene.mesh, "material": scene.material, "world": scene.world}
+    options |= {"size": "{}x{}".format(*run.settings.size), "hits": run.settings.bound_hits, "seed": run.seed}
+    words = [word for name, value in options.items() for word in (f"--{name}", value)]
+    found = run.program(f"{scene.name}, bound", BUILT / "bench/product_bound", *words)
+    return found and found["variance"]
+
+
+def _cycles(run: Run, bunny: Subject, scene: Scene) -> dict | str:
+    """Camera rays per second of Cycles with the closest Principled material and of Velour, each with one
+    direction of the material and one of the light; a sentence if that is impossible."""
+    (fewer, more), size = run.settings.cycles_rays, run.settings.size
+    lobe = run.compare_peer(bunny.measurement, "ggx")["ggx"]
+    look = {
+        "color": [min(max(value, 0.0), 1.0) for value in lobe["f0"]],
+        "roughness": max(lobe["alpha"]) ** 0.5,  # Principled squares it
+        "rays": [fewer, more],
+        "size": list(size),
+        "threads": run.threads,
+        "camera": BUNNY_CAMERA,
+    }
+    files = {"mesh": scene.mesh, "world": scene.world}
+    task = look | {name: str(path) for name, path in files.items()}
+    make = lambda: blender.run("cycles", task, run.kept / "cycles.log")  # noqa: E731
+    try:
+        program = Path(blender.__file__).parent / "inside/cycles.py"
+        report = run.keep("Cycles, bunny", "cycles", look | files | {"program": program}, make)
+    except blender.BlenderError as error:
+        return f"Cycles is left out: {error}"
+    ours = run.render(replace(scene, camera=BUNNY_CAMERA), 2 * more, split=2, strategy="mis").report
+    # The difference of two renders excludes the work of each before its first sample.
+    seconds = report["seconds"][1] - report["seconds"][0]
+    if seconds <= 0:
+        return (
+            "Cycles is left out: its two renders are too short to tell their samples from their preparation."
+        )
+    rays = size[0] * size[1] * (more - fewer) / seconds
+    return {"version": report["version"], "cycles": rays, "ours": ours["samples_per_second"] / 2}
+
+
+def _sun_lobes(run: Run, scene: Scene) -> dict:
+    """What product sampling keeps of the sun, read from the mixture that a small render caches: lobes within
+    a diameter of its center, at most two diameters wide. Their number, their share of the mixture's
+    energy, and the diameter of the disk with the same mean cosine, in degrees, as a mean by energy."""
+    folder = run.kept / "sun"
+    folder.mkdir(exist_ok=True)
+    run.render(scene, 8, size=(16, 12), strategy="product", cache=str(folder))
+    mixture = max(folder.glob("sky-*.exr"), key=lambda path: path.stat().st_mtime)
+
+    def part(name: str) -> np.ndarray:
+        alone = mixture.with_name(f"part-{name}.exr")
+        subprocess.run(["oiiotool", mixture, "--subimage", f"lobes.{name}", "-o", alone], check=True)
+        return images.read(alone)
+
+    center, color = part("center").reshape(-1, 3), part("coefficient").reshape(-1, 3)
+    bandwidth = part("bandwidth").ravel()
+    # The integral of exp(lambda (t - 1)) over the sphere.
+    energy = color @ [0.2126, 0.7152, 0.0722] * 2 * np.pi * -np.expm1(-2 * bandwidth) / bandwidth
+    # The mean cosine of a disk of radius a is 1 - a^2 / 4, that of a lobe 1 - 1 / lambda.
+    diameter = 4 / np.sqrt(bandwidth)
+    kept = (center @ SUN > np.cos(SUN_DIAMETER)) & (diameter <= 2 * SUN_DIAMETER)
+    mean = np.degrees(np.average(diameter[kept], weights=energy[kept])) if kept.any() else 0.0
+    return {
+        "count": int(kept.sum()),
+        "energy": float(energy[kept].sum() / energy.sum()),
+        "diameter": float(mean),
+    }
+
+
+class Result:
+    """The numbers of one scene that tables and targets derive from the points of its curves."""
+
+    def __init__(self, about: Mapping, points: Mapping[str, list[Mapping]], level_spp: int):
+        """`points`: spp, seed, seconds, relmse and mse (linear RGB), without the reference's noise."""
+        self.about, self.points, self.level_spp = about, points, level_spp
+
+    @functools.cached_property
+    def curves(self) -> dict[str, Curve]:
+        """relmse against seconds, as means over seeds."""
+        return {name: Curve([p[:2] for p in self.means(name).values()]) for name in self.points}
+
+    def means(self, name: str) -> dict[int, tuple[float, float, float]]:
+        """spp -> seconds, relmse, rmse"""
+        found = {}
+        for spp in sorted({p["spp"] for p in self.points[name]}):
+            own = [[p["seconds"], p["relmse"], p["mse"]] for p in self.points[name] if p["spp"] == spp]
+            seconds, relmse, mse = np.mean(own, axis=0)
+            found[spp] = float(seconds), float(relmse), float(max(mse, 0.0) ** 0.5)
+        return found
+
+    @property
+    def level_seconds(self) -> float:
+        return self.means(DEFAULT)[self.level_spp][0]
+
+    @property
+    def level(self) -> float:
+        """relmse of the default strategy at `level_spp` samples."""
+        return self.means(DEFAULT)[self.level_spp][1]
+
+    def seconds_to_level(self, name: str) -> Reading | None:
+        return self.curves[name].seconds_at(self.level)
+
+    def error_at_equal_time(self, name: str) -> Reading | None:
+        return self.curves[name].error_at(self.level_seconds)
+
+    def time_ratio(self, name: str, other: str) -> Reading | None:
+        """Ratio of `name` to `other` in seconds to the level."""
+        return ratio(self.seconds_to_level(name), self.seconds_to_level(other))
+
+    def error_ratio(self, name: str, other: str) -> Reading | None:
+        """Ratio of `name` to `other` in relmse at equal time."""
+        return ratio(self.error_at_equal_time(name), self.error_at_equal_time(other))
+
+    def gain(self, name: str, other: str, spp: int) -> tuple[float, float]:
+        """Ratio of `name` to `other` in relmse at equal samples, of means over seeds, and its standard error,
+        estimated from the seeds."""
+        both = (np.array([p["relmse"] for p in self.points[n] if p["spp"] == spp]) for n in (name, other))
+        a, b = both
+        relative = [x.var(ddof=1) / len(x) / x.mean() ** 2 if len(x) > 1 else np.nan for x in (a, b)]
+        value = float(a.mean() / b.mean())
+        return value, abs(value) * sum(relative) ** 0.5
+
+    @property
+    def share_of_bound(self) -> float | None:
+        """Share of the variance reduction of exact product sampling over the default that `product` has."""
+        bound = self.about["bound"]
+        return bound and (bound["mis"] - bound["product"]) / (bound["mis"] - bound["exact"])
+
+
+def results_of(found: Mapping) -> list[Result]:
+    results = []
+    for about in found["scenes"]:
+        points: dict[str, list[dict]] = {}
+        for row in found["rows"]:
+            if row["scene"] == about["name"]:
+                points.setdefault(row["curve"], []).append(row)
+        results.append(Result(about, points, int(found["conditions"]["level_spp"])))
+    return results
+
+
+def peers_of(found: Mapping) -> list[Mapping]:
+    """For each material: seconds to the relmse of Mitsuba's longest render, and its seconds over ours."""
+    materials = []
+    for sphere in found["spheres"]:
+        own = [row for row in found["rows"] if row["scene"] == sphere["material"]]
+        names = ("mitsuba", *mitsuba.STRATEGIES)
+        level = [row["relmse"] for row in own if row["curve"] == "mitsuba"][-1]
+        seconds = {}
+        for name in names:
+            curve = Curve([(row["seconds"], row["relmse"]) for row in own if row["curve"] == name])
+            seconds[name] = curve.seconds_at(level) if level > 0 else None
+        ours = [seconds[name] for name in mitsuba.STRATEGIES if seconds[name]]
+        speed_up = ratio(seconds["mitsuba"], min(ours, key=lambda reading: reading.value, default=None))
+        materials.append({**sphere, "level": level, "seconds": seconds, "speed_up": speed_up})
+    return materials
+
+
+def verdicts(results: list[Result], sun: Mapping, peers: list[Mapping], spp: int) -> Iterator[dict]:
+    """Targets and whether they are met. `spp`: the number of samples at which equal samples are compared."""
+
+    def judged(target: str, where: str, measured: str, met: bool | None) -> dict:
+        return {"target": target, "where": where, "measured": measured, "met": met}
+
+    def limit(target: str, result: Result, found: Reading | None, most: float) -> dict:
+        return judged(target, result.about["name"], shown(found), found and found.value <= most)
+
+    figures = [result for result in results if result.about["world"] != SKY]
+    for result in figures:
+        most = _EQUAL_SAMPLES.get((result.about["material"], result.about["world"]))
+        if most is not None:
+            gain, target = (
+                result.gain("product", DEFAULT, spp),
+                f"relmse of `product` / `mis` at {spp} spp at most {most}",
+            )
+            yield judged(target, result.about["name"], _gain(gain), gain[0] <= most)
+    for result in figures:
+        target = "relmse of `product` / `mis` at equal time at most 1.2"
+        yield limit(target, result, result.error_ratio("product", DEFAULT), 1.2)
+    readings = [result.error_ratio("product", DEFAULT) for result in figures]
+    better = sum(reading is not None and reading.value < 1 for reading in readings)
+    target = "`product` better than `mis` at equal time on at least four of six"
+    yield judged(target, "all", f"{better} of {len(readings)}", better >= 4)
+    for result in figures:
+        part = 100 if result.about["material"] == "nickel" else 5
+        target = f"seconds of `mis` to equal error at most 1/{part} of `uniform`"
+        yield limit(target, result, result.time_ratio(DEFAULT, "uniform"), 1 / part)
+    for result in figures:
+        most, words = (2 / 3, "2/3 of") if result.about["ggx"] > _MOST_GGX_ERROR else (1.0, "those of")
+        target = f"seconds of `mis` to equal error at most {words} `mis-ggx`"
+        yield limit(target, result, result.time_ratio(DEFAULT, "mis-ggx"), most)
+    target = "the sun's lobes keep its energy within 1 % of all, no wider than twice the sun"
+    measured = f"{100 * sun['energy']:.1f} %, {sun['diameter']:.2f} degrees"
+    yield judged(target, SKY, measured, abs(sun["energy"] - SUN_SHARE) <= 0.01)
+    for peer in peers:
+        target, found = "seconds of Mitsuba to equal error over ours above 1", peer["speed_up"]
+        yield judged(target, peer["material"], shown(found), found and found.value > 1)
+    for peer in peers:
+        target = "converged spheres of Mitsuba and ours differ by at most 1 %"
+        yield judged(target, peer["material"], f"{100 * peer['relative']:.2f} %", peer["relative"] <= 0.01)
+
+
+def write(run: Run, found: dict) -> None:
+    results, conditions, sun = results_of(found), found["conditions"], found["sun"]
+    for result in results:
+        _draw(run.output / "chart" / _picture(result), result)
+    peers = [] if isinstance(found["mitsuba"], str) else peers_of(found["mitsuba"])
+    equal_spp, most_spp = int(conditions["equal_spp"]), max(results[-1].means("product"))
+    targets = list(verdicts(results, sun, peers, equal_spp))
+    for target in targets:
+        target["word"] = page.verdict(target["met"])
+    bounded, cycles = all(result.about["bound"] for result in results), found["cycles"]
+    values = {
+        "scenes": "\n".join(map(_scene_text, results)),
+        "targets": page.table(
+            targets, "target | where | measured | ", "{target} | {where} | {measured} | {word}"
+        ),
+        "met": sum(target["met"] is True for target in targets),
+        "judged": len(targets),
+        "equal_error": _by_curve(results, "relmse", Result.seconds_to_level, Result.time_ratio),
+        "equal_time": _by_curve(results, "seconds", Result.error_at_equal_time, Result.error_ratio),
+        "equal_samples": _equal_samples(results, equal_spp, bounded),
+        "bound": _BOUND.format(conditions["bound_hits"]) if bounded else _NO_BOUND,
+        "ggx": _ggx(results),
+        "sun": sun,
+        "sun_share": 100 * sun["energy"],
+        "sun_gain": _gain(results[-1].gain("product", DEFAULT, most_spp)),
+        "most_spp": most_spp,
+        "mitsuba": _mitsuba(found["mitsuba"], peers, conditions) if peers else f"{found['mitsuba']}\n",
+        "cycles": cycles if isinstance(cycles, str) else page.text("chart_cycles", conditions | cycles),
+    }
+    page.write(run.output, "chart/README.md", page.text("chart", conditions | values))
+
+
+_NO_BOUND = "The bound is left out: the program `product_bound` is not built."
+_BOUND = """Variance: of one light direction at {} hits, over the squared
+mean; exact: proportional to f cos times radiance on the environment's pixels. A pixel has noise of its own
+besides (edges, curvature, visibility), so its relmse gains less."""
+
+
+def _picture(result: Result) -> str:
+    return result.about["name"].replace(", ", "-").replace(" ", "_").lower() + ".png"
+
+
+def _scene_text(result: Result) -> str:
+    noise = f"relmse of the reference, which is subtracted: {result.about['noise']:.1e}."
+    return f"![{result.about['name']}]({_picture(result)})\n\n{noise}\n"
+
+
+def _draw(path: Path, result: Result) -> None:
+    means = {name: list(result.means(name).values()) for name in result.points}
+    panels = [
+        (error, {name: [(point[0], point[k]) for point in points] for name, points in means.items()})
+        for k, error in ((1, "relmse"), (2, "rmse"))
+    ]
+    title = f"{result.about['name']}; dotted: {DEFAULT} at {result.level_spp} samples a pixel"
+    axes = ("seconds", "error against the reference")
+    charts.curves(path, panels, *axes, levels={"relmse": result.level}, shared=False, title=title)
+
+
+def _gain(gain: tuple[float, float]) -> str:
+    return f"{gain[0]:.2f} ± {gain[1]:.2f}"
+
+
+def _by_curve(results: list[Result], level: str, value, compared) -> str:
+    """A table with a column per curve. `level`: what is equal, relmse or seconds."""
+    names, rows = list(results[0].points), []
+    for result in results:
+        at = f"{result.level:.2e}" if level == "relmse" else f"{result.level_seconds:.2f}"
+        cells = [*(value(result, name) for name in names), compared(result, "uniform", DEFAULT)]
+        rows.append({"name": result.about["name"], "at": at, "cells": " | ".join(map(shown, cells))})
+    return page.table(
+        rows, f"scene | {level} | {' | '.join(names)} | `uniform` / `mis`", "{name} | {at} | {cells}"
+    )
+
+
+def _equal_samples(results: list[Result], equal_spp: int, bounded: bool) -> str:
+    every, rows = sorted({p["spp"] for p in results[0].points["product"]}), []
+    for result in results:
+        gains = [_gain(result.gain("product", DEFAULT, spp)) for spp in every]
+        gained = result.gain(DEFAULT, DISSERTATION, equal_spp)[0]
+        rows.append({"name": result.about["name"], "gains": " | ".join(gains), "gained": gained})
+        if bounded:
+            bound = result.about["bound"]
+            shares = {name: bound[name] / bound["mis"] for name in ("exact", "product")}
+            rows[-1] |= shares | {"share": 100 * result.share_of_bound}
+    titles, cells = " | ".join(f"{spp} spp" for spp in every), "{name} | {gains} | {gained:.2f}"
+    titles = f"scene | {titles} | `mis` / `mis-dissertation`"
+    if bounded:
+        titles += " | exact / `mis`, variance | `product` / `mis`, variance | share of the gain"
+        cells += " | {exact:.3f} | {product:.3f} | {share:.0f} %"
+    return page.table(rows, titles, cells)
+
+
+def _ggx(results: list[Result]) -> str:
+    rows = [
+        {"name": r.about["name"], "error": r.about["ggx"], "ratio": shown(r.time_ratio(DEFAULT, "mis-ggx"))}
+        | {name.replace("-", "_"): shown(r.seconds_to_level(name)) for name in (DEFAULT, "mis-ggx")}
+        for r in results
+    ]
+    titles = "scene | GGX's relative L2 | `mis` | `mis-ggx` | `mis` / `mis-ggx`"
+    return page.table(rows, titles, "{name} | {error:.4f} | {mis} | {mis_ggx} | {ratio}")
+
+
+def _mitsuba(found: Mapping, peers: list[Mapping], conditions: Mapping) -> str:
+    rows = [
+        {"material": p["material"], "level": p["level"], "speed_up": shown(p["speed_up"])}
+        | {name: shown(reading) for name, reading in p["seconds"].items()}
+        for p in peers
+    ]
+    titles = " | ".join(f"`{name}`" for name in mitsuba.STRATEGIES)
+    cells = " | ".join(f"{{{name}}}" for name in mitsuba.STRATEGIES)
+    values = {
+        "version": found["version"],
+        "variant": found["variant"],
+        "most_rays": conditions["peer_rays"].split(", ")[-1],
+        "times": page.table(
+            rows,
+            f"material | relmse | Mitsuba | {titles} | Mitsuba / fastest",
+            f"{{material}} | {{level:.2e}} | {{mitsuba}} | {cells} | {{speed_up}}",
+        ),
+        "differences": page.table(
+            peers,
+            "material | means | difference | of which noise",
+            "{material} | {means:.4f} | {relative:.4f} | {noise:.4f}",
+        ),
+    }
+    return page.text("chart_mitsuba", conditions | values)

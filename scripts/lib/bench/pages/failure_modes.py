@@ -1,0 +1,51 @@
+"""Claimed and true errors of all models of hostile measurements, from the test that compares them."""
+
+from __future__ import annotations
+
+import json
+import os
+import subprocess
+
+from .. import page
+from ..run import BUILT, Run
+
+SETTINGS = {}
+_PROGRAM = BUILT / "tests/unit/brdf/fit/test_failure_modes"
+_KINDS = ("scattered", "parametric")
+_VIEWS = ("5", "30", "60", "75", "85")
+
+
+def measure(run: Run) -> dict:
+    report = run.work / "tests.json"
+    command = [_PROGRAM, "--gtest_filter=*AreSurvivedAndTold/*", f"--gtest_output=json:{report}"]
+    long = os.environ | {"VELOUR_LONG_TESTS": "1"}
+    subprocess.run(command, check=True, stdout=subprocess.DEVNULL, env=long)
+    return {"conditions": run.conditions(), "rows": rows(json.loads(report.read_text(encoding="utf-8")))}
+
+
+def rows(tests: dict) -> list[list[str]]:
+    """A row per case and model of GoogleTest's report. Refused fits, and views that a measurement does not
+    cover, have no numbers."""
+    found = {}
+    for test in tests["testsuites"][0]["testsuite"]:
+        kind, case = test["value_param"].strip("()").split(", ", 1)
+        numbers = [_cell(test, view) for view in _VIEWS]
+        if kind in _KINDS and any(number != "-" for number in numbers):
+            found.setdefault(case, {})[kind] = numbers
+    return [[case, kind, *of[kind]] for case, of in found.items() for kind in _KINDS if kind in of]
+
+
+def _cell(test: dict, view: str) -> str:
+    claimed, true = (test.get(f"{what}_{view}") for what in ("claimed", "true"))
+    return "-" if claimed is None else f"{float(claimed):.3f} / {float(true):.3f}"
+
+
+def write(run: Run, found: dict) -> None:
+    commit, date = (found["conditions"][name] for name in ("commit", "date"))
+    lines = ({"cells": " | ".join(row)} for row in found["rows"])
+    claims = f"""
+Claimed / true relative L2 at the reported views, of scattered models of at most 6 Gaussian lobes a view and
+of parametric models of at most 6 lobes in all. Commit {commit}, {date}.
+
+{page.table(lines, f"case | model | {' | '.join(_VIEWS)}", "{cells}")}"""
+    page.write_parts(run.output, "failure_modes.md", "failure_modes", claims=claims)

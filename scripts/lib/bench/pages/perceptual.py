@@ -1,0 +1,139 @@
+"""What a tolerance of the fit looks like: FLIP between renders of models and of their measurements."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+
+from .. import charts, data_files, flip_metric, page
+from ..reference import silhouette
+from ..run import Run
+from ..scenes import STUDIO, SUNSET, Scene, made, write_sphere
+
+CSV = "perceptual/perceptual.csv"
+SETTINGS = {
+    "size": ((200, 150), (64, 48)),
+    "spp": (96, 16),
+    # Fits with a loose tolerance are often far better than that; few lobes show what large errors look like.
+    "tolerances": ((0.005, 0.01, 0.02, 0.04, 0.08, 0.16), (0.02,)),
+    "materials": (99, 1),
+    "worlds": ((STUDIO, SUNSET), (SUNSET,)),
+}
+DEFAULT, FEW = (0.02, 16), (0.02, 2)  # tolerance, maximum number of lobes
+# Bounds of the mean and of the 99th percentile, as CIELAB differences on uniform gray: observers do not
+# notice 1 [MT11]; 2.3 is a just noticeable difference [MVO94].
+THRESHOLDS = (1.0, 2.3)
+
+
+def measure(run: Run) -> dict:
+    own, data = run.settings, run.data
+    mean, percentile = map(flip_metric.of_lightness, THRESHOLDS)
+    meshes = {
+        "sphere": (made(run.kept / "sphere.obj", write_sphere), "z"),
+        "bunny": (data_files.mesh(data, "bunny"), "y"),
+    }
+    subjects = data_files.materials(data)[: own.materials]
+    orders = [*((tolerance, DEFAULT[1]) for tolerance in own.tolerances), FEW]
+    count = len(subjects) * len(meshes) * len(own.worlds) * (2 * len(orders) + 1)
+    run.expect(own.spp, count=count)
+    silhouettes: dict[str, np.ndarray] = {}  # they depend only on the mesh
+    rows = []
+    for name, measurement in subjects:
+        for order in orders:
+            model, fit = run.fit(measurement, "parametric", tolerance=order[0], max_lobes=order[1])
+            for mesh, world in ((mesh, world) for mesh in meshes for world in own.worlds):
+                file = data_files.world(data, world)
+                scene = Scene(f"{mesh}, {name}, {world}", *meshes[mesh], file, model)
+                if mesh not in silhouettes:
+                    silhouettes[mesh] = silhouette(run, scene, own.size)
+                about = {"material": name, "scene": f"{mesh}, {world}", "tolerance": order[0]}
+                about |= {"max_lobes": order[1], "relative_l2": fit["relative_l2"]}
+                rows.append(about | _seen(run, scene, measurement, silhouettes[mesh], order == DEFAULT))
+    thresholds = {"mean_threshold": mean, "percentile_threshold": percentile}
+    return {"conditions": run.conditions(**thresholds), "rows": rows}
+
+
+def _seen(run: Run, scene: Scene, measurement: Path, where: np.ndarray, with_noise: bool) -> dict:
+    """Model against measurement, both with directions sampled from the model; and the measurement against
+    itself with another seed."""
+
+    def picture(of: Scene, seed: int = run.seed) -> np.ndarray:
+        return run.render(of, run.settings.spp, seed=seed, strategy="product").pixels
+
+    reference = picture(scene.measured(measurement))
+    found = dict(zip(("flip_mean", "flip_99"), flips(reference, picture(scene), where), strict=True))
+    if with_noise:
+        other = picture(scene.measured(measurement), run.seed + 1)
+        found |= dict(zip(("noise_mean", "noise_99"), flips(reference, other, where), strict=True))
+    return found
+
+
+def flips(reference: np.ndarray, test: np.ndarray, where: np.ndarray) -> tuple[float, float]:
+    """Mean and 99th percentile of FLIP over the pixels that show the object."""
+    scale = flip_metric.exposure(reference, where)
+    pictures = (charts.display(scale * picture) for picture in (reference, test))
+    values = flip_metric.flip_map(*pictures)[::-1][where]
+    return float(values.mean()), float(np.percentile(values, 99))
+
+
+def write(run: Run, found: dict) -> None:
+    rows, conditions = found["rows"], found["conditions"]
+    mean, percentile = (float(conditions[f"{name}_threshold"]) for name in ("mean", "percentile"))
+    orders: dict[tuple, list[dict]] = {}
+    for row in rows:
+        row["is_below"] = row["flip_mean"] < mean and row["flip_99"] < percentile
+        row["below"] = "yes" if row["is_below"] else "no"
+        orders.setdefault((row["tolerance"], row["max_lobes"]), []).append(row)
+    at = orders[DEFAULT]
+    failed = {row["material"] for row in at if not row["is_below"]}
+    parts = {
+        "mean_threshold": mean,
+        "percentile_threshold": percentile,
+        "materials_measured": len({row["material"] for row in rows}),
+        "worlds_named": " and ".join(dict.fromkeys(f"`{row['scene'].split(', ')[1]}`" for row in rows)),
+        "below": sum(row["is_below"] for row in at),
+        "at_default": len(at),
+        "means_below": sum(row["flip_mean"] < mean for row in at),
+        "whole": ", ".join(dict.fromkeys(r["material"] for r in at if r["material"] not in failed)) or "none",
+        "ending": " The others are named below." if failed else "",
+        "by_tolerance": page.table(
+            (_of_order(*item) for item in orders.items()),
+            "tolerance | error, median | error, largest | mean, median | mean, largest | "
+            "99th percentile, median | largest | below the threshold",
+            "{order} | {relative_l2[0]:.4f} | {relative_l2[1]:.4f} | {flip_mean[0]:.4f} | "
+            "{flip_mean[1]:.4f} | {flip_99[0]:.4f} | {flip_99[1]:.4f} | {below} of {count}",
+        ),
+        "default_table": page.table(
+            at,
+            "material | scene | error | mean | 99th percentile | noise, mean | 99th percentile | below",
+            "{material} | {scene} | {relative_l2:.4f} | {flip_mean:.4f} | {flip_99:.4f} | {noise_mean:.4f} | "
+            "{noise_99:.4f} | {below}",
+        ),
+    }
+    page.write(run.output, "perceptual.md", page.text("perceptual", conditions | parts))
+    names = {"mean": "flip_mean", "99th percentile": "flip_99"}
+    panels = [
+        (material, {name: _worst(rows, material, value) for name, value in names.items()})
+        for material in dict.fromkeys(row["material"] for row in rows)
+    ]
+    chart, axes = run.output / "perceptual/flip_by_error.png", ("relative L2 of the fit", "FLIP")
+    charts.curves(chart, panels, *axes, levels=[mean, percentile])
+
+
+def _of_order(order: tuple[float, int], rows: list[dict]) -> dict:
+    """Median and maximum of each number."""
+    tolerance, lobes = order
+    found = {"order": f"{tolerance:g}" + (f", {lobes} lobes" if lobes != DEFAULT[1] else "")}
+    for value in ("relative_l2", "flip_mean", "flip_99"):
+        values = [row[value] for row in rows]
+        found[value] = np.median(values), max(values)
+    return found | {"below": sum(row["is_below"] for row in rows), "count": len(rows)}
+
+
+def _worst(rows: list[dict], material: str, value: str) -> list[tuple[float, float]]:
+    """The worst scene of each fit of a material: (error of the fit, value)."""
+    worst: dict[float, float] = {}
+    for row in (row for row in rows if row["material"] == material):
+        worst[row["relative_l2"]] = max(row[value], worst.get(row["relative_l2"], 0.0))
+    return sorted(worst.items())

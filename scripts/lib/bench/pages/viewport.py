@@ -1,0 +1,139 @@
+"""How long the rendered viewport of the real Blender takes to show a change, on a virtual screen, and whether
+its memory grows when it is switched off and on. Leave the machine idle meanwhile.
+
+Only a run of all scenes writes the page.
+"""
+
+from __future__ import annotations
+
+import json
+import shutil
+import statistics
+import sys
+
+from .. import blender, page, provenance
+from ..run import Run
+from ..velour_cli import ROOT
+
+sys.path.insert(0, str(ROOT / "blend-tests"))
+
+from support import process
+
+SCENES = {
+    "monkey": "a monkey of 31 thousand triangles in a measured paint, under a picture of a sky",
+    "objects": "5 million triangles in 500 objects, each with a mesh of its own",
+    "instances": "100,000 instances of a sphere of 992 triangles",
+}
+SETTINGS = {
+    "restarts": (1000, 10),
+    "blender": ("blender", "blender"),  # path
+    "scenes": (tuple(SCENES), ("monkey",)),
+}
+SEEN, EXPORT, HELD = 0.2, 3.0, 0.05  # targets in seconds
+SCREEN, SECONDS = ("1400", "1000"), 3600
+
+
+def measure(run: Run) -> dict:
+    own = run.settings
+    for tool in ("xvfb-run", own.blender):
+        if not shutil.which(tool):
+            raise blender.BlenderError(f"{tool} is not installed; run scripts/setup")
+    if len(own.scenes) < len(SCENES):
+        run.output = run.work / "part"  # it must not replace the page
+    load, results = provenance.busy_threads(), {}
+    for scene in own.scenes:
+        print(f"{scene} ...", flush=True)
+        results[scene] = _measured(run, scene)
+    return {"conditions": run.conditions(load=load, seed=0), "results": results}
+
+
+def _measured(run: Run, scene: str) -> dict:
+    folder = run.work / scene
+    shutil.rmtree(folder, ignore_errors=True)
+    folder.mkdir(parents=True)
+    task = {"scene": scene, "restarts": run.settings.restarts if scene == "monkey" else 0}
+    (folder / "task.json").write_text(json.dumps(task))
+    log, program = folder / "log.txt", shutil.which(run.settings.blender)
+    screen = f"-screen 0 {'x'.join(SCREEN)}x24 -fbdir . -nocursor"
+    command = [
+        "env",
+        "-C",
+        str(folder),
+        "xvfb-run",
+        "-a",
+        "-s",
+        screen,
+        program,
+        "--factory-startup",
+        "-noaudio",
+    ]
+    command += ["--window-geometry", "0", "0", *SCREEN, "--python-exit-code", "1", "--python"]
+    command += [str(ROOT / "scripts/lib/bench/inside/viewport.py"), "--", str(folder)]
+    status = process.execute(command, process.environment(program, blender.STAGE), log, SECONDS)
+    if status or not (folder / "result.json").is_file():
+        last = [line for line in log.read_text(errors="replace").splitlines() if line.strip()][-3:]
+        raise blender.BlenderError(f"the scene {scene} failed; {log} ends: {' / '.join(last)}")
+    return json.loads((folder / "result.json").read_text())
+
+
+def write(run: Run, found: dict) -> None:
+    results, conditions = found["results"], found["conditions"]
+    first, load = next(iter(results.values())), conditions["load"]
+    values = {
+        "blender": first["blender"],
+        "size": first["size"],
+        "samples": first["samples"],
+        "busy": "" if load < 0.2 else f" **Other programs kept {load:.1f} processors busy.**",
+        "seen": SEEN,
+        "export": EXPORT,
+        "held": f"{1000 * HELD:.0f}",
+        "scenes": "\n".join(_text(scene, result) for scene, result in results.items()),
+    }
+    part = page.text("viewport", conditions | values)
+    page.write_parts(run.output, "viewport.md", "viewport", measured=part)
+
+
+def _text(scene: str, result: dict) -> str:
+    rows = page.table(
+        (_row(name, runs) for name, runs in result["changes"].items()),
+        "change | seen after, s | of it export, s | Blender held up by a redraw, ms",
+        "{name} | {seen} | {export} | {held}",
+    )
+    text = f"""### {SCENES[scene][0].upper()}{SCENES[scene][1:]}
+
+{rows}
+While the object moves on and on: {result["dragged"]:.1f} pictures a second.
+Memory of Blender: {result["mib"]:.0f} MiB.
+"""
+    if "restarts" in result:
+        count, memory = (
+            result["restarts"]["count"],
+            ", ".join(f"{mib:.0f}" for mib in result["restarts"]["mib"]),
+        )
+        text += f"Switched off and on {count} times; MiB after each tenth of them: {memory}.\n"
+    if "real_time" in result:
+        seconds, (width, height) = (
+            statistics.median(result["real_time"]["seconds"]),
+            result["real_time"]["size"],
+        )
+        text += f"""
+In real time ([realtime.md](../engine/realtime.md)) a picture of {width} x {height} of it takes
+{1000 * seconds:.0f} ms, {1 / seconds:.1f} a second, reading it back included; the target is 30 on a modest
+graphics processor.
+"""
+    return text
+
+
+def _row(name: str, runs: list[dict]) -> dict:
+    seen, export, held = (statistics.median(run[key] for run in runs) for key in ("seen", "export", "held"))
+    is_first = len(runs) == 1
+    return {
+        "name": name,
+        "seen": _marked(f"{seen:.2f}", not is_first and seen > SEEN),
+        "export": _marked(f"{export:.3f}", is_first and export > EXPORT),
+        "held": _marked(f"{1000 * held:.0f}", held > HELD),
+    }
+
+
+def _marked(text: str, is_missed: bool) -> str:
+    return f"**{text}**" if is_missed else text

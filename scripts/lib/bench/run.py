@@ -1,0 +1,217 @@
+"""A run of a page: its settings, and the renders, fits and other results that it keeps.
+
+A result is kept under a hash of everything it depends on and is not made again, so an interrupted run
+continues.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+import functools
+import hashlib
+import json
+import resource
+import shutil
+import subprocess
+from collections.abc import Callable
+from pathlib import Path
+from types import SimpleNamespace
+
+import numpy as np
+import velour as addon
+from velour.core import files
+from velour.core.machine import machine
+from velour.native import images
+
+from . import data_files, provenance
+from .progress import Progress
+from .scenes import Scene
+from .velour_cli import ROOT, velour_to_file
+
+BUILT = ROOT / "build/release/native"
+_LIBRARY = Path(addon.__file__).with_name("lib") / "libvelour.so"
+# Cost of a process besides its samples, in samples: startup, reading the mesh, building the BVH.
+START = 10_000_000
+
+
+@dataclasses.dataclass(frozen=True)
+class Picture:
+    path: Path
+    report: dict
+
+    @functools.cached_property
+    def pixels(self) -> np.ndarray:
+        """Linear RGB, float32."""
+        return read_rgb(self.path)
+
+    @property
+    def seconds(self) -> float:
+        return self.report["seconds"]
+
+    def errors(self, reference: np.ndarray) -> tuple[float, float]:
+        """rmse and relmse."""
+        return images.compare(self.pixels, reference)
+
+
+@dataclasses.dataclass
+class Run:
+    """`settings`: the page's own; its `size` is the size of renders unless another is given."""
+
+    name: str
+    work: Path
+    output: Path
+    settings: SimpleNamespace
+    seed: int = 1
+    threads: int = 2
+    fresh: bool = False
+    progress: Progress = dataclasses.field(default_factory=Progress)
+
+    def __post_init__(self):
+        self.kept = self.work / "kept"
+        if self.fresh:
+            shutil.rmtree(self.kept, ignore_errors=True)
+        self.kept.mkdir(parents=True, exist_ok=True)
+        self.output.mkdir(parents=True, exist_ok=True)
+
+    @functools.cached_property
+    def data(self) -> Path:
+        """The test data. Raises NoDataError."""
+        return data_files.folder()
+
+    def conditions(self, **more) -> dict:
+        """The machine, commit and settings that numbers are measured with, for their page."""
+        settings = {name: shown(name, value) for name, value in vars(self.settings).items()}
+        return provenance.conditions(self.seed, self.threads) | settings | more
+
+    def expect(self, spp: int, size: tuple[int, int] | None = None, count: int = 1) -> None:
+        """Announces renders to the progress."""
+        self.progress.expect(_cost(spp, size or self.settings.size), count)
+
+    def render(
+        self,
+        scene: Scene,
+        spp: int,
+        *,
+        seed: int | None = None,
+        size: tuple[int, int] | None = None,
+        **options,
+    ) -> Picture:
+        """`options`: command line options of `velour render`."""
+        size = size or self.settings.size
+        parameters = {**scene.options, "size": "{}x{}".format(*size), "spp": spp, **options}
+        parameters |= {"seed": self.seed if seed is None else seed, "threads": self.threads}
+        label = " ".join([f"{scene.name}, {parameters['size']}, {spp} spp,", *map(str, options.values())])
+        out = self.stem("render", parameters).with_suffix(".exr")
+        cache = [] if "cache" in options else ["--cache", self.kept]
+        words = ["render", *flags(parameters), *cache, "-o", out]
+        return Picture(out, self.velour(label, "render", parameters, *words, cost=_cost(spp, size)))
+
+    def fit(self, measurement: Path, model: str = "scattered", **options) -> tuple[Path, dict]:
+        """The model, and the report of its fit: {"refused": True} if no model has so few `bytes`."""
+        options = {"model": model, "tolerance": 0.02, "seed": self.seed, **options}
+        options = {name.replace("_", "-"): value for name, value in options.items()}
+        parameters = {"measurement": measurement, **options}
+        out = self.stem("fit", parameters).with_suffix(".velour")
+        label = f"{model} fit of {measurement.stem}, " + ", ".join(f"{k} {v}" for k, v in options.items())
+        words = ("fit", measurement, "-o", out, *flags(options))
+        return out, self.velour(label, "fit", parameters, *words, refusable="bytes" in options)
+
+    def compare_peer(self, measurement: Path, peer: str) -> dict:
+        """Errors of the closest `peer`: ggx or principled."""
+        words = ("compare", measurement, f"--{peer}")
+        return self.velour(f"{peer} of {measurement.stem}", peer, {"measurement": measurement}, *words)
+
+    def velour(
+        self, label: str, name: str, parameters: dict, *words, cost: float = START, refusable: bool = False
+    ) -> dict:
+        """The report of a call of Velour, with its processor seconds. `refusable`: {"refused": True} if it
+        ends with status 1."""
+
+        def run() -> dict:
+            before, beside = processor_seconds(), self.stem(name, parameters).with_suffix(".partial")
+            try:
+                found = velour_to_file(beside, *words)
+            except subprocess.CalledProcessError as error:
+                if error.returncode != 1 or not refusable:
+                    raise
+                found = {"refused": True}
+            beside.unlink(missing_ok=True)
+            return found | {"processor_seconds": processor_seconds() - before}
+
+        return self.keep(label, name, parameters, run, cost)
+
+    def program(self, label: str, program: Path, *arguments, cost: float = START, **unkeyed) -> dict | None:
+        """The JSON that a program of native/bench prints; None if it is not built. `unkeyed`: further options
+        that do not change the result."""
+        if not program.is_file():
+            return None
+        more = [str(word) for name, value in unkeyed.items() for word in (f"--{name}", value)]
+        command = [program, *map(str, arguments), *more]
+
+        def run() -> dict:
+            said = subprocess.run(command, check=True, stdout=subprocess.PIPE, text=True).stdout
+            return json.loads(said or "{}")
+
+        parameters = dict(enumerate([program, *arguments]))
+        return self.keep(label, program.name, parameters, run, cost)
+
+    def keep(
+        self, label: str, name: str, parameters: dict, make: Callable[[], dict], cost: float = START
+    ) -> dict:
+        """The kept report, or that which `make` returns."""
+        report = self.stem(name, parameters).with_suffix(".json")
+        if report.is_file():
+            self.progress.skip(label, cost)
+        else:
+            with self.progress.work(label, cost):
+                files.write_json(report, make())
+        return json.loads(report.read_text(encoding="utf-8"))
+
+    def stem(self, name: str, parameters: dict) -> Path:
+        """Path of the files that depend on the parameters, without suffix."""
+        return self.kept / f"{name}-{key(parameters)}"
+
+
+def _cost(spp: int, size: tuple[int, int]) -> float:
+    return spp * size[0] * size[1] + START
+
+
+def read_rgb(path: Path) -> np.ndarray:
+    return np.ascontiguousarray(images.read(path)[..., :3])
+
+
+def key(parameters: dict) -> str:
+    """Hash of the parameters (files by content, not by name), the library and the machine."""
+    known = {
+        name: _hash(value) if isinstance(value, Path) else str(value) for name, value in parameters.items()
+    }
+    text = json.dumps([known, _hash(_LIBRARY), machine()], sort_keys=True)
+    return hashlib.sha256(text.encode()).hexdigest()[:16]
+
+
+def flags(parameters: dict) -> list[str]:
+    # One word per option: a value may begin with a minus.
+    return [f"--{name}={value}" for name, value in parameters.items()]
+
+
+def _hash(path: Path) -> str:
+    status = path.stat()
+    return _hash_of_version(path, status.st_mtime_ns, status.st_size)
+
+
+@functools.cache
+def _hash_of_version(path: Path, modified: int, size: int) -> str:
+    return files.sha256(path)
+
+
+def shown(name: str, value) -> object:
+    """A setting as its page shows it."""
+    if isinstance(value, tuple):
+        return ("x" if name.endswith("size") else ", ").join(map(str, value))
+    return value
+
+
+def processor_seconds() -> float:
+    """Time of all processes that this one has started and that have ended."""
+    usage = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return usage.ru_utime + usage.ru_stime
