@@ -1,4 +1,4 @@
-"""OpenPBR Surface with constant parameters: a metal or a dielectric over a diffuse base, and a coat.
+"""OpenPBR Surface [OPBR24] with constant parameters: a metal or a dielectric over a diffuse base, and a coat.
 
 The formula is that of the node graph of MaterialX 1.39, for reflection without fuzz, thin film and subsurface.
 """

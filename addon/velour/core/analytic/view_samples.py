@@ -7,11 +7,11 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..native import Model
+from ...native import Model
 
 REPORTED = (5, 30, 60, 75, 85)  # degrees
 LUMINANCE = np.array((0.2126, 0.7152, 0.0722))
-_FITTED = np.arange(2.5, 90, 5)  # degrees; none within a degree of the reported ones, except 2.5 of each
+_FITTED = np.arange(2.5, 90, 5)  # degrees; none of them is reported
 _UNIFORM, _VIEWER = 0.3, 0.1  # shares of the lights; the others lie about the mirror direction
 _ALPHAS = (0.04, 0.12, 0.35)  # of GGX half vectors, with equal shares
 _VIEWER_KAPPA = 20.0  # concentration of the lights about the viewer
