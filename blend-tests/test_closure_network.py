@@ -1,6 +1,8 @@
 """A network of Blender's own nodes that stands in for a measured material, rendered by Cycles."""
 
 import importlib
+import sys
+from unittest import mock
 
 import addon_utils
 import bpy
@@ -29,15 +31,26 @@ CASES = {
         lobes=[{"color": COLORS, "roughness": 0.4 + 0.2 * SMOOTH, "distribution": "BECKMANN"}]
     ),
     "to the viewer": closures.curves(lobes=[{"color": COLORS, "roughness": 0.5, "tilt": 0.8 * SMOOTH}]),
-    "from the viewer": closures.curves(lobes=[{"roughness": 0.5, "tilt": -0.15 * np.sin(np.pi * closures.X)}]),
+    "from the viewer": closures.curves(
+        lobes=[{"roughness": 0.5, "tilt": -0.15 * np.sin(np.pi * closures.X)}]
+    ),
     "stretched along": closures.curves(lobes=[{"roughness": 0.5, "anisotropy": -0.4 * SMOOTH}]),
     "stretched across": closures.curves(lobes=[{"roughness": 0.5, "anisotropy": 0.4 * SMOOTH}]),
     "all": closures.curves(
         COLORS / 4,
         [
-            {"color": COLORS / 3, "roughness": 0.35 + 0.2 * SMOOTH, "tilt": 0.6 * SMOOTH, "anisotropy": 0.4 * SMOOTH},
+            {
+                "color": COLORS / 3,
+                "roughness": 0.35 + 0.2 * SMOOTH,
+                "tilt": 0.6 * SMOOTH,
+                "anisotropy": 0.4 * SMOOTH,
+            },
             {"color": COLORS / 5, "roughness": 0.6, "tilt": -0.05 * SMOOTH, "distribution": "BECKMANN"},
-            {"color": 0.1 * (1 - SMOOTH[:, None]), "roughness": 0.7 - 0.2 * SMOOTH, "anisotropy": -0.3 * SMOOTH},
+            {
+                "color": 0.1 * (1 - SMOOTH[:, None]),
+                "roughness": 0.7 - 0.2 * SMOOTH,
+                "anisotropy": -0.3 * SMOOTH,
+            },
         ],
     ),
 }
@@ -156,7 +169,9 @@ class ClosedForm(Network):
                 ring = np.abs(angle - np.radians(degrees)) < np.radians(2.5)
                 at = angle[ring].mean()
                 f_cos = closures.f_cos(CASES[name], np.array([np.sin(at), 0, np.cos(at)]), wl)
-                np.testing.assert_allclose(picture[ring].mean(0), solid_angle @ f_cos, rtol=0.04, err_msg=name)
+                np.testing.assert_allclose(
+                    picture[ring].mean(0), solid_angle @ f_cos, rtol=0.04, err_msg=name
+                )
 
 
 class Controls(Network):
@@ -243,9 +258,61 @@ class Tree(Network):
         boxes = {}
         for node in self.tree.nodes:
             if node.parent and node.bl_idname != "NodeFrame":
-                boxes.setdefault(node.parent.name, []).append((node.location.x, node.location.y, node.width, node.name))
+                boxes.setdefault(node.parent.name, []).append(
+                    (node.location.x, node.location.y, node.width, node.name)
+                )
         for nodes in boxes.values():
             for i, (x, y, width, name) in enumerate(nodes):
                 for other_x, other_y, other_width, other in nodes[:i]:
                     apart = abs(y - other_y) >= 55 or x + width <= other_x or other_x + other_width <= x
                     self.assertTrue(apart, f"{name} lies on {other}")
+
+
+class File(Network):
+    """A material in a .blend file of its own."""
+
+    def setUp(self):
+        super().setUp()
+        self.path = self.folder / "curves.blend"
+        self.blend_file = importlib.import_module(f"{inputs.ADDON}.core.blend_file")
+
+    def _write(self, curves, blender="blender"):
+        self.blend_file.write_closures(self.path, "Satin", curves, "Off by 3 %.", blender)
+
+    def _append(self):
+        """Shows the material of the file; returns its group node."""
+        with bpy.data.libraries.load(str(self.path)) as (source, target):
+            target.materials = source.materials
+        (material,) = target.materials
+        self.plane.data.materials[0] = material
+        return next(n for n in material.node_tree.nodes if n.bl_idname == "ShaderNodeGroup")
+
+    def test_it_renders_as_the_curves(self):
+        before = len(bpy.data.materials), len(bpy.data.node_groups)
+        self._write(CASES["all"])
+        self.assertEqual((len(bpy.data.materials), len(bpy.data.node_groups)), before)
+        node = self._append()
+        self.assertLess(self.error(CASES["all"]), _EXACT)
+        node.inputs["Tint"].default_value = (0.5, 1, 0.2, 1)
+        self.assertLess(self.error(_dyed(CASES["all"], (0.5, 1, 0.2))), _EXACT)
+        self.assertEqual(self.plane.active_material.asset_data.description, "Off by 3 %.")
+        self.assertEqual(node.node_tree.name, "Satin")
+        self.assertNotIn("Rotation", node.inputs)
+
+    def test_a_blender_of_its_own_writes_it(self):
+        curves = {**closures.curves(lobes=[{"roughness": 0.5, "anisotropy": 0.5}]), "frame": "surface"}
+        outside = {name: module for name, module in sys.modules.items() if name != "bpy"}
+        with mock.patch.dict(sys.modules, outside, clear=True):
+            self._write(curves, bpy.app.binary_path)
+        node = self._append()
+        node.inputs["Rotation"].default_value = np.pi / 2
+        turned = closures.curves(lobes=[{"roughness": 0.5, "anisotropy": -0.5}])
+        self.assertLess(self.error({**turned, "frame": "surface"}), _EXACT)
+
+    def test_a_missing_blender_is_named(self):
+        native = inputs.native()
+        outside = {name: module for name, module in sys.modules.items() if name != "bpy"}
+        with mock.patch.dict(sys.modules, outside, clear=True):
+            with self.assertRaisesRegex(native.VelourError, "does not start .* name it with --blender"):
+                self._write(CASES["all"], "no-such-blender")
+        self.assertEqual(list(self.folder.iterdir()), [])

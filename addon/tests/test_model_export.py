@@ -38,7 +38,9 @@ def test_the_document_holds_the_parameters_and_the_error(exported):
     shader = ElementTree.parse(path).getroot().find("open_pbr_surface")
     values = {each.get("name"): each.get("value") for each in shader}
     assert set(values) == set(report["parameters"])
-    assert float(values["specular_roughness"]) == pytest.approx(report["parameters"]["specular_roughness"], rel=1e-4)
+    assert float(values["specular_roughness"]) == pytest.approx(
+        report["parameters"]["specular_roughness"], rel=1e-4
+    )
     assert f"{report['relative_l2']:.3f}" in shader.get("doc")
 
 
@@ -70,6 +72,20 @@ def test_a_brushed_model_lies_along_its_rougher_direction(tmp_path):
     velour("export", inputs.BRUSHED_MODEL, "--to", "principled", "-o", principled, "--quiet")
     is_turned = json.loads(principled.read_text())["parameters"]["anisotropic_rotation"] > 0
     assert (ElementTree.parse(path).getroot().find("bitangent") is not None) == is_turned
+
+
+def test_the_curves_of_a_lobe_are_its_fresnel_term():
+    from velour.core.closures import closures_of_ggx
+
+    ggx = {"f0": [0.5, 0.4, 0.3], "f90": [1, 1, 1], "alpha": [0.04, 0.16], "diffuse": [0.1, 0.2, 0.3]}
+    curves = closures_of_ggx(ggx)
+    (lobe,) = curves["lobes"]
+    assert lobe["color"][0] == pytest.approx([0.5, 0.4, 0.3])
+    assert lobe["color"][-1] == pytest.approx([1, 1, 1])
+    alpha, a = lobe["roughness"][0] ** 2, lobe["anisotropy"][0]
+    assert (alpha * (1 - a), alpha / (1 - a)) == pytest.approx((0.04, 0.16))
+    a = closures_of_ggx({**ggx, "alpha": [0.16, 0.04]})["lobes"][0]["anisotropy"][0]
+    assert (alpha / (1 + a), alpha * (1 + a)) == pytest.approx((0.16, 0.04))
 
 
 def test_gltf_declares_what_it_uses(exported):

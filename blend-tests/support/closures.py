@@ -59,7 +59,9 @@ def _lobe(lobe, frame, x, wv, wl):
     falloff = (1 + slopes) ** -2.0 if is_ggx else np.exp(-slopes)
     d = falloff / (np.pi * alpha.prod(-1) * h[:, 2] ** 4)
     lambdas = [_smith_lambda(alpha, direction, is_ggx) for direction in (v, light)]
-    masking = 1 / (1 + sum(lambdas)) if is_correlated() else 1 / np.prod([1 + each for each in lambdas], axis=0)
+    masking = (
+        1 / (1 + sum(lambdas)) if is_correlated() else 1 / np.prod([1 + each for each in lambdas], axis=0)
+    )
     return np.where((light[:, 2] > 0) & (wl[:, 2] > 0), d * masking / (4 * v[:, 2]), 0)
 
 

@@ -41,11 +41,13 @@ def _run(blender, package, order):
     command = [blender, "-b", "--factory-startup", "--python-exit-code", "1", "--python-expr", _PROGRAM]
     arguments = ["--", str(package.parent), f"{package.name}.{_WRITER}", str(order)]
     try:
-        done = subprocess.run([*command, *arguments], capture_output=True, text=True, errors="replace", check=False)
+        done = subprocess.run(
+            [*command, *arguments], capture_output=True, text=True, errors="replace", check=False
+        )
     except OSError as error:
         raise refuse(
-            f"{blender}: Blender, which writes the .blend file, does not start ({error.strerror}); name it with"
-            " --blender."
+            f"{blender}: Blender, which writes the .blend file, does not start ({error.strerror}); name it"
+            " with --blender."
         ) from error
     if done.returncode != 0:
         lines = (done.stdout + done.stderr).strip().splitlines() or ["no message"]

@@ -18,6 +18,7 @@ from .analytic.open_pbr_fit import fit_open_pbr
 from .analytic.view_samples import ViewSamples, errors, fitted_samples
 from .approximation import Approximation, Steps
 from .blend_file import write_closures
+from .closures import closures_of
 
 _ERROR_KEYS = ("relative_l2", "by_view_angle")
 
@@ -86,7 +87,7 @@ def _write_gltf(request: Request) -> dict:
 
 
 def _write_cycles(request: Request) -> dict:
-    closures = request.model.closures(request.progress)
+    closures = closures_of(request.model, request.progress)
     report = {key: closures[key] for key in _ERROR_KEYS}
     write_closures(request.path, request.name, closures, _note(report), request.blender)
     return {"parameters": {"lobes": [lobe["distribution"] for lobe in closures["lobes"]]}, **report}

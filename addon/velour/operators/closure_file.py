@@ -1,4 +1,4 @@
-"""Writes a .blend file with a material of Blender's own nodes, in a Blender that need not have Velour enabled."""
+"""Writes a .blend file with a material of Blender's own nodes; Velour need not be enabled."""
 
 import json
 from pathlib import Path
@@ -7,7 +7,14 @@ import bpy
 
 from .closure_network import build
 
-_INPUTS = (("Tint", "NodeSocketColor"), ("Exposure", "NodeSocketFloat"), ("Normal", "NodeSocketVector"))
+_INPUTS = {
+    "Tint": "NodeSocketColor",
+    "Exposure": "NodeSocketFloat",
+    "Roughness": "NodeSocketFloat",
+    "Normal": "NodeSocketVector",
+    "Rotation": "NodeSocketFloat",  # of anisotropic measurements
+}
+_WHITE = (1.0, 1.0, 1.0, 1.0)
 
 
 def write_from(order):
@@ -34,11 +41,12 @@ def write(path, name, closures, note):
 
 
 def _fill(group, closures):
+    names = [name for name in _INPUTS if name != "Rotation" or closures.get("frame") == "surface"]
     _add_socket(group, "BSDF", "NodeSocketShader", "OUTPUT")
-    for name, kind in _INPUTS:
-        _add_socket(group, name, kind, "INPUT")
+    for name in names:
+        _add_socket(group, name, _INPUTS[name], "INPUT")
     source, sink = group.nodes.new("NodeGroupInput"), group.nodes.new("NodeGroupOutput")
-    controls = {name.lower(): source.outputs[name] for name, _kind in _INPUTS}
+    controls = {name.lower(): source.outputs[name] for name in names}
     group.links.new(build(group, closures, **controls), sink.inputs[0])
     source.location, sink.location = (-400, 0), (2000, 0)
 
@@ -49,7 +57,7 @@ def _add_socket(group, name, kind, in_out):
     else:
         socket = (group.outputs if in_out == "OUTPUT" else group.inputs).new(kind, name)
     if name == "Tint":
-        socket.default_value = (1, 1, 1, 1)
+        socket.default_value = _WHITE
     elif name == "Normal":
         socket.hide_value = True
 
@@ -61,7 +69,5 @@ def _show(material, group):
     shown, sink = nodes.new("ShaderNodeGroup"), nodes.new("ShaderNodeOutputMaterial")
     shown.node_tree, shown.name, shown.width = group, group.name, 200
     sink.location = 300, 0
-    for name, _kind in _INPUTS:  # new nodes do not take the defaults of their group in all versions
-        if name == "Tint":
-            shown.inputs[name].default_value = (1, 1, 1, 1)
+    shown.inputs["Tint"].default_value = _WHITE
     material.node_tree.links.new(shown.outputs[0], sink.inputs["Surface"])

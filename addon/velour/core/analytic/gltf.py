@@ -1,4 +1,4 @@
-"""The material of glTF 2.0 with its extensions for specular, IOR, clear coat and anisotropy, with constant parameters."""
+"""The material of glTF 2.0 and its extensions, with constant parameters."""
 
 from __future__ import annotations
 
@@ -103,6 +103,9 @@ def f_cos(p: Gltf, g: Geometry) -> np.ndarray:
 
 def fit_gltf(samples: ViewSamples, start: Gltf, is_isotropic: bool) -> Gltf:
     ranges = _RANGES if is_isotropic else {**_RANGES, **_ANISOTROPY}
-    coat = {"clearcoat": max(start.clearcoat, 0.3), "clearcoat_roughness": max(start.clearcoat_roughness, 0.3)}
+    coat = {
+        "clearcoat": max(start.clearcoat, 0.3),
+        "clearcoat_roughness": max(start.clearcoat_roughness, 0.3),
+    }
     starts = start, *(start._replace(metallic=m, **coat) for m in (0.05, 0.95))
     return fit_material(samples, starts, ranges, f_cos)

@@ -24,8 +24,8 @@ def fit_material(
 ) -> Any:
     """The best of the fits of the fields in `ranges`, from each of `starts`, named tuples.
 
-    Residuals: f cos of each channel, its luminance, and albedos, relative to those of the view. Views weigh as
-    much as the picture of a sphere shows of them.
+    Residuals: f cos of each channel, its luminance, and albedos, relative to those of the view. Views weigh
+    as much as the picture of a sphere shows of them.
     """
     target = _Target(samples)
     geometry = geometry or Geometry.of(samples.wv, samples.wl)

@@ -11,10 +11,12 @@ _VERSION = "1.39"  # the first with open_pbr_surface
 
 
 def document(name: str, material: OpenPbr, along_bitangent: bool, note: str) -> str:
-    """Text of a .mtlx file with a surface material. `note` documents it; along_bitangent: the tangent is y."""
+    """Text of a .mtlx file with a surface material and a `note` on it. along_bitangent: the tangent is y."""
     root = ElementTree.Element("materialx", version=_VERSION, colorspace="lin_rec709")
     own = element_name(name)
-    shader = ElementTree.SubElement(root, "open_pbr_surface", name=f"SR_{own}", type="surfaceshader", doc=note)
+    shader = ElementTree.SubElement(
+        root, "open_pbr_surface", name=f"SR_{own}", type="surfaceshader", doc=note
+    )
     if along_bitangent:
         root.insert(0, ElementTree.Element("bitangent", name=f"T_{own}", type="vector3"))
         _add(shader, "geometry_tangent", "vector3", nodename=f"T_{own}")

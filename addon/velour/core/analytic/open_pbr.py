@@ -1,6 +1,6 @@
-"""OpenPBR Surface [OPBR24] with constant parameters: a metal or a dielectric over a diffuse base, and a coat.
+"""OpenPBR Surface [OPBR24] with constant parameters: metal, or dielectric over a diffuse base, and a coat.
 
-The formula is that of the node graph of MaterialX 1.39, for reflection without fuzz, thin film and subsurface.
+The formula is that of the node graph of MaterialX 1.39, without fuzz, thin film and subsurface.
 """
 
 from __future__ import annotations
@@ -17,7 +17,10 @@ _C82 = 1 / 7  # cosine at which specular_color tints a metal
 
 
 class OpenPbr(NamedTuple):
-    """Inputs of open_pbr_surface; colors are linear Rec. 709 in [0, 1]. base_weight is 1, coat_darkening 0."""
+    """Inputs of open_pbr_surface; colors are linear Rec. 709 in [0, 1].
+
+    base_weight is 1 and coat_darkening 0.
+    """
 
     base_color: tuple = (0.8, 0.8, 0.8)
     base_diffuse_roughness: float = 0.0
@@ -122,7 +125,7 @@ def _scaled_ior(ior, weight):
 
 
 def _lost(nv, alpha):
-    """(1 - E) / E of a white lobe: light that it loses between facets, and energy compensation returns [T19]."""
+    """(1 - E) / E of a white lobe: light lost between facets, which energy compensation returns [T19]."""
     first, rise = albedo(nv, alpha)
     white = np.clip(first + rise, 1e-3, 1)
     return (1 - white) / white

@@ -19,7 +19,7 @@ class Range(NamedTuple):
 def fit(
     residuals: Callable[[np.ndarray], np.ndarray], start: np.ndarray, ranges: list[Range], steps: int = 30
 ) -> tuple[np.ndarray, float]:
-    """Parameters within `ranges` that minimize the sum of squares of `residuals`, from `start`; and that sum."""
+    """Parameters within `ranges` that minimize the squared norm of `residuals`, from `start`; that norm."""
     low, high = np.array(ranges, float).T
 
     def bounded(angle):

@@ -61,7 +61,9 @@ def _samples(model, degrees, lights):
     wv = np.array([_direction(theta, phi) for theta, phi in views], np.float32)
     sampled = [_lights(theta, phi, lights) for theta, phi in views]
     wl, solid_angle = (np.stack(parts) for parts in zip(*sampled, strict=True))
-    values = np.stack([model.eval(view, light.astype(np.float32))[0] for view, light in zip(wv, wl, strict=True)])
+    values = np.stack(
+        [model.eval(view, light.astype(np.float32))[0] for view, light in zip(wv, wl, strict=True)]
+    )
     return ViewSamples(wv, wl, solid_angle, np.maximum(values, 0) * np.maximum(wl[..., 2:], 0))
 
 
@@ -70,7 +72,10 @@ def _direction(theta, phi):
 
 
 def _lights(theta, phi, count):
-    """Directions [count x 3] for a view, and the solid angles [count] that they stand for (balance heuristic)."""
+    """Directions [count x 3] for a view, and the solid angles [count] that they stand for.
+
+    Densities of all techniques are combined by the balance heuristic.
+    """
     wv = np.array(_direction(theta, 0.0))
     index = np.arange(count)
     u, v = (0.5 + index * 0.7548776662466927) % 1, (0.5 + index * 0.5698402909980532) % 1  # R2 sequence

@@ -20,11 +20,14 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--to",
         choices=tuple(model_export.TARGETS),
-        help="what to make of a model: an OpenPBR material (.mtlx), a Principled material of Blender (.json), a"
-        " glTF material (.gltf), or nodes for Cycles and EEVEE (.blend)",
+        help="what to make of a model: OpenPBR (.mtlx), Blender's Principled BSDF (.json), glTF (.gltf), or"
+        " nodes for Cycles and EEVEE (.blend)",
     )
     parser.add_argument(
-        "--blender", metavar="PATH", default="blender", help="Blender that writes the .blend (default: blender)"
+        "--blender",
+        metavar="PATH",
+        default="blender",
+        help="Blender that writes the .blend (default: blender)",
     )
     btf_options.add_arguments(parser)
 
@@ -35,7 +38,9 @@ def run(args: argparse.Namespace) -> dict:
             return job.run(output.progress_of(args))
     target, path = model_export.TARGETS[args.to], Path(args.output)
     if path.suffix.lower() != target.suffix:
-        raise refuse(f"{path}: --to {args.to} writes a {target.suffix} file; change the extension of the output.")
+        raise refuse(
+            f"{path}: --to {args.to} writes a {target.suffix} file; change the extension of the output."
+        )
     output.check_writable(args.output)
     begin = time.monotonic()
     with Model.load(args.input) as model:
