@@ -312,7 +312,7 @@ class File(Network):
     def test_a_missing_blender_is_named(self):
         native = inputs.native()
         outside = {name: module for name, module in sys.modules.items() if name != "bpy"}
-        with mock.patch.dict(sys.modules, outside, clear=True):
-            with self.assertRaisesRegex(native.VelourError, "does not start .* name it with --blender"):
-                self._write(CASES["all"], "no-such-blender")
+        refused = self.assertRaisesRegex(native.VelourError, "does not start .* name it with --blender")
+        with mock.patch.dict(sys.modules, outside, clear=True), refused:
+            self._write(CASES["all"], "no-such-blender")
         self.assertEqual(list(self.folder.iterdir()), [])

@@ -77,23 +77,33 @@ def _lights(theta, phi, count):
     Densities of all techniques are combined by the balance heuristic.
     """
     wv = np.array(_direction(theta, 0.0))
-    index = np.arange(count)
-    u, v = (0.5 + index * 0.7548776662466927) % 1, (0.5 + index * 0.5698402909980532) % 1  # R2 sequence
-    technique = (0.5 + index * 0.8191725133961645) % 1
+    uniform, viewer = round(_UNIFORM * count), round(_VIEWER * count)
+    shares = [len(part) for part in np.array_split(range(count - uniform - viewer), len(_ALPHAS))]
+    wl = np.concatenate(
+        [
+            _uniform(*_points(uniform)),
+            _about(wv, *_points(viewer)),
+            *(
+                _mirrored(wv, _half_vector(alpha, *_points(n)))
+                for alpha, n in zip(_ALPHAS, shares, strict=True)
+            ),
+        ]
+    )
     # Below the horizon nothing is reflected: those directions become the zenith, with no solid angle.
-    wl = np.where((technique < _UNIFORM)[:, None], _uniform(u, v), _about(wv, u, v))
-    ends = np.linspace(_UNIFORM, 1 - _VIEWER, len(_ALPHAS) + 1)
-    for alpha, low, high in zip(_ALPHAS, ends, ends[1:], strict=False):
-        inside = (technique >= low) & (technique < high)
-        wl[inside] = _mirrored(wv, _half_vector(alpha, u[inside], v[inside]))
     above = wl[:, 2] > 1e-4
     wl[~above] = (0, 0, 1)
-    density = _UNIFORM / (2 * math.pi) + _VIEWER * _density_about(wv, wl)
-    for alpha in _ALPHAS:
-        density = density + (1 - _UNIFORM - _VIEWER) / len(_ALPHAS) * _half_density(alpha, wv, wl)
+    density = uniform / (2 * math.pi) + viewer * _density_about(wv, wl)
+    for alpha, n in zip(_ALPHAS, shares, strict=True):
+        density = density + n * _half_density(alpha, wv, wl)
     cos, sin = math.cos(phi), math.sin(phi)
     turned = np.stack([cos * wl[:, 0] - sin * wl[:, 1], sin * wl[:, 0] + cos * wl[:, 1], wl[:, 2]], axis=-1)
-    return turned, np.where(above, 1 / (density * count), 0)
+    return turned, np.where(above, 1 / density, 0)
+
+
+def _points(count):
+    """The R2 sequence: evenly spread points in the unit square."""
+    index = np.arange(count)
+    return (0.5 + index * 0.7548776662466927) % 1, (0.5 + index * 0.5698402909980532) % 1
 
 
 def _uniform(u, v):
