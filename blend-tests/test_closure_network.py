@@ -253,19 +253,25 @@ class Tree(Network):
         self.assertFalse(kinds & {"ShaderNodeRGBCurve", "ShaderNodeFloatCurve"})
 
     def test_nodes_do_not_overlap(self):
-        """Those of one frame at least; a node's height is known to a drawn window only."""
-        self.build(CASES["all"], tint=self.value("ShaderNodeRGB", (1, 1, 1, 1)), normal=self.vector(0, 0, 0))
-        boxes = {}
-        for node in self.tree.nodes:
-            if node.parent and node.bl_idname != "NodeFrame":
-                boxes.setdefault(node.parent.name, []).append(
-                    (node.location.x, node.location.y, node.width, node.name)
-                )
-        for nodes in boxes.values():
-            for i, (x, y, width, name) in enumerate(nodes):
-                for other_x, other_y, other_width, other in nodes[:i]:
-                    apart = abs(y - other_y) >= 55 or x + width <= other_x or other_x + other_width <= x
-                    self.assertTrue(apart, f"{name} lies on {other}")
+        """Heights are known to a drawn window only: nodes that can be tall have a row of their own."""
+        white, no_normal = self.value("ShaderNodeRGB", (1, 1, 1, 1)), self.vector(0, 0, 0)
+        self.build(CASES["all"], tint=white, normal=no_normal, roughness=self.value("ShaderNodeValue", 0.1))
+        boxes = [
+            (node.location.x, node.location.y, node.width, 55 if node.hide else 180, node.name)
+            for node in self.tree.nodes
+            if node.parent and node.bl_idname not in ("NodeFrame", "NodeReroute")
+        ]
+        for i, (x, y, width, height, name) in enumerate(boxes):
+            for other_x, other_y, other_width, other_height, other in boxes[:i]:
+                beside = x + width <= other_x or other_x + other_width <= x
+                apart = y - height >= other_y or other_y - other_height >= y
+                self.assertTrue(beside or apart, f"{name} lies on {other}")
+
+    def test_links_run_to_the_right(self):
+        self.build(CASES["all"], normal=self.vector(0, 0, 0))
+        for link in self.tree.links:
+            if link.from_node.parent and link.to_node.parent:
+                self.assertLess(link.from_node.location.x, link.to_node.location.x, link.to_node.name)
 
 
 class File(Network):

@@ -25,7 +25,7 @@ def exported(model_file, tmp_path_factory):
 def test_reports_state_errors(exported):
     for path, report in exported.values():
         assert list(report["by_view_angle"]) == ANGLES
-        assert 0 < report["relative_l2"] < 0.5
+        assert 0 < report["relative_l2"] < 0.6
         assert report["bytes"] == path.stat().st_size
 
 

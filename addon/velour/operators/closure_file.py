@@ -47,8 +47,10 @@ def _fill(group, closures):
         _add_socket(group, name, _INPUTS[name], "INPUT")
     source, sink = group.nodes.new("NodeGroupInput"), group.nodes.new("NodeGroupOutput")
     controls = {name.lower(): source.outputs[name] for name in names}
-    group.links.new(build(group, closures, **controls), sink.inputs[0])
-    source.location, sink.location = (-400, 0), (2000, 0)
+    bsdf = build(group, closures, **controls)
+    group.links.new(bsdf, sink.inputs[0])
+    x, y = bsdf.node.location
+    source.location, sink.location = (-300, 0), (x + 250, y)
 
 
 def _add_socket(group, name, kind, in_out):

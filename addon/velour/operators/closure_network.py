@@ -18,10 +18,12 @@ import bpy
 import numpy as np
 
 from ..export.color import rec709_to_working
-from .node_builder import ROW, NodeBuilder, remove_built
+from .node_builder import NodeBuilder, remove_built
 
 _TAG = "velour_closures"
 _SAME = 1e-5  # curves that vary by less are constants
+_PARTS, _SUMS = 5.5, 9.7  # columns where BSDFs and their sums begin
+_CURVE, _ROW = -330, -60  # from a color's curve to the next row, and between rows
 
 
 class Inputs(NamedTuple):
@@ -58,6 +60,7 @@ class _Network:
     def __init__(self, nodes, closures, inputs):
         self._nodes, self._closures, self._inputs = nodes, closures, inputs
         self._to_working = rec709_to_working().T
+        self._y = 0  # of the next part
 
     def bsdf(self):
         lobes = [lobe for lobe in self._closures["lobes"] if np.max(lobe["color"]) > 0]
@@ -71,7 +74,7 @@ class _Network:
     def _add_view(self, lobes):
         """Adds the nodes that all BSDFs share."""
         nodes = self._nodes
-        nodes.begin_part("View and controls", rows=1)
+        nodes.begin_part("View and controls")
         geometry = nodes.add("ShaderNodeNewGeometry", 0)
         incoming, self._normal = geometry.outputs["Incoming"], geometry.outputs["Normal"]
         if self._inputs.normal is not None:
@@ -121,7 +124,7 @@ class _Network:
         return self._nodes.vector("SCALE", 1.9, color, factor, y=-120, label="Gain")
 
     def _add_diffuse(self):
-        self._nodes.begin_part("Diffuse", rows=1)
+        self._begin_bsdf("Diffuse", rows=0)
         shader = self._nodes.add("ShaderNodeBsdfDiffuse", 3)
         self._nodes.put(shader.inputs["Color"], self._color(self._closures["diffuse"]))
         if self._inputs.normal is not None:
@@ -131,22 +134,22 @@ class _Network:
     def _add_lobe(self, number, lobe):
         nodes = self._nodes
         is_stretched, is_tilted = _is_used(lobe["anisotropy"]), _is_used(lobe["tilt"])
-        nodes.begin_part(f"Lobe {number}", rows=2 + is_stretched + is_tilted)
+        self._begin_bsdf(f"Lobe {number}", rows=1 + is_stretched + is_tilted)
         is_plain = not is_stretched and hasattr(bpy.types, "ShaderNodeBsdfGlossy")  # gone since Blender 4.0
         shader = nodes.add("ShaderNodeBsdfGlossy" if is_plain else "ShaderNodeBsdfAnisotropic", 3)
         shader.distribution = lobe["distribution"]
         nodes.put(shader.inputs["Color"], self._color(lobe["color"]))
-        y = -ROW
+        y = _CURVE
         roughness = self._curve(lobe["roughness"], y, "Roughness")
         nodes.put(shader.inputs["Roughness"], self._blurred(roughness, y))
         if is_stretched:
-            y -= ROW
+            y += _ROW
             nodes.put(shader.inputs["Anisotropy"], self._curve(lobe["anisotropy"], y, "Anisotropy"))
             nodes.put(shader.inputs["Tangent"], self._tangent)
             if self._turns is not None:
                 nodes.put(shader.inputs["Rotation"], self._turns)
         if is_tilted:
-            y -= ROW
+            y += _ROW
             tilt = self._curve(lobe["tilt"], y, "Tilt")
             tilted = nodes.vector(
                 "MULTIPLY_ADD", 1.7, self._to_viewer, tilt, self._normal, y=y, label="Tilted"
@@ -156,11 +159,19 @@ class _Network:
             nodes.put(shader.inputs["Normal"], self._normal)
         return shader
 
+    def _begin_bsdf(self, label, rows):
+        """Starts the part of a BSDF, with `rows` rows below that of its color."""
+        self._nodes.begin_part(label, _PARTS, self._y)
+        self._y += _CURVE + (rows + 2) * _ROW
+        x = self._nodes.add("NodeReroute", -0.25, -200)
+        self._nodes.put(x.inputs[0], self._x)
+        self._part_x = x.outputs[0]
+
     def _sum(self, shaders):
-        self._nodes.end_parts()
         bsdf, *others = (shader.outputs[0] for shader in shaders)
         for number, other in enumerate(others):
-            both = self._nodes.add("ShaderNodeAddShader", 5.2 + 0.7 * number)
+            self._nodes.begin_part(column=_SUMS + 0.7 * number, y=other.node.location.y)
+            both = self._nodes.add("ShaderNodeAddShader")
             self._nodes.put(both.inputs[0], bsdf)
             self._nodes.put(both.inputs[1], other)
             bsdf = both.outputs[0]
@@ -176,7 +187,7 @@ class _Network:
             brightest = float(colors.max())
             node = self._nodes.add("ShaderNodeRGBCurve", 0, label="Color")
             _set_curves(node.mapping, (colors / brightest).T)
-            self._nodes.put(node.inputs["Color"], self._x)
+            self._nodes.put(node.inputs["Color"], self._part_x)
             curves = node.outputs["Color"]
             color = self._nodes.vector("SCALE", 1.1, curves, brightest, label="Brightest value")
         if self._gain is None:
@@ -190,9 +201,9 @@ class _Network:
         if high - low < _SAME:
             return float(values[0])
         is_unit = low >= 0 and high <= 1
-        node = self._nodes.add("ShaderNodeFloatCurve", 0, y, label)
+        node = self._nodes.add("ShaderNodeFloatCurve", 0, y, label, hide=True)
         _set_curves(node.mapping, [values if is_unit else (values - low) / (high - low)])
-        self._nodes.put(node.inputs["Value"], self._x)
+        self._nodes.put(node.inputs["Value"], self._part_x)
         if is_unit:
             return node.outputs[0]
         span = high - low

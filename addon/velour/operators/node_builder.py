@@ -2,12 +2,12 @@
 
 import bpy
 
-COLUMN, ROW = 260, 330  # size of a node with a curve, and a margin
+COLUMN = 260  # width of a node with a curve, and a margin
 _FRAME = "NodeFrame"
 
 
 class NodeBuilder:
-    """Places are in columns from the left, and pixels below the top of the part that was begun last.
+    """Places are in columns and pixels, right of and above the origin of the part that was begun last.
 
     tag: name of a custom property of all nodes added here. Its value is the node's name, which tells a node
     from duplicates that a user made of it.
@@ -15,26 +15,20 @@ class NodeBuilder:
 
     def __init__(self, tree, tag, label):
         self._tree, self._tag = tree, tag
-        self._frame, self._y, self._next_y = (
-            None,
-            0,
-            0,
-        )  # frame of new nodes, its top, and that of the next part
+        self._frame = None  # of new nodes
+        self._column = self._y = 0  # origin of their places
         self._whole = self._frame = self._add_frame(label)
 
-    def begin_part(self, label, rows):
-        """Starts a frame with `rows` rows of nodes, below the last one."""
-        self._y, self._next_y = self._next_y, self._next_y - (rows + 0.3) * ROW
-        self._frame = self._whole
-        self._frame = self._add_frame(label)
-
-    def end_parts(self):
-        """Adds what follows beside the frames, at the top."""
-        self._frame, self._y = self._whole, 0
+    def begin_part(self, label="", column=0, y=0):
+        """Starts a part with its own origin; a part with a label has a frame."""
+        self._column, self._y, self._frame = column, y, self._whole
+        if label:
+            self._frame = self._add_frame(label)
 
     def add(self, idname, column=0, y=0, label="", **settings):
         node = self._tree.nodes.new(idname)
-        node.location, node.parent, node.label = (column * COLUMN, self._y + y), self._frame, label
+        node.location = (self._column + column) * COLUMN, self._y + y
+        node.parent, node.label = self._frame, label
         for name, value in settings.items():
             setattr(node, name, value)
         node[self._tag] = node.name

@@ -34,9 +34,9 @@ class ViewSamples(NamedTuple):
             return np.sqrt(difference / (weight * (self.f_cos @ LUMINANCE) ** 2).sum(-1))
 
 
-def fitted_samples(model: Model, lights: int = 400) -> ViewSamples:
-    """Samples at 18 views, 5 degrees apart."""
-    return _samples(model, _FITTED, lights)
+def fitted_samples(model: Model, lights: int | None = None) -> ViewSamples:
+    """Samples at 18 views, 5 degrees apart; at four azimuths each if the model is anisotropic."""
+    return _samples(model, _FITTED, lights or (300 if model.info().get("isotropic", True) else 100))
 
 
 def errors(model: Model, f_cos, lights: int = 4096) -> dict:
