@@ -178,7 +178,7 @@ class Images(Usd):
 
     def test_it_lies_as_it_did(self):
         self._quarters()
-        scenes.velour_node(self.material).velour.tint = (0.4, 1.0, 0.7)
+        scenes.set_look(self.material, tint=(0.4, 1.0, 0.7))
         for name, settings in (
             ("apart", {"repeats": (1.5, 1.0), "offset": (0.1, 0.2)}),
             ("turned", {"repeats": (1.5, 1.5), "rotation": 0.4}),

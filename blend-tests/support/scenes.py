@@ -82,11 +82,15 @@ def diffuse_material(color=(1, 1, 1), name="Diffuse"):
 
 def measured_material(data, name="Paint"):
     """A material whose node holds the packed model `data`, made as the import operator makes it."""
-    from .inputs import ADDON
+    from .inputs import ADDON, native
 
     measured = __import__(f"{ADDON}.operators.measured", fromlist=["measured"])
-    material = measured.new_material(name)
-    measured.ensure_node(material).image = measured.packed_model(data, name)
+    material, info = measured.new_material(name), None
+    if data.startswith(b"\x76\x2f\x31\x01"):  # an OpenEXR file: a model, and not what only poses as one
+        with native().Model.from_bytes(data, name) as model:
+            info = model.info()
+    image = measured.packed_model(data, name)
+    measured.set_model(material, velour_node(material), image, print, info=info)
     return material
 
 
@@ -102,9 +106,18 @@ def worn_file(path):
 
 
 def velour_node(material):
-    return next(
-        n for n in material.node_tree.nodes if n.bl_idname == "ShaderNodeTexImage" and n.velour.enabled
-    )
+    """The MeasuredNode of a material."""
+    from .inputs import ADDON
+
+    return __import__(f"{ADDON}.export.nodes", fromlist=["nodes"]).velour_node(material)
+
+
+def set_look(material, **values):
+    """Sets inputs of a measured material's node: tint, exposure, roughness, rotation, scale."""
+    inputs = velour_node(material).group.inputs
+    for name, value in values.items():
+        value = (*value, 1.0) if name == "tint" else value
+        inputs["Roughness Offset" if name == "roughness" else name.title()].default_value = value
 
 
 def render(folder, name="picture", layer="Combined"):

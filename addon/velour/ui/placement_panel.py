@@ -4,7 +4,7 @@ import bpy
 
 from ..export.nodes import velour_node
 from ..operators.placement import VELOUR_OT_keep_uv_density
-from .material_panel import MaterialPanel
+from .material_panel import MaterialPanel, draw_input
 from .model_panel import draw_rows
 from .placement_summary import measured
 from .summaries import model_summary
@@ -24,7 +24,8 @@ class VELOUR_MATERIAL_PT_placement(MaterialPanel, bpy.types.Panel):
         layout, info = self.layout, _info(context)
         layout.use_property_split = True
         layout.use_property_decorate = False
-        settings = velour_node(context.material).velour.placement
+        node = velour_node(context.material)
+        settings = node.velour.placement
         if _has_tiles(info):
             layout.row().prop(settings, "mode", expand=True)
             if settings.mode == "REPEATS":
@@ -32,7 +33,9 @@ class VELOUR_MATERIAL_PT_placement(MaterialPanel, bpy.types.Panel):
             else:
                 _draw_real_size(layout, settings, info.get("tile_metres"), context.object)
         _draw_uv_map(layout, settings, context.object)
-        layout.prop(settings, "rotation")
+        for name in ("Rotation", "Scale"):
+            if node.group is not None and name in node.group.inputs:
+                draw_input(layout, node.group.inputs[name])
         if _has_tiles(info):
             layout.column().prop(settings, "offset")
             layout.prop(settings, settings.scale_property)

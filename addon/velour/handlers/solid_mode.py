@@ -1,0 +1,21 @@
+"""Solid mode and other programs show measured materials in the color of their inputs, which call no callback."""
+
+import bpy
+from bpy.app.handlers import persistent
+
+from ..operators.approximation_look import follow
+
+
+def attach():
+    bpy.app.handlers.depsgraph_update_post.append(_follow)
+
+
+def detach():
+    bpy.app.handlers.depsgraph_update_post.remove(_follow)
+
+
+@persistent
+def _follow(_scene, depsgraph):
+    for update in depsgraph.updates:
+        if isinstance(update.id, bpy.types.Material):
+            follow(update.id.original)
