@@ -3,7 +3,7 @@
 from typing import NamedTuple
 
 from .image_nodes import Picture
-from .nodes import output, velour_node
+from .nodes import source, velour_node
 
 MOST_SETS = 4  # VLR_MOST_UV_SETS
 
@@ -53,11 +53,15 @@ def placed_map(material):
 def placed_by(node):
     """Name of the UV map that places a MeasuredNode: a UV Map node linked to Vector, or that of the
     placement."""
+    linked = linked_uv_map(node)
+    return node.velour.placement.uv_map if linked is None else linked.uv_map
+
+
+def linked_uv_map(node):
+    """The UV Map node linked to the Vector of a MeasuredNode, or None."""
     vector = node.group and node.group.inputs.get("Vector")
-    fed = output(vector) if vector else None
-    if fed is not None and fed.node.bl_idname == "ShaderNodeUVMap":
-        return fed.node.uv_map
-    return node.velour.placement.uv_map
+    found = source(vector) if vector else None
+    return found if found and found.bl_idname == "ShaderNodeUVMap" else None
 
 
 def shader_maps(owner, sources, reliefs, notes, first=None):
@@ -65,7 +69,7 @@ def shader_maps(owner, sources, reliefs, notes, first=None):
 
     first: name of the map of a measured layer. It alone is placed, so other layers have a set of their own.
     """
-    pictures = [source for source in sources if isinstance(source, Picture)]
+    pictures = [each for each in sources if isinstance(each, Picture)]
     pictures += [relief.picture for relief in reliefs]
     names = tuple(sorted({picture.coordinates for picture in pictures}))
     if first is not None:

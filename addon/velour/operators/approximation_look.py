@@ -16,7 +16,7 @@ from ..export.nodes import (
     source,
     velour_node,
 )
-from ..export.uv_maps import placed_by
+from ..export.uv_maps import linked_uv_map, placed_by
 from ..properties import changed
 
 # The library's names: names of Blender's sockets across versions.
@@ -163,11 +163,21 @@ def _placement_changed(tree):
         _place(node)
 
 
+def _uv_map_changed(placement):
+    """Sets the UV Map node that is linked to the node of a placement."""
+    for node in measured_nodes(placement.id_data):
+        linked = linked_uv_map(node)
+        if linked is not None and node.velour.placement == placement:
+            linked.uv_map = placement.uv_map
+
+
 def attach():
     changed.listeners.append(_placement_changed)
+    changed.uv_map_listeners.append(_uv_map_changed)
 
 
 def detach():
+    changed.uv_map_listeners.remove(_uv_map_changed)
     changed.listeners.remove(_placement_changed)
 
 

@@ -64,10 +64,10 @@ def convert(material):
     for field, socket in _inputs_of(node).items():
         value = getattr(look, field)
         socket.default_value = (*value, 1.0) if field == "tint" else value
-    _follow_animation(tree, name, node)
+    former.texture.name, node.group.name = "Former", name  # F-curves follow the names
+    _follow_animation(tree, former.name, node)
     node.velour.placement.property_unset("rotation")
-    tree.nodes.remove(former.texture)
-    node.group.name = name
+    tree.nodes.remove(former.texture)  # with F-curves that still point to it
     if approximation is not None:
         _remove(tree, approximation)
     approximation_look.follow(material)
@@ -114,19 +114,20 @@ def _inputs_of(node):
 
 
 def _follow_animation(tree, name, node):
-    """Points F-curves and drivers of the look, and of the rotation, to the inputs."""
+    """Points F-curves and drivers of the node called `name` to another; those of the look to its inputs."""
     animation = tree.animation_data
     if animation is None:
         return
-    before = f'nodes["{bpy.utils.escape_identifier(name)}"].velour.'
+    before, after = (f'nodes["{bpy.utils.escape_identifier(n)}"].' for n in (name, node.name))
     paths = {}
-    for number, socket in enumerate(node.group.inputs):
-        field = next((f for f, s in _inputs_of(node).items() if s == socket), None)
+    for field, socket in _inputs_of(node).items():
         place = "placement.rotation" if field == "rotation" else field
-        # The group node gets the name of the former node.
-        paths[f"{before}{place}"] = f"{before.removesuffix('velour.')}inputs[{number}].default_value"
+        number = list(node.group.inputs).index(socket)
+        paths[f"{before}velour.{place}"] = f"{after}inputs[{number}].default_value"
     for curve in (*_curves(animation.action), *animation.drivers):
-        curve.data_path = paths.get(curve.data_path, curve.data_path)
+        path = curve.data_path
+        if path.startswith(before):
+            curve.data_path = paths.get(path, after + path.removeprefix(before))
 
 
 def _curves(action):

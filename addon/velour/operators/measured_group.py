@@ -5,6 +5,7 @@ import bpy
 from ..core.approximation import UNFITTED
 from ..export.nodes import MeasuredNode, active_output, model_texture
 from . import approximation_group
+from .sharing import nodes_of
 
 NODE_NAME = "Velour"
 _SHADER = "NodeSocketShader"
@@ -55,5 +56,4 @@ def make_single_user(node):
 
 def is_shared(node):
     """Whether other nodes use the group of a MeasuredNode as well."""
-    tree = node.group and node.group.node_tree
-    return bool(tree) and tree.users - tree.use_fake_user > 1
+    return node.group is not None and len(nodes_of(node.group.node_tree)) > 1
