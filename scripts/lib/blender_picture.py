@@ -25,9 +25,11 @@ def _raise(error):
     raise error
 
 
-def measured_node(material: bpy.types.Material) -> bpy.types.ShaderNodeTexImage:
-    nodes = material.node_tree.nodes
-    return next(node for node in nodes if node.bl_idname == "ShaderNodeTexImage" and node.velour.enabled)
+def measured_node(material: bpy.types.Material):
+    """The material's MeasuredNode."""
+    from velour.export.nodes import velour_node
+
+    return velour_node(material)
 
 
 def render_picture(scene: bpy.types.Scene, folder: str, name: str) -> dict:

@@ -95,7 +95,7 @@ def add_world(scene: bpy.types.Scene) -> None:
     links.new(picture.outputs["Color"], background.inputs["Color"])
 
 
-def _add_materials(subject: bpy.types.Object, model: str, measurement: str) -> bpy.types.ShaderNodeTexImage:
+def _add_materials(subject: bpy.types.Object, model: str, measurement: str):
     """The subject's measured node, with the model and the measurement that the model was fitted to."""
     bpy.context.view_layer.objects.active = subject
     bpy.ops.velour.load_material(filepath=measurement, fit=False)
@@ -106,7 +106,7 @@ def _add_materials(subject: bpy.types.Object, model: str, measurement: str) -> b
     return node
 
 
-def _render_pictures(scene: bpy.types.Scene, node: bpy.types.ShaderNodeTexImage, folder: str) -> dict:
+def _render_pictures(scene: bpy.types.Scene, node, folder: str) -> dict:
     """Writes model.{exr,png} and reference.{exr,png}; returns the report of the model's render."""
     print_step("rendering the measurement")
     node.velour.use_reference = True

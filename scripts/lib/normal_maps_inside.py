@@ -54,14 +54,15 @@ def _scene(model: str):
 def _approximate(material, path: str) -> dict:
     """Creates the approximation, always with a normal map. Returns its own error estimates and seconds."""
     decided, normal_map._LEAST_GAIN = normal_map._LEAST_GAIN, -math.inf
-    steps = Steps(Model.load(path), approximation_group.has_layers())
+    model = Model.load(path)
+    steps = Steps(model, approximation_group.has_layers())
     seconds = []
     while job := steps.next_job():
         begin = time.perf_counter()
         job.start().wait()
         seconds.append(time.perf_counter() - begin)
         last = job
-    approximation_group.put(material, steps.result)
+    approximation_group.put(scenes.velour_node(material), material, steps.result, model.info())
     normals, without, with_map = last.result()
     return {
         "texels": steps.result.color_map.shape[1::-1],

@@ -9,6 +9,7 @@ import addon_utils
 import bpy
 import numpy as np
 from velour.core.presets import AUTHOR, LICENCE
+from velour.export.nodes import velour_node
 
 _PLAIN_TEXT = f"{LICENCE}, made by Velour's virtual goniometer"
 
@@ -32,13 +33,11 @@ def add(preset: dict) -> None:
     bpy.ops.velour.load_material(filepath=preset["model"], assign=False)
     (material,) = set(bpy.data.materials) - before
     material.name = preset["name"]
-    node = next(
-        n for n in material.node_tree.nodes if n.bl_idname == "ShaderNodeTexImage" and n.velour.enabled
-    )
+    node = velour_node(material)
+    node.group.node_tree.name = preset["name"]
     node.image.name = f"{preset['name']}.velour"
     if preset["repeats"]:
         node.velour.placement.repeats = (preset["repeats"],) * 2
-        bpy.ops.velour.approximate(material=material.name)  # its image is placed like the tiles
     describe(material, preset)
 
 

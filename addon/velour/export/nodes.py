@@ -14,6 +14,12 @@ class MeasuredNode:
         self.texture = texture  # Image Texture node: its image is the model, its `velour` the model's settings
         self.group = group  # group node: its inputs are the look; None: the former layout
 
+    def __eq__(self, other):
+        return isinstance(other, MeasuredNode) and (self.texture, self.group) == (other.texture, other.group)
+
+    def __hash__(self):
+        return hash((self.texture, self.group))
+
     @property
     def node(self):
         """The node of the material."""
