@@ -63,9 +63,11 @@ class Rotation(Brushed):
         obj = scenes.add_plane(self.material, size=4.0)
         plain = self._picture()
         for angle in (0.6, np.pi / 2):
-            obj.rotation_euler.z, self._placement().rotation = angle, 0
+            obj.rotation_euler.z = angle
+            scenes.set_look(self.material, rotation=0)
             by_hand = self._picture()
-            obj.rotation_euler.z, self._placement().rotation = 0, angle
+            obj.rotation_euler.z = 0
+            scenes.set_look(self.material, rotation=angle)
             self._assert_alike(self._picture(), by_hand)
             self._assert_unlike(by_hand, plain)
 
@@ -91,7 +93,8 @@ class Rotation(Brushed):
         scenes.set_look(self.material, rotation=0.4)
         other.rotation_euler.z = -0.4
         left, right = np.split(self._picture()[SIZE * 3 // 8 : SIZE * 5 // 8], 2, axis=1)
-        self._placement().rotation, other.rotation_euler.z = 0, 0
+        scenes.set_look(self.material, rotation=0)
+        other.rotation_euler.z = 0
         plain = self._picture()[SIZE * 3 // 8 : SIZE * 5 // 8]
         middle = slice(SIZE // 8, SIZE * 3 // 8)
         self._assert_alike(right[:, middle], plain[:, SIZE // 2 :][:, middle])
@@ -101,7 +104,7 @@ class Rotation(Brushed):
         self.material = scenes.measured_material(inputs.model_bytes(inputs.lambert_measurement()), "Matt")
         obj = self._wave()
         plain = self._picture()
-        self._placement().rotation, self._placement().uv_map = 1.0, "none of that name"
+        self._placement().uv_map = "none of that name"
         np.testing.assert_array_equal(self._picture(), plain)
         while obj.data.uv_layers:
             obj.data.uv_layers.remove(obj.data.uv_layers[0])
@@ -116,7 +119,8 @@ class UvMaps(Brushed):
         scenes.set_look(self.material, rotation=np.pi / 2)
         turned = self._picture()
         self._assert_unlike(turned, plain)
-        self._placement().rotation, self._placement().uv_map = 0, "Turned"
+        scenes.set_look(self.material, rotation=0)
+        self._placement().uv_map = "Turned"
         self._assert_alike(self._picture(), turned)
 
     def test_one_that_is_not_there_is_named(self):
