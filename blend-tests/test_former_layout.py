@@ -1,5 +1,7 @@
-"""Files of the former layout, whose model is in a muted node of the material: they render as they did, and are
-converted only if asked to be."""
+"""Files of the former layout, whose model is in a muted node of the material: they render as they did.
+
+They are converted only if asked to be.
+"""
 
 import bpy
 import numpy as np

@@ -195,9 +195,11 @@ class Mixed(NodeTest):
         notes, materials = _module("export.notes").Notes(), _module("export.materials")
         with inputs.native().Scene() as scene:
             table = materials.MaterialTable(scene, notes)
-            with mock.patch.object(materials.Shader, "new", return_value=shader), mock.patch.object(
-                scene, "add_shader_material", return_value=0
-            ), mock.patch.object(scene, "hide_backs"):
+            with (
+                mock.patch.object(materials.Shader, "new", return_value=shader),
+                mock.patch.object(scene, "add_shader_material", return_value=0),
+                mock.patch.object(scene, "hide_backs"),
+            ):
                 table.number(material)
         return [(name, args[0] if args else None) for name, args, _ in calls.method_calls], list(notes)
 
@@ -214,9 +216,7 @@ class Mixed(NodeTest):
     def test_it_is_a_layer_beside_others(self):
         calls, notes = self._layers(self._mixed())
         names = [name for name, _kind in calls]
-        self.assertEqual(
-            names, ["add_model_layer", "weigh_layer", "weigh_layer", "add_layer", "weigh_layer"]
-        )
+        self.assertEqual(names, ["add_model_layer", "weigh_layer", "weigh_layer", "add_layer", "weigh_layer"])
         self.assertEqual([kind for _name, kind in calls][1:], ["gain", "rest", "emission", "share"])
         self.assertEqual(notes, [])
 

@@ -8,10 +8,12 @@ class MeasuredNode:
     whether it is linked or not.
     """
 
-    __slots__ = ("texture", "group")
+    __slots__ = ("group", "texture")
 
     def __init__(self, texture, group=None):
-        self.texture = texture  # Image Texture node: its image is the model, its `velour` the model's settings
+        self.texture = (
+            texture  # Image Texture node: its image is the model, its `velour` the model's settings
+        )
         self.group = group  # group node: its inputs are the look; None: the former layout
 
     def __eq__(self, other):

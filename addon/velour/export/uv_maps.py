@@ -20,7 +20,7 @@ class UvMaps(NamedTuple):
         return self.names[0] if self.names else ""
 
     def number(self, name):
-        """The set of a picture's UV map. The first set of a measured material is placed, for its model alone."""
+        """The set of a picture's UV map. The first set of a measured material is placed for its model."""
         first = int(self.projects and len(self.names) > 1)
         return self.names.index(name, first) if name in self.names[first:] else 0
 

@@ -1,4 +1,4 @@
-"""Solid mode and other programs show measured materials in the color of their inputs, which call no callback."""
+"""Updates the color of measured materials in Solid mode, since inputs of nodes call no callback."""
 
 import bpy
 from bpy.app.handlers import persistent

@@ -39,8 +39,8 @@ class VELOUR_OT_approximate(JobsInSteps, bpy.types.Operator):
     bl_idname = "velour.approximate"
     bl_label = "Approximate"
     bl_description = (
-        "Fit the nodes in the material's node group to the model, for EEVEE, Cycles and Solid mode. Other nodes"
-        " are not changed"
+        "Fit the nodes in the material's node group to the model, for EEVEE, Cycles and Solid mode. Nodes of"
+        " your own are not changed"
     )
     bl_options = {"UNDO"}
 

@@ -1,6 +1,7 @@
 """Exports a measured material's approximation to glTF: color, metallic, roughness and images.
 
-Exporters that read node groups themselves find no constants in them, since inputs of the group change all values.
+Exporters that read node groups themselves find no constants in them, since inputs of the group change all
+values.
 """
 
 from ..export.nodes import approximation_node

@@ -67,4 +67,3 @@ def add_texture(group, image, tiles, y=0):
     texture.image = image
     group.links.new(tiles, texture.inputs["Vector"])
     return texture
-

@@ -52,7 +52,7 @@ class VELOUR_OT_convert_materials(bpy.types.Operator):
 
 
 def convert(material):
-    """Replaces the node of a local material of the former layout by a group node; returns its MeasuredNode."""
+    """Replaces the node of a local material of the former layout by a group; returns the MeasuredNode."""
     former, approximation = former_node(material), approximation_node(material)
     tree, settings, name = material.node_tree, former.velour, former.name
     node = measured_group.add(material)

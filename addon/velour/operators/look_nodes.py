@@ -1,4 +1,4 @@
-"""Math nodes that apply a group's inputs to the values of an approximation, as core/approximation_look does."""
+"""Math nodes that apply a group's inputs to an approximation, as core/approximation_look does."""
 
 import math
 
@@ -34,7 +34,7 @@ class LookNodes:
         return self.math("POWER", self.math("ADD", self._spread, roughness**4), 0.25)
 
     def anisotropic(self, roughness, anisotropic):
-        """Roughness and anisotropy of a spread highlight; Blender's alphas are r^2 / aspect and r^2 aspect."""
+        """Roughness and anisotropy of a highlight; Blender's alphas are r^2 / aspect and r^2 aspect."""
         aspect = math.sqrt(1 - 0.9 * anisotropic)
         wide, narrow = (
             self.math("ADD", self._spread, roughness**4 * factor) for factor in (1 / aspect**2, aspect**2)

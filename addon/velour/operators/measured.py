@@ -67,7 +67,7 @@ def refuse_linked_group(material, node):
     if tree and tree.library is not None:
         raise ExportError(
             f"Material '{material.name}': its node group '{tree.name}' is linked from {tree.library.filepath}"
-            " and cannot be changed; make the node group local (Make Single User in the Material tab), or"
+            " and cannot be changed; make it local with the icon beside its name in the Material tab, or"
             " change it in that file."
         )
 

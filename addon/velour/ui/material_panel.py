@@ -53,6 +53,8 @@ class VELOUR_MATERIAL_PT_measured(MaterialPanel, bpy.types.Panel):
                 row.operator(VELOUR_OT_load_material.bl_idname, text="Import...")
             return
         settings = node.velour
+        if node.group is not None:
+            layout.template_ID(node.group, "node_tree", text="Node Group")
         layout.template_ID(
             settings, "measurement", open=VELOUR_OT_open_measurement.bl_idname, text="Measurement"
         )
@@ -99,7 +101,9 @@ def _draw_btf(context, layout, settings):
 
 def _draw_former(context, layout, material):
     box = layout.box()
-    sentence = "This material is of the former layout. Convert it to edit its look and to mix it with shaders."
+    sentence = (
+        "This material is of the former layout. Convert it to edit its look and to mix it with shaders."
+    )
     draw_sentence(context, box, sentence, icon="INFO")
     if is_editable(material):
         box.operator(VELOUR_OT_convert_materials.bl_idname, icon="NODETREE").material = material.name

@@ -6,7 +6,8 @@ from ..export.notes import Notes
 from ..export.shaders import as_measured, surface_layers
 from .layer_panels import LayerPanel
 
-# Settings of materials that are not one measured model alone; stored with Cycles, and available while it is enabled.
+# Settings of materials that are not one measured model alone; stored with Cycles, and available while it
+# is enabled.
 _OF_CYCLES = {
     "emission_sampling": "Emission Sampling",  # 3.5 and newer
     "sample_as_light": "Multiple Importance",  # before
