@@ -1,5 +1,6 @@
 """The node of a measured material: its inputs, materials that share its group, and where it is in a tree."""
 
+import unittest
 from unittest import mock
 
 import bpy
@@ -216,8 +217,10 @@ class Mixed(NodeTest):
     def test_it_is_a_layer_beside_others(self):
         calls, notes = self._layers(self._mixed())
         names = [name for name, _kind in calls]
-        self.assertEqual(names, ["add_model_layer", "weigh_layer", "weigh_layer", "add_layer", "weigh_layer"])
-        self.assertEqual([kind for _name, kind in calls][1:], ["gain", "rest", "emission", "share"])
+        self.assertEqual(
+            names, ["add_measured_layer", "weigh_layer", "weigh_layer", "add_layer", "weigh_layer"]
+        )
+        self.assertEqual([kind for _name, kind in calls][1:], ["tint", "rest", "emission", "share"])
         self.assertEqual(notes, [])
 
     def test_a_textured_tint_is_a_weight(self):
@@ -227,8 +230,26 @@ class Mixed(NodeTest):
         texture.image = bpy.data.images.new("Dirt", 4, 4)
         tree.links.new(texture.outputs[0], group.inputs["Tint"])
         calls, notes = self._layers(material)
-        self.assertEqual([name for name, _kind in calls], ["add_model_layer", "weigh_layer", "weigh_layer"])
+        self.assertEqual(
+            [name for name, _kind in calls], ["add_measured_layer", "weigh_layer", "weigh_layer"]
+        )
         self.assertEqual(notes, [])
+
+    @unittest.skipUnless(
+        hasattr(inputs.native().structs, "MeasuredLayerDesc"), "the library has no such layers"
+    )
+    def test_half_emission_makes_the_mean_of_both(self):
+        glow = self._picture_of(self._mixed(1.0), "glow")
+        model = self._picture_of(self._mixed(0.0), "model")
+        mixed = self._picture_of(self._mixed(0.5), "mixed")
+        np.testing.assert_allclose(mixed, (model + glow) / 2, rtol=1e-3)
+        self.assertGreater(np.abs(model - glow).max(), 0.1)
+
+    def _picture_of(self, material, name):
+        picture = self._picture(name)
+        bpy.data.objects.remove(bpy.context.object)
+        bpy.data.materials.remove(material)
+        return picture
 
     def test_a_scene_model_is_told(self):
         material = self._mixed()

@@ -233,13 +233,12 @@ class MaterialTable:
             values["normal_correction"] = correction(material)
         if layer.measured:
             self._measured.of_layer(material, layer.measured).add_layer(shader, **values)
-            shader.weigh_layer("gain", layer.measured.look.gain)
+            shader.weigh_layer("tint", layer.measured.look.gain)
         else:
             shader.add_layer(layer.kind, self._slots(layer, material), **values)
         for factor in layer.factors:
             slot = factor.picture and self._slot(factor.picture, factor.kind == "tint", material)
-            kind = "gain" if factor.kind == "tint" else factor.kind
-            shader.weigh_layer(kind, factor.value, *(slot or ()))
+            shader.weigh_layer(factor.kind, factor.value, *(slot or ()))
 
     def _slots(self, layer, material):
         """TextureSlots of a Layer's readable images and of its CornerColors."""

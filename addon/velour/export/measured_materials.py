@@ -40,12 +40,8 @@ class Reflectance(NamedTuple):
 
     def add_layer(self, shader, **values):
         """Adds it as a layer with weight 1. `values`: normal map, as for Shader.add_layer."""
-        if self.kind == "model":
-            shader.add_model_layer(self.data, self.neighbors, **values)
-        elif self.kind == "measurement":
-            shader.add_measurement_layer(self.data, self.proposal, self.neighbors, **values)
-        else:
-            shader.add_btf_layer(self.data, **values)
+        given = {self.kind: self.data} | ({"model": self.proposal} if self.proposal else {})
+        shader.add_measured_layer(**given, neighbors=self.neighbors, **values)
 
     def close(self):
         for handle in (self.data, self.proposal):

@@ -53,15 +53,9 @@ class Shader(Handle):
         desc.interreflection = interreflection
         self._lib.vlr_shader_add_layer(self.pointer, byref(desc))
 
-    # SHIM until the library has layers of measured materials: replaced when that is merged.
-    def add_model_layer(self, model, neighbors: int = 0, **normal) -> None:
+    # SHIM until the library has measured layers; its wrapper replaces this method.
+    def add_measured_layer(self, model=None, measurement=None, btf=None, **options) -> None:
         raise refuse("This build of Velour's library cannot mix measured materials with other shaders.")
-
-    def add_measurement_layer(self, measurement, proposal=None, neighbors: int = 0, **normal) -> None:
-        self.add_model_layer(proposal, neighbors, **normal)
-
-    def add_btf_layer(self, btf, **normal) -> None:
-        self.add_model_layer(btf, **normal)
 
     def weigh_layer(
         self, kind: str, value: float = 1.0, texture: Texture | None = None, uv_map=IDENTITY, uv_set=0
