@@ -63,15 +63,17 @@ def former_node(material):
     return MeasuredNode(texture) if texture is not None else None
 
 
-def measured_nodes(tree, seen=()):
-    """The MeasuredNodes of a tree and of the groups in it."""
+def measured_nodes(tree, seen=None):
+    """The MeasuredNodes of a tree and of the groups in it, each once."""
+    seen = set() if seen is None else seen
     for node in tree.nodes:
         group = node.node_tree if node.bl_idname == "ShaderNodeGroup" else None
         texture = model_texture(group) if group else None
         if texture is not None:
             yield MeasuredNode(texture, node)
-        elif group and group not in seen:  # a broken file may nest a group in itself
-            yield from measured_nodes(group, (*seen, group))
+        elif group and group.as_pointer() not in seen:  # a broken file may nest a group in itself
+            seen.add(group.as_pointer())
+            yield from measured_nodes(group, seen)
 
 
 def all_measured(material):
