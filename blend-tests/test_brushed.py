@@ -63,22 +63,24 @@ class Rotation(Brushed):
         obj = scenes.add_plane(self.material, size=4.0)
         plain = self._picture()
         for angle in (0.6, np.pi / 2):
-            obj.rotation_euler.z, self._placement().rotation = angle, 0
+            obj.rotation_euler.z = angle
+            scenes.set_look(self.material, rotation=0)
             by_hand = self._picture()
-            obj.rotation_euler.z, self._placement().rotation = 0, angle
+            obj.rotation_euler.z = 0
+            scenes.set_look(self.material, rotation=angle)
             self._assert_alike(self._picture(), by_hand)
             self._assert_unlike(by_hand, plain)
 
     def test_each_slot_has_its_own(self):
         obj = scenes.add_plane(self.material, size=4.0)
-        self._placement().rotation = np.pi / 2
+        scenes.set_look(self.material, rotation=np.pi / 2)
         turned = self._picture()
         other = scenes.measured_material(inputs.brushed_model(), "Other")
         obj.data.materials.append(other)
         obj.data.polygons[0].material_index = 1
         plain = self._picture()
         self._assert_unlike(plain, turned)
-        scenes.velour_node(other).velour.placement.rotation = np.pi / 2
+        scenes.set_look(other, rotation=np.pi / 2)
         self._assert_alike(self._picture(), turned)
 
     def test_many_instances_share_a_mesh(self):
@@ -88,10 +90,11 @@ class Rotation(Brushed):
         other = bpy.data.objects.new("Other", obj.data)
         other.location = (0.5, 0, 0)
         bpy.context.scene.collection.objects.link(other)
-        self._placement().rotation = 0.4
+        scenes.set_look(self.material, rotation=0.4)
         other.rotation_euler.z = -0.4
         left, right = np.split(self._picture()[SIZE * 3 // 8 : SIZE * 5 // 8], 2, axis=1)
-        self._placement().rotation, other.rotation_euler.z = 0, 0
+        scenes.set_look(self.material, rotation=0)
+        other.rotation_euler.z = 0
         plain = self._picture()[SIZE * 3 // 8 : SIZE * 5 // 8]
         middle = slice(SIZE // 8, SIZE * 3 // 8)
         self._assert_alike(right[:, middle], plain[:, SIZE // 2 :][:, middle])
@@ -101,7 +104,7 @@ class Rotation(Brushed):
         self.material = scenes.measured_material(inputs.model_bytes(inputs.lambert_measurement()), "Matt")
         obj = self._wave()
         plain = self._picture()
-        self._placement().rotation, self._placement().uv_map = 1.0, "none of that name"
+        self._placement().uv_map = "none of that name"
         np.testing.assert_array_equal(self._picture(), plain)
         while obj.data.uv_layers:
             obj.data.uv_layers.remove(obj.data.uv_layers[0])
@@ -113,10 +116,11 @@ class UvMaps(Brushed):
     def test_another_uv_map(self):
         self._wave()
         plain = self._picture()
-        self._placement().rotation = np.pi / 2
+        scenes.set_look(self.material, rotation=np.pi / 2)
         turned = self._picture()
         self._assert_unlike(turned, plain)
-        self._placement().rotation, self._placement().uv_map = 0, "Turned"
+        scenes.set_look(self.material, rotation=0)
+        self._placement().uv_map = "Turned"
         self._assert_alike(self._picture(), turned)
 
     def test_one_that_is_not_there_is_named(self):
@@ -134,7 +138,7 @@ class UvMaps(Brushed):
             obj.data.uv_layers.remove(obj.data.uv_layers[0])
         obj.data.update_tag()  # Blender 5.2 does not see it by itself
         self._assert_alike(self._picture(), plain)  # from above u is x
-        self._placement().rotation = np.pi / 2
+        scenes.set_look(self.material, rotation=np.pi / 2)
         self._assert_unlike(self._picture(), plain)
         (note,) = self._notes()
         self.assertIn(f"Object '{obj.name}': it has no UV map", note)

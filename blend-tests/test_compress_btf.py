@@ -148,7 +148,7 @@ class CompressBtf(BlenderTest):
         node = self._plane_of_ribs()
         node.velour.use_reference = True
         plain = scenes.render(self.folder, "plain")[:, :, :3]
-        node.velour.placement.rotation = np.pi / 2
+        scenes.set_look(bpy.data.materials["ribs"], rotation=np.pi / 2)
         turned = scenes.render(self.folder, "turned")[:, :, :3]
         node.velour.use_reference = False
         model = scenes.render(self.folder, "model")[:, :, :3]

@@ -32,7 +32,7 @@ class ModelImages(BlenderTest):
         scene.cycles.use_denoising = False
         scenes.add_camera()
         for material in self._materials():
-            scenes.velour_node(material).mute = False
+            scenes.velour_node(material).texture.mute = False
             obj = scenes.add_plane(material)
             bpy.ops.render.render()
             bpy.data.objects.remove(obj)

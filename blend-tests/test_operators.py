@@ -49,13 +49,13 @@ class Operators(BlenderTest):
         node = scenes.velour_node(self.material)
         self.assertIsNone(node.image)
         bpy.ops.velour.add_material()
-        self.assertEqual(len(self.material.node_tree.nodes), 3, "a second call must not add a second node")
+        self.assertEqual(len(self.material.node_tree.nodes), 2, "a second call must not add a second node")
 
     def test_add_material_to_an_existing_one(self):
         self.obj.active_material = bpy.data.materials.new("Plain")
         bpy.ops.velour.add_material()
         self.assertEqual(self.material.name, "Plain")
-        self.assertTrue(scenes.velour_node(self.material).velour.enabled)
+        self.assertTrue(scenes.velour_node(self.material).texture.velour.enabled)
 
     def test_load_measurement_and_fit(self):
         path = inputs.glossy_measurement()
@@ -420,9 +420,9 @@ class Slots(BlenderTest):
 
     def test_several_that_wait_for_one_material(self):
         material = scenes.measured_material(b"", "Paint")
-        node = next(node for node in material.node_tree.nodes if node.bl_idname == "ShaderNodeTexImage")
+        node = scenes.velour_node(material)
         targets = [JobTarget(material, node) for _ in range(2)]
-        material.name, node.name = "Renamed", "Other"
+        material.name, node.group.name = "Renamed", "Other"
         scenes.measured_material(b"", "Paint")
         for target in targets:
             self.assertEqual(target.find(), (material, node))

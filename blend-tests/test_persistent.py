@@ -265,17 +265,17 @@ class PersistentData(BlenderTest):
         files, reads = _module("export.files"), []
         weave = scenes.measured_material((Path(__file__).parent / "scenes/data/weave.velour").read_bytes())
         self.still.material_slots[0].material = weave
-        settings = scenes.velour_node(weave).velour
-        settings.placement.repeats = (2, 2)
-        node = f'nodes["{scenes.velour_node(weave).name}"].velour.'
-        for owner, path, values in (
-            (settings, "exposure", (0.0, 2.0)),
-            (settings, "tint", ((1, 1, 1), (1, 0.2, 0.1))),
-            (settings.placement, "placement.rotation", (0.0, 1.0)),
+        node = scenes.velour_node(weave)
+        node.velour.placement.repeats = (2, 2)
+        for name, values in (
+            ("Exposure", (0.0, 2.0)),
+            ("Tint", ((1, 1, 1, 1), (1, 0.2, 0.1, 1))),
+            ("Rotation", (0.0, 1.0)),
         ):
+            path = node.group.inputs[name].path_from_id("default_value")
             for value, frame in zip(values, (1, 3), strict=True):
-                setattr(owner, path.rpartition(".")[2], value)
-                _insert_key(weave.node_tree, node + path, value, frame)
+                node.group.inputs[name].default_value = value
+                _insert_key(weave.node_tree, path, value, frame)
         read = files.read_model
         with mock.patch.object(files, "read_model", lambda *given: (reads.append(1), read(*given))[1]):
             kept, _ = self._pictures(True)

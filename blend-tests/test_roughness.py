@@ -9,12 +9,12 @@ from support.blender import BlenderTest
 
 class Roughness(BlenderTest):
     def _ball(self, data):
-        """A ball that wears a model; the settings of its material."""
+        """A ball that wears a model; its material."""
         material = scenes.measured_material(data)
         scenes.use_engine(samples=256)
         scenes.add_camera(ortho_scale=2.2)
         scenes.add_sphere(material)
-        return scenes.velour_node(material).velour
+        return material
 
     def _plastic(self):
         return self._ball(inputs.model_bytes(inputs.plastic_measurement()))
@@ -29,12 +29,12 @@ class Roughness(BlenderTest):
         return green.max(), int((green > green.max() / 2).sum())
 
     def test_highlights_get_lower_and_wider(self):
-        settings = self._plastic()
+        material = self._plastic()
         scenes.set_world(strength=0)
         self._sun()
         peaks, sizes = [], []
         for i, roughness in enumerate((0.0, 0.35, 0.5, 0.7)):
-            settings.roughness = roughness
+            scenes.set_look(material, roughness=roughness)
             peak, size = self._highlight(f"rough{i}")
             peaks.append(peak)
             sizes.append(size)
@@ -44,26 +44,26 @@ class Roughness(BlenderTest):
         self.assertGreater(sizes[2], 1.5 * sizes[0])
 
     def test_no_light_is_won_or_lost(self):
-        settings = self._plastic()
+        material = self._plastic()
         scenes.set_world()
         plain = scenes.render(self.folder, "plain")[..., :3].mean()
         for i, roughness in enumerate((0.2, 0.5, 1.0)):
-            settings.roughness = roughness
+            scenes.set_look(material, roughness=roughness)
             rough = scenes.render(self.folder, f"furnace{i}")[..., :3].mean()
             self.assertLess(abs(rough / plain - 1), 0.02, roughness)
 
     def test_nothing_is_the_same_picture(self):
-        settings = self._plastic()
+        material = self._plastic()
         scenes.set_world((0.5, 0.7, 1.0))
         plain = scenes.render(self.folder, "plain")
-        settings.roughness = 0.0
+        scenes.set_look(material, roughness=0.0)
         np.testing.assert_array_equal(scenes.render(self.folder, "zero"), plain)
 
-    def _is_left_out(self, settings, words):
+    def _is_left_out(self, material, words):
         """The picture stays, and a warning says why."""
         scenes.set_world((0.5, 0.7, 1.0))
         plain = scenes.render(self.folder, "plain")
-        settings.roughness = 0.6
+        scenes.set_look(material, roughness=0.6)
         np.testing.assert_array_equal(scenes.render(self.folder, "left-out"), plain)
         notes = __import__(f"{inputs.ADDON}.export.notes", fromlist=["notes"]).Notes()
         materials = __import__(f"{inputs.ADDON}.export.materials", fromlist=["materials"])
@@ -75,7 +75,8 @@ class Roughness(BlenderTest):
         self._is_left_out(self._ball(inputs.quarters_model()), "no effect on the model of a BTF")
 
     def test_of_the_measurement_itself(self):
-        settings = self._plastic()
+        material = self._plastic()
+        settings = scenes.velour_node(material).velour
         settings.measurement = bpy.data.images.load(str(inputs.plastic_measurement()))
         settings.use_reference = True
-        self._is_left_out(settings, "Disable Render from Measurement")
+        self._is_left_out(material, "Disable Render from Measurement")

@@ -115,7 +115,7 @@ class WithoutVelour(SavedFilesTest):
         self.assertEqual(saved_settings.wrong_values(self.table), [])
         node = scenes.velour_node(bpy.data.materials["Paint"])
         self.assertEqual(bytes(node.image.packed_file.data), model)
-        self.assertEqual(node.velour.saved_by, self.this)
+        self.assertEqual(node.texture.velour.saved_by, self.this)
 
 
 class Stamps(SavedFilesTest):
@@ -128,8 +128,8 @@ class Stamps(SavedFilesTest):
         self.opened()
         material = bpy.data.materials["Paint"]
         node = scenes.velour_node(material)
-        owners = (bpy.context.scene, node, node.image)
-        self.assertEqual([owner.velour.saved_by for owner in owners], [self.this] * 3)
+        owners = (bpy.context.scene, node.texture, node.group.node_tree, node.image)
+        self.assertEqual([owner.velour.saved_by for owner in owners], [self.this] * 4)
         self.assertFalse(bpy.data.objects["Someone else's"].is_property_set("velour"))
 
     def test_a_file_of_others_gets_none(self):

@@ -83,9 +83,11 @@ class Outline(BlenderTest):
         bpy.context.scene.camera.data.ortho_scale = 0.25  # a tile
         plain = scenes.render(self.folder, "plain")[..., 3]
         placement = scenes.velour_node(self.material).velour.placement
-        placement.repeats, placement.rotation = (2, 1), np.pi / 2
+        placement.repeats = 2, 1
+        scenes.set_look(self.material, rotation=np.pi / 2)
         placed = scenes.render(self.folder, "placed")[..., 3]
-        placement.repeats, placement.rotation = (1, 1), 0
+        placement.repeats = 1, 1
+        scenes.set_look(self.material, rotation=0)
         for corner in layers.active.data:
             corner.uv = 2 * corner.uv.y, -corner.uv.x
         moved = scenes.render(self.folder, "moved")[..., 3]

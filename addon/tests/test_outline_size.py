@@ -49,7 +49,7 @@ def test_what_is_too_large_is_what_the_library_refuses(model_file):
             made = Made.of(job.run(), job.poll().seconds)
         assert not is_too_large(grid(64, made))
         assert is_too_large(grid(400, made))
-        assert "too large" in outline_text(400, (made, made, made), approximated=False)
+        assert "too large" in outline_text(400, (made, made, made))
         with (
             votf_job(scene, model, texels=400, **place) as job,
             pytest.raises(VelourError, match="too large"),
@@ -92,9 +92,8 @@ def test_memory_grows_with_the_points():
 
 
 def test_words():
-    text = outline_text(256, _probed(256), approximated=True)
+    text = outline_text(256, _probed(256))
     assert text.startswith("About ")
     assert "a few seconds for the approximation in other engines" in text
     assert "MB in the model (256 x 256 x 55 points)" in text
     assert "wrong rays at coarser resolutions: 0.78% at 64, 0.39% at 128" in text
-    assert "other engines" not in outline_text(256, _probed(256), approximated=False)

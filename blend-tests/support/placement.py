@@ -33,6 +33,7 @@ class Placed(BlenderTest):
 
     def _material(self, metres=0.5, **settings):
         material = scenes.measured_material(inputs.quarters_model(metres), "Quarters")
+        scenes.set_look(material, rotation=settings.pop("rotation", 0.0))
         for name, value in settings.items():
             setattr(scenes.velour_node(material).velour.placement, name, value)
         return material
@@ -57,7 +58,8 @@ class Placed(BlenderTest):
         material = material or obj.active_material
         node = scenes.velour_node(material)
         with inputs.native().Model.from_bytes(node.image.packed_file.data, "model") as model:
-            tile = export_module("placement").Tile.of(material, model.info())
+            look = export_module("measured_look").constant_look(node)
+            tile = export_module("placement").Tile.of(material, node, look, model.info())
         depsgraph = bpy.context.evaluated_depsgraph_get()
         return export_module("placement_report").report_on(depsgraph, obj, material, tile)
 

@@ -17,6 +17,7 @@ OWNERS = {
     "Scene": lambda: bpy.data.scenes[0],
     "ViewLayer": lambda: bpy.data.scenes[0].view_layers[0],
     "ShaderNodeTexImage": lambda: bpy.data.materials["Owner"].node_tree.nodes["Owner"],
+    "ShaderNodeGroup": lambda: bpy.data.materials["Owner"].node_tree.nodes["Group"],
     "ShaderNodeTree": lambda: bpy.data.node_groups["Owner"],
     "Image": lambda: bpy.data.images["Owner"],
     "Object": lambda: bpy.data.objects["Owner"],
@@ -30,6 +31,7 @@ def add_owners():
     material = bpy.data.materials.new("Owner")
     material.use_nodes = True
     material.node_tree.nodes.new("ShaderNodeTexImage").name = "Owner"
+    material.node_tree.nodes.new("ShaderNodeGroup").name = "Group"
     bpy.data.node_groups.new("Owner", "ShaderNodeTree")
     bpy.data.images.new("Owner", 1, 1)
     bpy.data.images.new("Pointed at", 1, 1)

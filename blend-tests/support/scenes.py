@@ -6,6 +6,10 @@ import bpy
 import numpy as np
 
 SIZE = 32
+# What the former layout keeps of an approximation.
+FORMER_FIT = """{"principled": {"base_color": [0.5, 0.25, 0.125], "metallic": 0.0, "roughness": 0.4,
+"specular": 0.5, "specular_tint": [1, 1, 1], "coat": 0.0, "coat_roughness": 0.03}, "diffuse": [0, 0, 0],
+"color": [0.5, 0.25, 0.125], "anisotropic": 0.0, "turned": false, "tile_metres": null}"""
 
 
 def use_engine(samples=64, bounces=0, size=SIZE):
@@ -82,12 +86,49 @@ def diffuse_material(color=(1, 1, 1), name="Diffuse"):
 
 def measured_material(data, name="Paint"):
     """A material whose node holds the packed model `data`, made as the import operator makes it."""
+    from .inputs import ADDON, native
+
+    measured = __import__(f"{ADDON}.operators.measured", fromlist=["measured"])
+    material, info = measured.new_material(name), None
+    if data.startswith(b"\x76\x2f\x31\x01"):  # an OpenEXR file: a model, and not what only poses as one
+        with native().Model.from_bytes(data, name) as model:
+            info = model.info()
+    image = measured.packed_model(data, name)
+    measured.set_model(material, velour_node(material), image, print, info=info)
+    return material
+
+
+def former_material(data, name="Former"):
+    """A material of the former layout: the model is in a muted, unlinked node beside a group for others."""
     from .inputs import ADDON
 
     measured = __import__(f"{ADDON}.operators.measured", fromlist=["measured"])
-    material = measured.new_material(name)
-    measured.ensure_node(material).image = measured.packed_model(data, name)
+    material = bpy.data.materials.new(name)
+    material.use_nodes = True
+    tree = material.node_tree
+    tree.nodes.clear()
+    output = tree.nodes.new("ShaderNodeOutputMaterial")
+    node = tree.nodes.new("ShaderNodeTexImage")
+    node.name = node.label = "Velour"
+    node.velour.enabled = node.mute = True
+    node.image = measured.packed_model(data, name)
+    _add_former_group(tree, output)
     return material
+
+
+def _add_former_group(tree, output):
+    group = bpy.data.node_groups.new("Velour approximation", "ShaderNodeTree")
+    if hasattr(group, "interface"):  # 4.0 and newer
+        group.interface.new_socket(name="BSDF", in_out="OUTPUT", socket_type="NodeSocketShader")
+    else:
+        group.outputs.new("NodeSocketShader", "BSDF")
+    shader, sink = group.nodes.new("ShaderNodeBsdfPrincipled"), group.nodes.new("NodeGroupOutput")
+    group.links.new(shader.outputs[0], sink.inputs[0])
+    group.velour.is_approximation = True
+    group.velour.fitted = FORMER_FIT
+    node = tree.nodes.new("ShaderNodeGroup")
+    node.node_tree = group
+    tree.links.new(node.outputs[0], output.inputs["Surface"])
 
 
 def worn_file(path):
@@ -102,9 +143,18 @@ def worn_file(path):
 
 
 def velour_node(material):
-    return next(
-        n for n in material.node_tree.nodes if n.bl_idname == "ShaderNodeTexImage" and n.velour.enabled
-    )
+    """The MeasuredNode of a material."""
+    from .inputs import ADDON
+
+    return __import__(f"{ADDON}.export.nodes", fromlist=["nodes"]).velour_node(material)
+
+
+def set_look(material, **values):
+    """Sets inputs of a measured material's node: tint, exposure, roughness, rotation, scale."""
+    inputs = velour_node(material).group.inputs
+    for name, value in values.items():
+        value = (*value, 1.0) if name == "tint" else value
+        inputs["Roughness Offset" if name == "roughness" else name.title()].default_value = value
 
 
 def render(folder, name="picture", layer="Combined"):

@@ -91,15 +91,14 @@ def _power(few: Made, many: Made) -> float:
     return min(max(power, _LEAST_POWER), _MOST_POWER)
 
 
-def outline_text(texels: int, made: tuple[Made, Made, Made], approximated: bool) -> str:
-    """Text for the artist beforehand. `approximated`: the look for other engines is made as well."""
+def outline_text(texels: int, made: tuple[Made, Made, Made]) -> str:
+    """Text for the artist beforehand."""
     points = grid(texels, made[-1])
     size = " x ".join(map(str, points))
     if is_too_large(points):
         return f"A silhouette of {size} points is too large; lower Texels"
     time = f"About {duration(outline_seconds(texels, made))}"
-    if approximated:
-        time += ", plus a few seconds for the approximation in other engines"
+    time += ", plus a few seconds for the approximation in other engines"
     wrong = [f"{m.wrong:.2%} at {m.points[0]}" for m in made if m.wrong is not None]
     return (
         f"{time}; {data_size(math.prod(points))} in the model ({size} points);"

@@ -10,7 +10,7 @@ import bpy
 
 from ..export import Notes
 from ..export.look import scene_key
-from ..export.nodes import velour_node
+from ..export.nodes import model_names
 from ..export.scene import SceneExport
 from ..export.world import shown_world
 
@@ -75,10 +75,8 @@ def _image_key(image):
 
 
 def _material_key(material):
-    """Includes the image of the measured node, whose changes are not reported as the node is not linked."""
-    node = velour_node(material)
-    chosen = node and node.image and node.image.name_full
-    return material.name_full, material.pass_index, chosen
+    """Includes the images of measured nodes, whose changes are not reported as the nodes are not linked."""
+    return material.name_full, material.pass_index, model_names(material)
 
 
 @bpy.app.handlers.persistent

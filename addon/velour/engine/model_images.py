@@ -1,11 +1,11 @@
-"""Tags materials whose measured node gets another image; Blender does not, as the node is not linked."""
+"""Tags materials whose measured nodes get other images; Blender does not, as the nodes are not linked."""
 
 import bpy
 
-from ..export.nodes import velour_node
+from ..export.nodes import model_names
 
 _owner = object()
-_chosen = {}  # {name of material: name of image}
+_chosen = {}  # {name of material: names of images}
 
 
 def attach():
@@ -28,10 +28,7 @@ def _listen(*_arguments):
 
 def _tell():
     for material in bpy.data.materials:
-        node = velour_node(material)
-        if node is None:
-            continue
-        image = node.image.name_full if node.image else ""
-        if _chosen.get(material.name_full) != image:
-            _chosen[material.name_full] = image
-            node.id_data.update_tag()
+        images = model_names(material)
+        if _chosen.get(material.name_full, ()) != images:
+            _chosen[material.name_full] = images
+            material.update_tag()

@@ -3,7 +3,7 @@
 import bpy
 
 from ..export.changes import Changes
-from ..export.nodes import velour_node
+from ..export.nodes import model_names
 from ..realtime import shaders
 
 _MATERIALS = (bpy.types.Material, bpy.types.NodeTree)
@@ -55,5 +55,4 @@ def _numbers(depsgraph):
 def _measurements(depsgraph):
     """Names of the images of measured materials, by material."""
     materials = (block for block in depsgraph.ids if isinstance(block, bpy.types.Material))
-    nodes = {material.name_full: velour_node(material) for material in materials}
-    return {name: node.image and node.image.name_full for name, node in nodes.items() if node}
+    return {material.name_full: model_names(material) for material in materials}

@@ -42,7 +42,7 @@ def picture_of(plug, owner, notes):
         node.outputs["Alpha"].is_linked,
         choice(_WRAPS, node.extension, "REPEAT", f"{owner}: node '{node.name}'", "extension", notes),
         "closest" if node.interpolation == "Closest" else "linear",
-        *_uv_map(plug.input("Vector")),
+        *_picture_map(plug.input("Vector")),
     )
 
 
@@ -55,11 +55,20 @@ def _check(node):
         raise UnsupportedError(f"'{node.name}' is not projected with Flat")
 
 
-def _uv_map(vector):
+def _picture_map(vector):
     """`uv_map` and `coordinates` of an Image Texture's Vector input; unlinked: the mesh's own."""
+    matrix, name = uv_map_of(vector)
+    return matrix, name or ""
+
+
+def uv_map_of(vector):
+    """A map [2 x 3] and the name of the UV map that a Vector input gets; the name is None if it is unlinked.
+
+    Raises UnsupportedError for other coordinates.
+    """
     fed = fed_by(vector)
     if fed is None:
-        return np.eye(2, 3, dtype=np.float32), ""
+        return np.eye(2, 3, dtype=np.float32), None
     if fed.node.bl_idname != "ShaderNodeMapping":
         return np.eye(2, 3, dtype=np.float32), _coordinates(fed)
     coordinates = fed_by(fed.input("Vector"))

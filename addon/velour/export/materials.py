@@ -4,21 +4,28 @@ from ..native import Shader, VelourError
 from .corner_colors import CornerColors, shader_colors
 from .measured_materials import MeasuredMaterials
 from .model_hashes import model_hashes
-from .nodes import velour_node
-from .notes import ExportError
+from .notes import ExportError, Notes
 from .placement import Tile
-from .shaders import as_principled, shines, sources_of, split, surface_layers, unlike_reflection
+from .shaders import (
+    as_measured,
+    as_principled,
+    shines,
+    sources_of,
+    split,
+    surface_layers,
+    unlike_reflection,
+)
 from .shaders.relief import correction
 from .textures import TextureTable
-from .uv_maps import UNUSED, placed_map, shader_maps
+from .uv_maps import UNUSED, UvMaps, shader_maps
 from .visibility import hidden_backs
 
 
 class MaterialTable:
     """Adds each material once, with its full model; those that may switch to a scene model are in `reduced`.
 
-    `strict` refuses measured materials that cannot be read; otherwise (previews, the viewport) they render as
-    their Principled approximation, with a note.
+    `strict` refuses measured materials that cannot be read; otherwise (previews, the viewport) the nodes in
+    their groups are rendered, with a note.
     """
 
     def __init__(self, scene, notes, strict=True):
@@ -77,7 +84,6 @@ class MaterialTable:
         """Number of a material, which is added if needed; None: Blender's default gray."""
         key = _key(material)
         if key not in self._numbers:
-            self._uv_maps[key] = placed_map(material)
             number = self._numbers[key] = self._add(material)
             self._labels[number] = _label(material)
         return self._numbers[key]
@@ -102,13 +108,12 @@ class MaterialTable:
 
     def _adjust(self, material):
         """Updates a measured material in place; False if that is not enough: its model has changed."""
-        node, number = velour_node(material), self._numbers[_key(material)]
-        info = node and self._measured.adjust(material, node, number)
+        number, measured = self._numbers[_key(material)], as_measured(surface_layers(material, self._notes))
+        info = measured and self._measured.adjust(material, measured, number)
         if not info:
             return False
         self._forget_needs(material)
-        self._uv_maps[_key(material)] = placed_map(material)
-        self._note_measured(material, info)
+        self._note_measured(material, measured, info)
         self._labels[number] = _label(material)
         return True
 
@@ -135,22 +140,27 @@ class MaterialTable:
         return self._uv_maps[key], self._colors.get(key), placed, key in self._textured
 
     def _add(self, material):
-        node = velour_node(material)
-        if node is not None:
-            try:
-                number, info = self._measured.add(material, node)
-                self._note_measured(material, info)
-                return number
-            except (ExportError, VelourError) as error:
-                if self.strict:
-                    raise
-                self._notes.add(str(error))
-        return self._add_shader(material)
-
-    def _add_shader(self, material):
         layers = surface_layers(material, self._notes)
+        if not any(layer.measured for layer in layers):
+            return self._add_shader(material, layers)
+        try:
+            measured = as_measured(layers)
+            if measured is None:
+                return self._add_shader(material, layers)
+            number, info = self._measured.add(material, measured)
+            self._note_measured(material, measured, info)
+            return number
+        except (ExportError, VelourError) as error:
+            if self.strict:
+                raise
+            self._notes.add(str(error))
+        self._forget_needs(material)
+        return self._add_shader(material, surface_layers(material, Notes(), opens_measured=True))
+
+    def _add_shader(self, material, layers):
         sources, reliefs = sources_of(layers)
-        self._uv_maps[_key(material)] = shader_maps(_owner(material), sources, reliefs, self._notes)
+        placed = self._note_mixed(material, layers)
+        self._uv_maps[_key(material)] = shader_maps(_owner(material), sources, reliefs, self._notes, placed)
         self._colors[_key(material)] = shader_colors(_owner(material), sources, self._notes)
         self.glows = self.glows or any(map(shines, layers))
         plain = as_principled(layers)
@@ -165,7 +175,48 @@ class MaterialTable:
             for layer in layers:
                 for part in split(layer):
                     self._add_layer(shader, part, material)
-            return self._with_rays(self._scene.add_shader_material(shader), material)
+            number = self._with_rays(self._scene.add_shader_material(shader), material)
+        for shell in self._shells(material, layers):
+            self._measured.set_shell(number, shell.node.velour)
+        return number
+
+    def _note_mixed(self, material, layers):
+        """Records which coordinates the measured layers of a mixed material need.
+
+        Returns the name of the UV map that places them; None if nothing is placed.
+        """
+        key, placed, hashes = _key(material), [], []
+        for measured in (layer.measured for layer in layers if layer.measured):
+            self._forget_needs(material)
+            self._note_measured(material, measured, self._measured.of_layer(material, measured).info)
+            hashes += self.models[material.name_full]
+            if self._uv_maps[key] != UNUSED:
+                placed.append((self._uv_maps[key].first, self._tiles.get(key), self._turns.get(key)))
+        if not hashes:
+            return None
+        self.models[material.name_full] = list(dict.fromkeys(hashes))
+        if not placed:
+            return None
+        if any(each != placed[0] for each in placed[1:]):
+            self._notes.add(
+                f"{_owner(material)}: its measured nodes are placed differently, but a material has one"
+                " placement; that of the first node is used for all."
+            )
+        self._forget_needs(material)
+        name, tile, turn = placed[0]
+        self._tiles |= {key: tile} if tile else {}
+        self._turns |= {key: turn} if turn is not None else {}
+        if len(self._shells(material, layers)) > 1:
+            raise ExportError(
+                f"{_owner(material)}: it mixes two measured nodes with a silhouette (VOTF), but a surface has"
+                " one silhouette; leave out one of them."
+            )
+        return name
+
+    def _shells(self, material, layers):
+        """The Measured of layers whose model has a VOTF."""
+        measured = [layer.measured for layer in layers if layer.measured]
+        return [each for each in measured if "shell" in self._measured.of_layer(material, each).info]
 
     def _with_rays(self, number, material):
         """Sets backface culling and light sampling of a material; returns its number."""
@@ -180,9 +231,13 @@ class MaterialTable:
             values["normal"] = self._slot(layer.relief.picture, True, material)
             values["normal_strength"] = layer.relief.strength
             values["normal_correction"] = correction(material)
-        shader.add_layer(layer.kind, self._slots(layer, material), **values)
+        if layer.measured:
+            self._measured.of_layer(material, layer.measured).add_layer(shader, **values)
+            shader.weigh_layer("tint", layer.measured.look.gain)
+        else:
+            shader.add_layer(layer.kind, self._slots(layer, material), **values)
         for factor in layer.factors:
-            slot = factor.picture and self._slot(factor.picture, False, material)
+            slot = factor.picture and self._slot(factor.picture, factor.kind == "tint", material)
             shader.weigh_layer(factor.kind, factor.value, *(slot or ()))
 
     def _slots(self, layer, material):
@@ -201,16 +256,17 @@ class MaterialTable:
             self._textured.add(_key(material))
         return slot
 
-    def _note_measured(self, material, info):
+    def _note_measured(self, material, measured, info):
         """Records which coordinates a measured material needs. `info`: info of its model or measurement."""
-        self.models[material.name_full] = model_hashes(material)
-        tile, key = Tile.of(material, info), _key(material)
+        node, look, key = *measured, _key(material)
+        self.models[material.name_full] = model_hashes(node)
+        tile = Tile.of(material, node, look, info)
         if tile:
             self._tiles[key] = tile
         elif not info["isotropic"]:
-            self._turns[key] = velour_node(material).velour.placement.rotation
-        else:
-            self._uv_maps[key] = UNUSED
+            self._turns[key] = look.rotation
+        is_placed = tile or not info["isotropic"]
+        self._uv_maps[key] = UvMaps((look.map_of(node),), projects=True) if is_placed else UNUSED
 
 
 def _label(material):

@@ -1,6 +1,7 @@
 """Measured materials in the library's scene."""
 
-from typing import NamedTuple
+import contextlib
+from typing import Any, NamedTuple
 
 from ..core.model_warnings import roughness_reason
 from ..native import Model, VelourError
@@ -20,6 +21,34 @@ class Reduced(NamedTuple):
     image: str  # name of the image that holds the scene model
 
 
+class Reflectance(NamedTuple):
+    """What a measured node reflects with, as read from its files."""
+
+    kind: str  # "model", "measurement" or "btf"
+    data: Any  # Model, Measurement or Btf
+    info: dict
+    neighbors: int = 0
+    proposal: Model | None = None  # model that a measurement is sampled with
+
+    def add_to(self, scene):
+        """Adds it as a material; returns its number."""
+        if self.kind == "model":
+            return scene.add_model_material(self.data, self.neighbors)
+        if self.kind == "measurement":
+            return scene.add_measurement_material(self.data, self.proposal, self.neighbors)
+        return scene.add_btf_material(self.data)
+
+    def add_layer(self, shader, **values):
+        """Adds it as a layer with weight 1. `values`: normal map, as for Shader.add_layer."""
+        given = {self.kind: self.data} | ({"model": self.proposal} if self.proposal else {})
+        shader.add_measured_layer(**given, neighbors=self.neighbors, **values)
+
+    def close(self):
+        for handle in (self.data, self.proposal):
+            if handle is not None:
+                handle.close()
+
+
 class _Known(NamedTuple):
     source: tuple  # _source() at the time of reading
     info: dict  # info of the model or measurement
@@ -32,29 +61,50 @@ class MeasuredMaterials:
         self._scene = scene
         self._notes = notes
         self._known = {}  # keys: pointers of original materials
+        self._mixed = {}  # Reflectances of layers by _source()
         self.reduced = []
 
-    def add(self, material, node):
-        """Adds a material; returns its number and its model's or measurement's info.
+    def add(self, material, measured):
+        """Adds a material that is one measured model; returns its number and its model's or measurement's
+        info.
 
         Raises ExportError or VelourError.
         """
-        source = _source(node)
-        number, info = self._read(material, node)
-        self._adjust(material, node, number, info)
+        source = _source(measured)
+        if _uses_scene_model(measured.node):
+            number, info = self._add_pair(material, measured)
+        else:
+            with contextlib.closing(self._read(material, measured)) as reflectance:
+                number, info = reflectance.add_to(self._scene), reflectance.info
+        self._adjust(material, measured, number, info)
         self._known[material.original.as_pointer()] = _Known(source, info)
         return number, info
 
-    def adjust(self, material, node, number):
+    def adjust(self, material, measured, number):
         """Applies settings of an added material that need none of its files.
 
         Returns the info as add() does; None if its model or measurement has been replaced.
         """
         known = self._known.get(material.original.as_pointer())
-        if known is None or known.source != _source(node):
+        if known is None or known.source != _source(measured):
             return None
-        self._adjust(material, node, number, known.info)
+        self._adjust(material, measured, number, known.info)
         return known.info
+
+    def of_layer(self, material, measured):
+        """The Reflectance of a layer of a mixed material, which is kept open.
+
+        Raises ExportError or VelourError.
+        """
+        if _uses_scene_model(measured.node):
+            self._notes.add(
+                f"Material '{material.name}': scene models of mixed materials are not supported; the full"
+                " model is used."
+            )
+        source = _source(measured)
+        if source not in self._mixed:
+            self._mixed[source] = self._read(material, measured)
+        return self._mixed[source]
 
     def forget(self, material):
         """Forgets a material whose number is reused."""
@@ -69,82 +119,85 @@ class MeasuredMaterials:
     def renumber(self, before, now):
         self.reduced = [e._replace(number=now) if e.number == before else e for e in self.reduced]
 
-    def _adjust(self, material, node, number, info):
-        settings = node.velour
-        self._scene.set_gain(number, gain(settings))
+    def set_shell(self, number, settings):
+        """Places the VOTF of an added material. `settings`: VelourMaterialSettings."""
+        self._scene.set_shell_tile(number, settings.outline_width)
+        self._scene.set_shell_softness(number, settings.outline_softness)
+
+    def _adjust(self, material, measured, number, info):
+        settings = measured.node.velour
+        self._scene.set_gain(number, measured.look.gain)
         self._scene.hide_backs(number, hidden_backs(material))
         if "shell" in info and not settings.use_reference:
-            self._scene.set_shell_tile(number, settings.outline_width)
-            self._scene.set_shell_softness(number, settings.outline_softness)
+            self.set_shell(number, settings)
 
-    def _read(self, material, node):
-        settings, owner = node.velour, f"Material '{material.name}'"
-        if settings.use_reference:
-            self._note_roughness(settings, {}, owner)
-            return self._add_reference(node, owner)
-        if settings.use_scene_model and settings.scene_model is not None:
-            return self._add_pair(material, node, owner)
+    def _read(self, material, measured):
+        """The Reflectance of a measured node."""
+        node, owner = measured.node, f"Material '{material.name}'"
+        if node.velour.use_reference:
+            self._note_roughness(measured, {}, owner)
+            return self._read_reference(node, owner)
         if node.image is None:
             raise ExportError(
                 f"{owner}: node '{node.name}' has no model; press Fit, or choose a model as its image."
             )
-        with self._read_model(node.image, settings, owner) as model:
-            return self._scene.add_model_material(model, settings.neighbors), model.info()
+        model = self._read_model(node.image, measured, owner)
+        return Reflectance("model", model, model.info(), node.neighbors)
 
-    def _read_model(self, image, settings, owner):
+    def _read_model(self, image, measured, owner):
         """The model with the roughness offset applied."""
-        model = files.read_model(image, owner)
-        if settings.roughness == 0 or self._note_roughness(settings, model.info(), owner):
+        model, roughness = files.read_model(image, owner), measured.look.roughness
+        if roughness == 0 or self._note_roughness(measured, model.info(), owner):
             return model
         with model:
-            return model.roughened(settings.roughness)
+            return model.roughened(min(max(roughness, 0.0), 1.0))
 
-    def _note_roughness(self, settings, info, owner):
+    def _note_roughness(self, measured, info, owner):
         """Whether the roughness offset is unsupported; adds a note if one is set."""
-        reason = roughness_reason(info, settings.use_reference)
-        if reason and settings.roughness > 0:
+        reason = roughness_reason(info, measured.node.velour.use_reference)
+        if reason and measured.look.roughness > 0:
             self._notes.add(f"{owner}: {reason}")
         return reason is not None
 
-    def _add_pair(self, material, node, owner):
+    def _add_pair(self, material, measured):
+        node, owner = measured.node, f"Material '{material.name}'"
         image = node.velour.scene_model
-        reduced = self._read_model(image, node.velour, owner)
+        reduced = self._read_model(image, measured, owner)
         has_full = files.is_there(node.image)
-        model = self._read_model(node.image, node.velour, owner) if has_full else reduced
-        number = self._scene.add_model_material(model, node.velour.neighbors)
-        neighbors = node.velour.neighbors
-        self.reduced.append(Reduced(number, material.name, reduced, neighbors, has_full, image.name))
+        model = self._read_model(node.image, measured, owner) if has_full else reduced
+        number = self._scene.add_model_material(model, node.neighbors)
+        self.reduced.append(Reduced(number, material.name, reduced, node.neighbors, has_full, image.name))
         return number, model.info()
 
-    def _add_reference(self, node, owner):
-        if node.velour.measurement is None:
+    def _read_reference(self, node, owner):
+        image = node.velour.measurement
+        if image is None:
             raise ExportError(
                 f"{owner}: 'Render from Measurement' is enabled, but no measurement is chosen; choose one."
             )
-        if files.measurement_info(node.velour.measurement, owner)["kind"] == "btf":
-            return self._add_btf(node.velour.measurement, owner)
+        if files.measurement_info(image, owner)["kind"] == "btf":
+            return self._read_btf(image, owner)
         proposal = files.read_model(node.image, owner) if node.image else None
-        with files.read_measurement(node.velour.measurement, owner) as measurement:
-            number = self._scene.add_measurement_material(measurement, proposal, node.velour.neighbors)
-            return number, measurement.info()
+        measurement = files.read_measurement(image, owner)
+        return Reflectance("measurement", measurement, measurement.info(), node.neighbors, proposal)
 
-    def _add_btf(self, image, owner):
+    def _read_btf(self, image, owner):
         try:
-            with files.read_btf(image, owner) as btf:
-                return self._scene.add_btf_material(btf), btf.info()
+            btf = files.read_btf(image, owner)
         except VelourError as error:
             raise ExportError(f"{owner}: {error}") from error
+        return Reflectance("btf", btf, btf.info())
 
 
-def _source(node):
-    """Key of the files and settings of its reflectance: equal if and only if the reflectance is the same."""
+def _uses_scene_model(node):
     settings = node.velour
+    return settings.use_scene_model and settings.scene_model is not None and not settings.use_reference
+
+
+def _source(measured):
+    """Key of the files and settings of its reflectance: equal if and only if the reflectance is the same."""
+    node, settings = measured.node, measured.node.velour
     other = settings.measurement if settings.use_reference else settings.scene_model
     is_other_used = settings.use_reference or settings.use_scene_model
     stamps = files.stamp_of(node.image), files.stamp_of(other if is_other_used else None)
-    return settings.use_reference, settings.neighbors, settings.roughness, *stamps
-
-
-def gain(settings):
-    """Factor on a measured material's reflectance, from tint and exposure."""
-    return tuple(channel * 2.0**settings.exposure for channel in settings.tint)
+    return settings.use_reference, node.neighbors, measured.look.roughness, *stamps

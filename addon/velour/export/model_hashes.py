@@ -1,17 +1,14 @@
 """Hashes of the files that a measured material renders from."""
 
 from . import files
-from .nodes import velour_node
 
 
-def model_hashes(material):
-    """SHA-256 of its scene model, if used, and of its model; or of the measurement used instead.
+def model_hashes(node):
+    """SHA-256 of the scene model of a MeasuredNode, if used, and of its model; or of the measurement used
+    instead.
 
-    None if the material is not measured. Missing files are skipped; renders refuse them with a message.
+    Missing files are skipped; renders refuse them with a message.
     """
-    node = velour_node(material)
-    if node is None:
-        return None
     settings = node.velour
     if settings.use_reference:
         return _hashes(settings.measurement, computed=_measurement_hash)

@@ -6,10 +6,12 @@ from typing import NamedTuple
 import numpy as np
 
 from ..core.placement import LARGEST_STRETCH, Lie, Surface, UvMetric, lie_of, texture_map
+from .measured_look import MeasuredLook
 from .meshes import has_uv_maps, object_arrays
-from .nodes import velour_node
 from .notes import ExportError
 from .uv_maps import placed_maps
+
+_LEAST_SCALE = 1e-3  # of tiles, as the input allows; a linked value may be smaller
 
 
 class Tile(NamedTuple):
@@ -17,17 +19,22 @@ class Tile(NamedTuple):
 
     material: str  # its name
     settings: object  # node.velour.placement
+    look: MeasuredLook
     texels: tuple[int, int]  # points of the VOTF if there is no texture
     own_metres: tuple[float, float] | None  # size stored in the BTF, if any
 
     @classmethod
-    def of(cls, material, info):
-        """`info`: info of the model or BTF. None if that has neither texels nor a VOTF."""
+    def of(cls, material, node, look, info):
+        """`node`: MeasuredNode of the material, `info`: info of its model or BTF.
+
+        None if that has neither texels nor a VOTF.
+        """
         points = info.get("texels") or info.get("shell", {}).get("points")
         if points is None:
             return None
-        settings, metres = velour_node(material).velour.placement, info.get("tile_metres")
-        return cls(material.name, settings, tuple(points[:2]), tuple(metres) if metres else None)
+        metres = info.get("tile_metres")
+        own = tuple(metres) if metres else None
+        return cls(material.name, node.velour.placement, look, tuple(points[:2]), own)
 
     @property
     def metres(self):
@@ -80,7 +87,16 @@ def tile_map(tile, metrics):
     else:  # projected coordinates have no unit square: repeats of the real tile size
         repeats = np.array(settings.repeats) / (tile.metres or (1.0, 1.0))
         lengths = lengths * metrics.projected
-    return texture_map(repeats, settings.rotation, settings.offset, lengths)
+    look = tile.look
+    repeats = np.array(repeats) / max(look.scale, _LEAST_SCALE)
+    placed = texture_map(repeats, look.rotation, settings.offset, lengths)
+    return placed if look.mapping is None else _composed(placed, look.mapping)
+
+
+def _composed(after, before):
+    """[2 x 3]: the map `before`, then the map `after`."""
+    after, before = (np.vstack([each, (0.0, 0.0, 1.0)]) for each in (after, before))
+    return np.ascontiguousarray((after @ before)[:2])
 
 
 def _density(settings, metrics):

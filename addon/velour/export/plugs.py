@@ -2,7 +2,7 @@
 
 from typing import Any, NamedTuple
 
-from .nodes import first_input
+from .nodes import first_input, model_texture
 
 _MOST_STEPS = 1000  # links of a broken file may be cyclic
 
@@ -30,7 +30,8 @@ class Plug(NamedTuple):
 def followed(plug):
     """The output that feeds an input, or the input whose own value applies; None if there is neither.
 
-    That input may belong to an enclosing group node, or to a muted node upstream.
+    That input may belong to an enclosing group node, or to a muted node upstream. The shader of a group that
+    contains a measured model is an output like that of any other shader node.
     """
     for _ in range(_MOST_STEPS):
         step = _step_out_of(plug) if plug.socket.is_output else _step_into(plug)
@@ -63,13 +64,24 @@ def _step_out_of(plug):
         return Plug(through, groups) if through else None
     if node.bl_idname == "NodeGroupInput" and groups:
         return _same(groups[-1].inputs, socket, groups[:-1])
-    if node.bl_idname == "ShaderNodeGroup":
-        outputs = (
-            [n for n in node.node_tree.nodes if n.bl_idname == "NodeGroupOutput"] if node.node_tree else []
-        )
-        inner = next((n for n in outputs if n.is_active_output), None)
-        return _same(inner.inputs, socket, (*groups, node)) if inner else None
+    if node.bl_idname == "ShaderNodeGroup" and not is_measured(plug):
+        return inside(plug)
     return plug
+
+
+def is_measured(plug):
+    """Whether it is the shader of a group that contains a measured model."""
+    node, socket = plug.node, plug.socket
+    is_shader = node.bl_idname == "ShaderNodeGroup" and node.node_tree and socket.type == "SHADER"
+    return bool(is_shader) and model_texture(node.node_tree) is not None
+
+
+def inside(plug):
+    """The input of a group's tree behind an output of its node, or None."""
+    node = plug.node
+    outputs = [n for n in node.node_tree.nodes if n.bl_idname == "NodeGroupOutput"] if node.node_tree else []
+    inner = next((n for n in outputs if n.is_active_output), None)
+    return _same(inner.inputs, plug.socket, (*plug.groups, node)) if inner else None
 
 
 def _same(sockets, socket, groups):

@@ -3,7 +3,7 @@
 from typing import NamedTuple
 
 from .image_nodes import Picture
-from .nodes import velour_node
+from .nodes import source, velour_node
 
 MOST_SETS = 4  # VLR_MOST_UV_SETS
 
@@ -20,8 +20,9 @@ class UvMaps(NamedTuple):
         return self.names[0] if self.names else ""
 
     def number(self, name):
-        """The set of a picture's UV map."""
-        return self.names.index(name) if name in self.names else 0
+        """The set of a picture's UV map. The first set of a measured material is placed for its model."""
+        first = int(self.projects and len(self.names) > 1)
+        return self.names.index(name, first) if name in self.names[first:] else 0
 
     @property
     def all_names(self):
@@ -46,14 +47,33 @@ def placed_maps(materials):
 
 def placed_map(material):
     node = velour_node(material)
-    return UvMaps((node.velour.placement.uv_map,), projects=True) if node else RENDERED
+    return UvMaps((placed_by(node),), projects=True) if node else RENDERED
 
 
-def shader_maps(owner, sources, reliefs, notes):
-    """UvMaps of a material that is not measured, from the pictures in its layers and Reliefs."""
-    pictures = [source for source in sources if isinstance(source, Picture)]
+def placed_by(node):
+    """Name of the UV map that places a MeasuredNode: a UV Map node linked to Vector, or that of the
+    placement."""
+    linked = linked_uv_map(node)
+    return node.velour.placement.uv_map if linked is None else linked.uv_map
+
+
+def linked_uv_map(node):
+    """The UV Map node linked to the Vector of a MeasuredNode, or None."""
+    vector = node.group and node.group.inputs.get("Vector")
+    found = source(vector) if vector else None
+    return found if found and found.bl_idname == "ShaderNodeUVMap" else None
+
+
+def shader_maps(owner, sources, reliefs, notes, first=None):
+    """UvMaps of a material from the pictures in its layers and Reliefs.
+
+    first: name of the map of a measured layer. It alone is placed, so other layers have a set of their own.
+    """
+    pictures = [each for each in sources if isinstance(each, Picture)]
     pictures += [relief.picture for relief in reliefs]
     names = tuple(sorted({picture.coordinates for picture in pictures}))
+    if first is not None:
+        names = (first, *names)
     if not names:
         return UNUSED
     if len(names) > MOST_SETS:
@@ -62,16 +82,19 @@ def shader_maps(owner, sources, reliefs, notes):
             f" replaced by {_called(names[0])}."
         )
         names = names[:MOST_SETS]
-    return UvMaps(names, _relief_map(owner, names, reliefs, notes))
+    if first is None:
+        return UvMaps(names, _relief_map(owner, names[0], reliefs, notes))
+    return UvMaps(names, _relief_map(owner, None, reliefs, notes), projects=True)
 
 
-def _relief_map(owner, names, reliefs, notes):
+def _relief_map(owner, usual, reliefs, notes):
+    """Name of the map of normal maps' tangents; None if it is `usual` or there are none."""
     asked = list(dict.fromkeys(relief.uv_map for relief in reliefs))
     if len(asked) > 1:
         notes.add(
             f"{owner}: its Normal Maps use several UV maps; the tangents of all follow {_called(asked[0])}."
         )
-    return asked[0] if asked and asked[0] != names[0] else None
+    return asked[0] if asked and asked[0] != usual else None
 
 
 def _called(name):

@@ -11,16 +11,16 @@ def saved_owners():
         for datablock in getattr(bpy.data, name):
             if hasattr(type(datablock), "velour") and _has_settings(datablock):
                 yield datablock
-    for node in _image_nodes():
+    for node in _nodes():
         if _has_settings(node):
             yield node
 
 
-def _image_nodes():
+def _nodes():
     materials = (material.node_tree for material in bpy.data.materials)
     for tree in (*materials, *bpy.data.node_groups):
         for node in tree.nodes if tree else ():
-            if node.bl_idname == "ShaderNodeTexImage":
+            if node.bl_idname in ("ShaderNodeTexImage", "ShaderNodeGroup"):
                 yield node
 
 

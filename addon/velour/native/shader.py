@@ -6,6 +6,7 @@ from ctypes import byref, pointer
 
 from . import structs, table
 from .arrays import small
+from .errors import refuse
 from .handle import Handle, choice, set_fields
 from .texture import IDENTITY, Texture, TextureSlot
 
@@ -51,6 +52,10 @@ class Shader(Handle):
             desc.normal_correction = choice("normal_correction", normal_correction, table.RELIEF_CORRECTIONS)
         desc.interreflection = interreflection
         self._lib.vlr_shader_add_layer(self.pointer, byref(desc))
+
+    # SHIM until the library has measured layers; its wrapper replaces this method.
+    def add_measured_layer(self, model=None, measurement=None, btf=None, **options) -> None:
+        raise refuse("This build of Velour's library cannot mix measured materials with other shaders.")
 
     def weigh_layer(
         self, kind: str, value: float = 1.0, texture: Texture | None = None, uv_map=IDENTITY, uv_set=0

@@ -20,6 +20,7 @@ from .capture_btf import VELOUR_OT_capture_btf
 from .check_scene import VELOUR_OT_check_scene
 from .compare import VELOUR_OT_compare
 from .compress_btf import VELOUR_OT_compress_btf
+from .convert import VELOUR_OT_convert_materials
 from .copy_cycles_settings import VELOUR_OT_copy_cycles_settings
 from .estimate_capture import VELOUR_OT_estimate_capture
 from .estimate_fit import VELOUR_OT_estimate_fit
@@ -46,6 +47,7 @@ CLASSES = (
     VELOUR_OT_fit,
     VELOUR_OT_fit_for_scene,
     VELOUR_OT_approximate,
+    VELOUR_OT_convert_materials,
     VELOUR_OT_cancel_fit,
     VELOUR_OT_cancel_waiting,
     VELOUR_OT_save_model,

@@ -27,6 +27,7 @@ class VELOUR_OT_add_votf(AskedOutline, MakesModel, bpy.types.Operator):
 
     def _begin(self, context):
         asked = self._asked(context)
+        measured.refuse_linked_group(asked.material, asked.node)
         self._target, self._subject = JobTarget(asked.material, asked.node), asked.material.name
         # The structure is exported now; the model is read when earlier jobs have finished.
         scene, options, self._notes = export_structure(context, asked)
@@ -45,10 +46,10 @@ class VELOUR_OT_add_votf(AskedOutline, MakesModel, bpy.types.Operator):
 
     def _put(self):
         report = self._report
-        material, node = measured.put_model(self._data, self._target, self.report)
+        material, node = measured.put_model(self._data, self._target, self.report, self.users)
         if node is None:
             return {"FINISHED"}
-        self._put_approximation(material)
+        self._put_approximation(material, node)
         for sentence in (*self._notes, *sentences(report["warning_codes"])):
             self.report({"WARNING"}, sentence)
         self.report(

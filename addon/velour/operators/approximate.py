@@ -9,10 +9,12 @@ from ..export import ExportError
 from ..export.files import sha256
 from . import approximation_group, measured
 from .background_job import JobsInSteps
+from .convert import convert
 from .job_target import JobTarget
+from .shared_group import AsksUsers
 
 
-class MakesModel(JobsInSteps):
+class MakesModel(AsksUsers, JobsInSteps):
     """Mixin for an operator whose first job makes a model, applied only together with its approximation.
 
     The model is for the material of `_target`; `_put()` uses `_data`, `_info` and the first job's `_report`.
@@ -26,25 +28,19 @@ class MakesModel(JobsInSteps):
                 model, self._report = self._job.result_model(), self._job.report()
                 self._seconds = self._job.poll().seconds
             self._data, self._info = model.bytes(), model.info()
-            if self._wants_approximation():
-                self._steps = Steps(model, approximation_group.has_layers())
+            self._steps = Steps(model, approximation_group.has_layers())
         return None if self._advance() else self._put()
 
-    def _wants_approximation(self):
-        material, _node = self._target.find()
-        return material is not None and approximation_group.is_wanted(material)
-
-    def _put_approximation(self, material):
-        if self._steps:
-            approximation_group.put(material, self._steps.result, sha256(self._data))
+    def _put_approximation(self, material, node):
+        approximation_group.put(node, material, self._steps.result, self._info, sha256(self._data))
 
 
 class VELOUR_OT_approximate(JobsInSteps, bpy.types.Operator):
     bl_idname = "velour.approximate"
     bl_label = "Approximate"
     bl_description = (
-        "Fit a node group with a Principled BSDF to the model, for EEVEE, Cycles and Solid mode. Other nodes"
-        " are not changed"
+        "Fit the nodes in the material's node group to the model, for EEVEE, Cycles and Solid mode. Nodes of"
+        " your own are not changed"
     )
     bl_options = {"UNDO"}
 
@@ -60,6 +56,7 @@ class VELOUR_OT_approximate(JobsInSteps, bpy.types.Operator):
         if not approximation_group.is_editable(material):
             raise ExportError(f"{owner} is linked from another file; approximate it there or make it local.")
         node = measured.modelled_node(material)
+        measured.refuse_linked_group(material, node)
         self._target, self._subject = JobTarget(material, node), material.name
 
     def _take_turn(self):
@@ -68,14 +65,17 @@ class VELOUR_OT_approximate(JobsInSteps, bpy.types.Operator):
     def _finish(self):
         if self._reading is not None:
             model, self._digest = self._reading.result()
+            self._info = model.info()
             self._reading, self._steps = None, Steps(model, approximation_group.has_layers())
         if self._advance():
             return None
-        material, _node = self._target.find()
+        material, node = self._target.find()
         if material is None:
             self.report({"WARNING"}, "The material no longer exists; its approximation was discarded.")
             return {"CANCELLED"}
         found = self._steps.result
-        approximation_group.put(material, found, self._digest)
+        if node.group is None:
+            node = convert(material)
+        approximation_group.put(node, material, found, self._info, self._digest)
         self.report({"INFO"}, f"Approximated '{material.name}': relative error {found.relative_l2:.3g}.")
         return {"FINISHED"}

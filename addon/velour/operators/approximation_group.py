@@ -1,14 +1,15 @@
-"""The native node group that approximates a measured material without Velour."""
+"""Blender's own nodes in a measured material's group: what engines other than Velour render."""
 
 import bpy
 
-from ..core.approximation import UNFITTED
-from ..export.nodes import active_output, approximation_node, first_input
+from ..export.nodes import first_input
+from ..export.uv_maps import placed_by
 from ..properties.approximation_state import VIEW_ANGLES
-from . import approximation_look
+from . import approximation_look, group_inputs
 from .approximation_image import add_image, add_mapping, add_normals, add_texture, is_open
+from .look_nodes import LookNodes
 
-NAME = "Velour approximation"
+FRAME = "Other Engines"  # contains the nodes that are replaced; an artist's own nodes are outside of it
 
 
 def has_layers():
@@ -21,115 +22,165 @@ def is_editable(material):
     return material.library is None and material.override_library is None
 
 
-def is_wanted(material):
-    """Whether a new model should be approximated: there is an approximation already, or no other shader."""
-    outputs = [n for n in material.node_tree.nodes if n.bl_idname == "ShaderNodeOutputMaterial"]
-    has_shader = any(node.inputs["Surface"].is_linked for node in outputs)
-    return is_editable(material) and (approximation_node(material) is not None or not has_shader)
+def put(node, material, approximation, info=None, model=""):
+    """Replaces the approximation in a MeasuredNode's group.
 
-
-def put(material, approximation=UNFITTED, model=""):
-    """Replaces the material's group, and links it if it is the first; does not change other nodes.
-
-    Copies of a material share its group, so it is replaced, never edited. model: SHA-256 of the model that
-    it approximates.
+    info: the model's, None without a model. model: SHA-256 of the model that is approximated.
     """
-    tree, node = material.node_tree, approximation_node(material)
-    output = active_output(tree, "ShaderNodeOutputMaterial") or tree.nodes.new("ShaderNodeOutputMaterial")
-    is_new, before = node is None, node.node_tree if node else None
-    if is_new:
-        node = tree.nodes.new("ShaderNodeGroup")
-        node.name = node.label = NAME
-        node.location = output.location.x - 200, output.location.y
-    shown_by = [output.inputs["Surface"]] if is_new else [link.to_socket for link in node.outputs[0].links]
-    node.node_tree = None
-    _remove(before)  # first, to free its name
-    node.node_tree = _group(approximation, material)
-    for socket in shown_by:
-        tree.links.new(node.outputs[0], socket)
-    if not output.inputs["Surface"].is_linked:
-        tree.links.new(node.outputs[0], output.inputs["Surface"])
-    _remember(node.node_tree.velour, approximation, model)
+    tree, colors, normals = node.group.node_tree, None, None
+    _clear(tree)  # first, to free the names of the images
+    if approximation.color_map is not None:
+        colors = add_image(f"{tree.name} approximation", approximation.color_map)
+        if approximation.normal_map is not None:
+            normals = add_normals(f"{tree.name} normals", approximation.normal_map)
+    _remember(tree.velour, approximation, model)
+    shows_behind = colors is not None and is_open(approximation.color_map)
+    build(node, material, info or {}, colors, normals, shows_behind)
+
+
+def build(node, material, info, colors=None, normals=None, shows_behind=False):
+    """Builds the nodes from the state of a MeasuredNode's group. `colors` and `normals`: images of a tile."""
+    tree = node.group.node_tree
+    _clear(tree)
+    put_inputs(node, material, info)
+    source, sink = _only(tree, "NodeGroupInput", (-1300, 0)), _only(tree, "NodeGroupOutput", (600, 0))
+    others = set(tree.nodes)
+    shader = _shader(tree, source, colors, normals, shows_behind)
+    frame = tree.nodes.new("NodeFrame")
+    frame.name = frame.label = FRAME
+    for added in set(tree.nodes) - others - {frame}:
+        added.parent = frame
+    if not sink.inputs[0].is_linked:
+        tree.links.new(shader, sink.inputs[0])
+    if shows_behind and hasattr(material, "shadow_method"):  # EEVEE before 4.2 requires it
+        material.blend_method = material.shadow_method = "HASHED"
     approximation_look.follow(material)
 
 
-def _group(approximation, material):
-    group = bpy.data.node_groups.new(NAME, "ShaderNodeTree")
-    if hasattr(group, "interface"):  # 4.0 and newer
-        group.interface.new_socket(name="BSDF", in_out="OUTPUT", socket_type="NodeSocketShader")
-    else:
-        group.outputs.new("NodeSocketShader", "BSDF")
-    sink = group.nodes.new("NodeGroupOutput")
-    sink.location = 600, 0
-    shader = group.nodes.new("ShaderNodeBsdfPrincipled")
+def put_inputs(node, material, info):
+    """Gives a MeasuredNode's group the inputs of a model."""
+    group_inputs.put(node.group.node_tree, group_inputs.wanted(info))
+    _link_coordinates(node)
+    approximation_look.follow(material)
+
+
+def images(tree):
+    """The images of a tile's colors and normals, each only if there is one."""
+    textures = [node for node in tree.nodes if node.bl_idname == "ShaderNodeTexImage"]
+    return [node.image for node in textures if node.image and not node.velour.enabled]
+
+
+def _shader(tree, source, colors, normals, shows_behind):
+    """Adds the approximation's nodes; returns their output."""
+    fitted, look = approximation_look.fitted(tree), LookNodes(tree, source)
+    shader, base = tree.nodes.new("ShaderNodeBsdfPrincipled"), None
     shader.distribution = "GGX"  # as fitted: without multiple scattering between facets
-    if approximation.anisotropic > 0:
-        _turn(group, shader)
-    base = group.nodes.new("ShaderNodeBsdfDiffuse") if max(approximation.diffuse) > 0 else None
-    if approximation.color_map is not None:
-        tiles = add_mapping(group)
-        _color(group, shader, tiles, approximation, material)
-        if approximation.normal_map is not None:
-            image = add_normals(f"{material.name} normals", approximation.normal_map)
-            _relief(group, add_texture(group, image, tiles, -320), shader, base)
-    last = _with_base(group, shader, base) if base else shader
-    group.links.new(last.outputs[0], sink.inputs[0])
-    return group
+    _feed_values(tree, shader, fitted, look)
+    if max(fitted["diffuse"]) > 0:
+        base = tree.nodes.new("ShaderNodeBsdfDiffuse")
+        _feed(tree, base.inputs["Color"], fitted["diffuse"], look.color(fitted["diffuse"]))
+    relief = source.outputs["Normal"]
+    if colors is not None:
+        tiles = add_mapping(tree, source, look)
+        texture = add_texture(tree, colors, tiles)
+        tree.links.new(look.color(texture.outputs["Color"]), shader.inputs["Base Color"])
+        if shows_behind:
+            tree.links.new(texture.outputs["Alpha"], shader.inputs["Alpha"])
+        if normals is not None:
+            relief = _relief(tree, add_texture(tree, normals, tiles, -320), source)
+    for socket in filter(None, map(_normal, (shader, base))):
+        tree.links.new(relief, socket)
+    tree.links.new(relief, first_input(shader, "Coat Normal", "Clearcoat Normal"))
+    return _with_base(tree, shader, base) if base else shader.outputs[0]
 
 
-def _color(group, shader, tiles, approximation, material):
-    pixels = approximation.color_map
-    texture = add_texture(group, add_image(f"{material.name} approximation", pixels), tiles)
-    dye = group.nodes.new("ShaderNodeMix")
-    dye.location = -180, 160
-    dye.data_type, dye.blend_type, dye.clamp_result = "RGBA", "MULTIPLY", True
-    factor, color, _dye = (socket for socket in dye.inputs if socket.enabled)
-    factor.default_value = 1.0
-    group.links.new(texture.outputs["Color"], color)
-    group.links.new(next(socket for socket in dye.outputs if socket.enabled), shader.inputs["Base Color"])
-    if is_open(pixels):
-        group.links.new(texture.outputs["Alpha"], shader.inputs["Alpha"])
-        if hasattr(material, "shadow_method"):  # EEVEE before 4.2 requires it
-            material.blend_method = material.shadow_method = "HASHED"
+def _normal(shader):
+    return shader and shader.inputs["Normal"]
 
 
-def _relief(group, texture, shader, base):
+def _feed_values(tree, shader, fitted, look):
+    """Sets the sockets of a Principled BSDF as fitted, and links what the look changes."""
+    values = fitted["principled"]
+    for name, value in values.items():
+        approximation_look.set_value(shader, name, value)
+    roughness, amount = values["roughness"], fitted["anisotropic"]
+    inputs = {
+        "base_color": look.color(values["base_color"]),
+        "specular": look.weight(values["specular"]),
+        "roughness": look.roughness(roughness),
+    }
+    if values["coat"] > 0:
+        inputs["coat"] = look.weight(values["coat"])
+        inputs["coat_roughness"] = look.roughness(values["coat_roughness"])
+    if has_layers() and values["metallic"] < 1:
+        inputs["specular_tint"] = look.tint(values["specular_tint"], values["metallic"])
+    shader.inputs["IOR"].default_value = 1.5  # levels are fitted for it; Blender 4.0's default is 1.45
+    if amount > 0:
+        inputs["roughness"], anisotropic = look.anisotropic(roughness, amount)
+        _feed(tree, shader.inputs["Anisotropic"], amount, anisotropic)
+        turns = look.turns(0.25 if fitted["turned"] else 0.0)
+        tree.links.new(turns, shader.inputs["Anisotropic Rotation"])
+        tangent = tree.nodes.new("ShaderNodeTangent")
+        tangent.direction_type = "UV_MAP"
+        tangent.location = -220, -300
+        tree.links.new(tangent.outputs[0], shader.inputs["Tangent"])
+    for name, socket in inputs.items():
+        tree.links.new(socket, approximation_look.socket_of(shader, name))
+
+
+def _feed(tree, socket, value, source):
+    """Links a socket; its own value is what the look leaves unchanged."""
+    socket.default_value = (*value, 1.0) if isinstance(value, (list, tuple)) else value
+    tree.links.new(source, socket)
+
+
+def _relief(tree, texture, source):
     """Adds the normal map, rotated like the tile, since tangents are those of the texture coordinates."""
-    turn, relief = group.nodes.new("ShaderNodeVectorRotate"), group.nodes.new("ShaderNodeNormalMap")
+    turn, relief = tree.nodes.new("ShaderNodeVectorRotate"), tree.nodes.new("ShaderNodeNormalMap")
     turn.rotation_type = "Z_AXIS"
     turn.inputs["Center"].default_value = 0.5, 0.5, 0.5  # color of an untilted normal
     turn.location, relief.location = (-360, -460), (-180, -460)
-    group.links.new(texture.outputs["Color"], turn.inputs["Vector"])
-    group.links.new(turn.outputs["Vector"], relief.inputs["Color"])
-    parts = [shader.inputs["Normal"], first_input(shader, "Coat Normal", "Clearcoat Normal")]
-    for socket in (*parts, *([base.inputs["Normal"]] if base else ())):
-        group.links.new(relief.outputs["Normal"], socket)
+    tree.links.new(source.outputs["Rotation"], turn.inputs["Angle"])
+    tree.links.new(texture.outputs["Color"], turn.inputs["Vector"])
+    tree.links.new(turn.outputs["Vector"], relief.inputs["Color"])
+    return relief.outputs["Normal"]
 
 
-def _turn(group, shader):
-    """Aligns anisotropy with the texture coordinates, as for measured materials."""
-    tangent = group.nodes.new("ShaderNodeTangent")
-    tangent.direction_type = "UV_MAP"
-    tangent.location = -220, -300
-    group.links.new(tangent.outputs[0], shader.inputs["Tangent"])
-
-
-def _with_base(group, shader, base):
+def _with_base(tree, shader, base):
     base.location = 0, 160
-    both = group.nodes.new("ShaderNodeAddShader")
+    both = tree.nodes.new("ShaderNodeAddShader")
     both.location = 400, 0
     for number, part in enumerate((shader, base)):
-        group.links.new(part.outputs[0], both.inputs[number])
-    return both
+        tree.links.new(part.outputs[0], both.inputs[number])
+    return both.outputs[0]
 
 
-def _remove(group):
-    """Removes a group and its images, unless copies of the material use them."""
-    if group is None or group.users > 0:
+def _link_coordinates(node):
+    """Links texture coordinates to the Vector of tiles, which has no coordinates of its own."""
+    vector = node.group.inputs.get("Vector")
+    if vector is None or vector.is_linked:
         return
-    images = [node.image for node in group.nodes if node.bl_idname == "ShaderNodeTexImage" and node.image]
-    bpy.data.node_groups.remove(group)
-    for image in images:
+    tree = node.group.id_data
+    uvs = tree.nodes.new("ShaderNodeUVMap")
+    uvs.uv_map = placed_by(node)
+    uvs.location = node.group.location.x - 200, node.group.location.y - 200
+    tree.links.new(uvs.outputs["UV"], vector)
+
+
+def _only(tree, idname, location):
+    found = next((node for node in tree.nodes if node.bl_idname == idname), None)
+    if found is None:
+        found = tree.nodes.new(idname)
+        found.location = location
+    return found
+
+
+def _clear(tree):
+    """Removes the nodes of an approximation, and images that only they use."""
+    found, frames = images(tree), [node for node in tree.nodes if node.name.startswith(FRAME)]
+    for node in [*(node for node in tree.nodes if node.parent in frames), *frames]:
+        tree.nodes.remove(node)
+    for image in found:
         if image.users == 0:
             bpy.data.images.remove(image)
 

@@ -38,13 +38,24 @@ def is_open(pixels):
     return float(pixels[..., 3].mean()) < _KEPT_OPAQUE
 
 
-def add_mapping(group):
-    """Adds the nodes that place a group's tiles; returns their output socket."""
-    uvs, mapping = group.nodes.new("ShaderNodeUVMap"), group.nodes.new("ShaderNodeMapping")
-    for node, x in ((uvs, -1000), (mapping, -800)):
-        node.location = x, 0
+def add_mapping(tree, source, look):
+    """Adds the nodes that place a tile by the group's inputs; returns their output.
+
+    source: the Group Input node. look: LookNodes.
+    """
+    turn, mapping = tree.nodes.new("ShaderNodeCombineXYZ"), tree.nodes.new("ShaderNodeMapping")
+    turn.location, mapping.location = (-1000, -160), (-800, 0)
     mapping.vector_type = "TEXTURE"  # the inverse: its scale is the size of a tile
-    group.links.new(uvs.outputs["UV"], mapping.inputs["Vector"])
+    size = look.vector("DIVIDE", (1.0,) * 3, source.outputs["Repeats"])
+    links = {
+        "Vector": source.outputs["Vector"],
+        "Location": source.outputs["Offset"],
+        "Rotation": turn.outputs["Vector"],
+        "Scale": look.vector("SCALE", size, scale=source.outputs["Scale"]),
+    }
+    tree.links.new(source.outputs["Rotation"], turn.inputs["Z"])
+    for name, socket in links.items():
+        tree.links.new(socket, mapping.inputs[name])
     return mapping.outputs["Vector"]
 
 
@@ -55,20 +66,3 @@ def add_texture(group, image, tiles, y=0):
     texture.image = image
     group.links.new(tiles, texture.inputs["Vector"])
     return texture
-
-
-def place(mapping, placement, metres):
-    """Sets a Mapping node to a placement. `metres`: sides of a tile in meters, if the model has them."""
-    mapping.inputs["Location"].default_value = (*placement.offset, 0.0)
-    mapping.inputs["Rotation"].default_value = (0.0, 0.0, placement.rotation)
-    mapping.inputs["Scale"].default_value = (*(1.0 / r for r in _repeats(placement, metres)), 1.0)
-
-
-def _repeats(placement, metres):
-    """Repeats per unit of texture coordinates. For real-size tiles that is 1 m, unless a density is set."""
-    if placement.mode == "REPEATS":
-        return tuple(placement.repeats)
-    entered = tuple(1e-3 * side for side in placement.tile_size)
-    sides = entered if min(entered) > 0 else metres or (1.0, 1.0)
-    density = placement.uv_density if min(placement.uv_density) > 0 else (1.0, 1.0)
-    return tuple(1.0 / (side * d) for side, d in zip(sides, density, strict=True))

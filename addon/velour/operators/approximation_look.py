@@ -1,19 +1,25 @@
-"""Node values of an approximation: the fit, modified by the material's look and placement."""
+"""Approximations as other programs see them: the fit, changed by the material's look and placement."""
 
 import json
-import math
+from typing import NamedTuple
 
-import bpy
+import numpy as np
 
 from ..core.approximation_look import Look, dyed, with_look
 from ..export.color import rec709_to_working
-from ..export.measured_materials import gain
-from ..export.nodes import approximation_node, first_input, velour_node
+from ..export.measured_look import constant_look
+from ..export.nodes import (
+    active_output,
+    approximation_node,
+    first_input,
+    measured_nodes,
+    source,
+    velour_node,
+)
+from ..export.uv_maps import linked_uv_map, placed_by
 from ..properties import changed
-from .approximation_image import place
 
-# The library's names: names of Blender's sockets across versions. The tint is set on color sockets only:
-# before Blender 4.0 it is a number with another meaning.
+# The library's names: names of Blender's sockets across versions.
 _SOCKETS = {
     "base_color": ("Base Color",),
     "metallic": ("Metallic",),
@@ -23,10 +29,30 @@ _SOCKETS = {
     "coat": ("Coat Weight", "Clearcoat"),
     "coat_roughness": ("Coat Roughness", "Clearcoat Roughness"),
 }
+_NEGLIGIBLE = 1e-6
+
+
+class Placed(NamedTuple):
+    """Placement of tiles: uv - offset, rotated clockwise by `rotation` (radians), times `repeats`."""
+
+    uv_map: str  # "": the active render map
+    offset: tuple
+    rotation: float
+    repeats: tuple
+
+
+class Shown(NamedTuple):
+    """A measured material as constants."""
+
+    principled: dict  # as of core/approximation.Approximation, in the working space
+    diffuse: tuple
+    color: tuple
+    gain: tuple
+    placed: Placed
 
 
 def kept(approximation):
-    """Input of `follow` as JSON, to be stored in the group; colors are in the working space."""
+    """An approximation as JSON, to be stored in the group; colors are in the working space."""
     principled = {**approximation.principled, "base_color": _working(approximation.principled["base_color"])}
     return json.dumps(
         {
@@ -40,96 +66,121 @@ def kept(approximation):
     )
 
 
+def fitted(tree):
+    """The values that kept() has stored in a tree."""
+    return json.loads(tree.velour.fitted)
+
+
+def shown(material):
+    """The Shown of a measured material; None if it has no approximation."""
+    group, node = approximation_node(material), velour_node(material)
+    if group is None or node is None or not group.node_tree.velour.fitted:
+        return None
+    values, look = fitted(group.node_tree), constant_look(node)
+    found = with_look(values, Look(look.gain, look.roughness))
+    placement = node.velour.placement
+    repeats = tuple(r / look.scale for r in _repeats(placement, values["tile_metres"]))
+    placed = Placed(placed_by(node), tuple(placement.offset), look.rotation, repeats)
+    color = dyed(values["color"], look.gain)
+    return Shown(found["principled"], tuple(found["diffuse"]), color, look.gain, placed)
+
+
+def is_surface(material):
+    """Whether the approximation alone is the surface of a material."""
+    output = active_output(material.node_tree, "ShaderNodeOutputMaterial")
+    return output is not None and source(output.inputs["Surface"]) == approximation_node(material)
+
+
 def follow(material):
-    """Updates the nodes of the material's approximation, and its look in Solid mode, from its settings."""
-    node, measured = approximation_node(material), velour_node(material)
-    if node is None or measured is None or not _can_write(material, node.node_tree):
+    """Updates what Blender's nodes cannot: the material in Solid mode, and inputs for its placement."""
+    node, values = velour_node(material), shown(material)
+    if values is None or node.group is None or not _is_local(material):
         return
-    if node.node_tree.users > 1:  # a copy of the material uses it, too
-        node.node_tree = node.node_tree.copy()
-    settings, group = measured.velour, node.node_tree
-    fitted = json.loads(group.velour.fitted)
-    look = Look(gain(settings), settings.roughness)
-    shown = with_look(fitted, look)
-    nodes = {part.bl_idname: part for part in group.nodes}
-    for idname, show in _SHOW.items():
-        if idname in nodes:
-            show(nodes[idname], shown, settings.placement, look)
-    material.diffuse_color = _rgba(dyed(fitted["color"], look.gain))
-    material.metallic, material.roughness = (shown["principled"][k] for k in ("metallic", "roughness"))
+    _set(material, "diffuse_color", (*values.color, 1.0))
+    for name in ("metallic", "roughness"):
+        _set(material, name, values.principled[name])
+    for each in measured_nodes(material.node_tree):
+        _place(each)
 
 
-def _show_principled(shader, shown, placement, _look):
-    for name, value in shown["principled"].items():
-        socket = first_input(shader, *_SOCKETS[name])
-        if hasattr(socket.default_value, "__len__"):
-            socket.default_value = _rgba(value)
-        elif name != "specular_tint":
-            socket.default_value = value
-    shader.inputs["IOR"].default_value = 1.5  # levels are fitted for it; Blender 4.0's default is 1.45
-    turns = placement.rotation / math.tau + (0.25 if shown["turned"] else 0.0)
-    shader.inputs["Anisotropic"].default_value = shown["anisotropic"]
-    shader.inputs["Anisotropic Rotation"].default_value = turns % 1.0 if shown["anisotropic"] > 0 else 0.0
+def _place(node):
+    """Writes the placement of a MeasuredNode into its inputs, and into nodes that name its UV map."""
+    group, placement = node.group, node.velour.placement
+    if group.id_data.library is not None:
+        return
+    if "Repeats" in group.inputs:
+        repeats = _repeats(placement, fitted(group.node_tree)["tile_metres"])
+        _set(group.inputs["Repeats"], "default_value", (*repeats, 1.0))
+        _set(group.inputs["Offset"], "default_value", (*placement.offset, 0.0))
+    if group.node_tree.library is None:
+        for part in group.node_tree.nodes:
+            if part.bl_idname in ("ShaderNodeTangent", "ShaderNodeNormalMap"):
+                _set(part, "uv_map", placed_by(node))
 
 
-def _show_base(base, shown, _placement, _look):
-    base.inputs["Color"].default_value = _rgba(shown["diffuse"])
+def socket_of(shader, name):
+    """The socket of a Principled BSDF by the library's name."""
+    return first_input(shader, *_SOCKETS[name])
 
 
-def _show_dye(dye, _shown, _placement, look):
-    colors = [socket for socket in dye.inputs if socket.enabled and socket.type == "RGBA"]
-    colors[1].default_value = _rgba(look.gain)
+def set_value(shader, name, value):
+    socket = socket_of(shader, name)
+    if hasattr(socket.default_value, "__len__"):
+        socket.default_value = (*value, 1.0)
+    elif name != "specular_tint":  # a number with another meaning before Blender 4.0
+        socket.default_value = value
 
 
-def _show_uv_map(node, _shown, placement, _look):
-    node.uv_map = placement.uv_map
+def _repeats(placement, metres):
+    """Repeats per unit of texture coordinates. For real-size tiles that is 1 m, unless a density is set."""
+    if placement.mode == "REPEATS":
+        return tuple(placement.repeats)
+    entered = tuple(1e-3 * side for side in placement.tile_size)
+    sides = entered if min(entered) > 0 else metres or (1.0, 1.0)
+    density = placement.uv_density if min(placement.uv_density) > 0 else (1.0, 1.0)
+    return tuple(1.0 / (side * d) for side, d in zip(sides, density, strict=True))
 
 
-def _show_mapping(mapping, shown, placement, _look):
-    place(mapping, placement, shown["tile_metres"])
+def _set(owner, name, value):
+    """Sets a property only if it changes, since setting one updates the scene again."""
+    if not _is_same(value, getattr(owner, name)):
+        setattr(owner, name, value)
 
 
-def _show_turn(turn, _shown, placement, _look):
-    turn.inputs["Angle"].default_value = placement.rotation
+def _is_same(a, b):
+    if isinstance(a, str):
+        return a == b
+    return bool(np.allclose(a, b, rtol=0, atol=_NEGLIGIBLE))
 
 
-# A group has at most one node of each type.
-_SHOW = {
-    "ShaderNodeBsdfPrincipled": _show_principled,
-    "ShaderNodeBsdfDiffuse": _show_base,
-    "ShaderNodeMix": _show_dye,
-    "ShaderNodeUVMap": _show_uv_map,
-    "ShaderNodeTangent": _show_uv_map,
-    "ShaderNodeNormalMap": _show_uv_map,
-    "ShaderNodeMapping": _show_mapping,
-    "ShaderNodeVectorRotate": _show_turn,
-}
+def _is_local(material):
+    return material.library is None and material.override_library is None
 
 
-def _can_write(material, group):
-    """Whether both are local, and the group stores its fitted values."""
-    libraries = material.library, material.override_library, group.library
-    return not any(libraries) and group.velour.fitted != ""
+def _placement_changed(tree):
+    """Called with the tree that contains the node whose placement has changed."""
+    for node in measured_nodes(tree):
+        _place(node)
 
 
-def _follow_tree(tree):
-    material = next((material for material in bpy.data.materials if material.node_tree == tree), None)
-    if material is not None:
-        follow(material)
+def _uv_map_changed(placement):
+    """Sets the UV Map node that is linked to the node of a placement."""
+    for node in measured_nodes(placement.id_data):
+        linked = linked_uv_map(node)
+        if linked is not None and node.velour.placement == placement:
+            linked.uv_map = placement.uv_map
 
 
 def attach():
-    changed.listeners.append(_follow_tree)
+    changed.listeners.append(_placement_changed)
+    changed.uv_map_listeners.append(_uv_map_changed)
 
 
 def detach():
-    changed.listeners.remove(_follow_tree)
+    changed.uv_map_listeners.remove(_uv_map_changed)
+    changed.listeners.remove(_placement_changed)
 
 
 def _working(color):
     """Converts linear Rec. 709 to Blender's scene-linear space."""
     return [float(c) for c in rec709_to_working() @ color]
-
-
-def _rgba(color):
-    return (*color, 1.0)

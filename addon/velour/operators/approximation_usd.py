@@ -8,7 +8,9 @@ import os
 import numpy as np
 
 from ..export.color import working_to_rec709
-from ..export.nodes import approximation_node, first_input
+from ..export.nodes import approximation_node
+from .approximation_group import images
+from .approximation_look import is_surface, shown
 from .approximation_uv import chain
 
 _READER = "Velour_UV"
@@ -19,15 +21,15 @@ def write(context, material, usd_material):
 
     context: Blender's export context. Returns whether anything was written.
     """
-    node = approximation_node(material)
-    if node is None or _has_surface(usd_material):
+    values = shown(material) if material.node_tree else None
+    if values is None or not is_surface(material) or _has_surface(usd_material):
         return False
-    parts = {part.bl_idname: part for part in node.node_tree.nodes}
+    tree = approximation_node(material).node_tree
     shader = _add(usd_material, "Velour_Approximation", "UsdPreviewSurface")
-    for name, (kind, value) in _inputs(parts).items():
+    for name, (kind, value) in _inputs(values).items():
         shader.CreateInput(name, _type(kind)).Set(value)
-    if "ShaderNodeMapping" in parts:
-        _write_images(context, usd_material, shader, parts)
+    if images(tree):
+        _write_images(context, usd_material, shader, tree, values)
     output = shader.CreateOutput("surface", _type("Token"))
     usd_material.CreateSurfaceOutput().ConnectToSource(output)
     return True
@@ -50,27 +52,24 @@ def _has_surface(usd_material):
     return bool(usd_material.GetSurfaceOutput()) and usd_material.GetSurfaceOutput().HasConnectedSource()
 
 
-def _inputs(parts):
+def _inputs(values):
     """Constant inputs of the preview surface: type and value by name."""
-    principled, base = parts["ShaderNodeBsdfPrincipled"], parts.get("ShaderNodeBsdfDiffuse")
-    color = working_to_rec709(principled.inputs["Base Color"].default_value)
-    values = {
+    principled = values.principled
+    color = working_to_rec709(principled["base_color"])
+    inputs = {
         "diffuseColor": ("Color3f", color),
-        "metallic": ("Float", principled.inputs["Metallic"].default_value),
-        "roughness": ("Float", principled.inputs["Roughness"].default_value),
-        "ior": ("Float", _ior(first_input(principled, "Specular IOR Level", "Specular").default_value)),
-        "clearcoat": ("Float", first_input(principled, "Coat Weight", "Clearcoat").default_value),
-        "clearcoatRoughness": (
-            "Float",
-            first_input(principled, "Coat Roughness", "Clearcoat Roughness").default_value,
-        ),
+        "metallic": ("Float", principled["metallic"]),
+        "roughness": ("Float", principled["roughness"]),
+        "ior": ("Float", _ior(principled["specular"])),
+        "clearcoat": ("Float", principled["coat"]),
+        "clearcoatRoughness": ("Float", principled["coat_roughness"]),
     }
-    if base is not None:  # sum of a metal and a diffuse surface: only this workflow supports both
-        del values["metallic"], values["ior"]
-        values["useSpecularWorkflow"] = ("Int", 1)
-        values["specularColor"] = ("Color3f", color)
-        values["diffuseColor"] = ("Color3f", working_to_rec709(base.inputs["Color"].default_value))
-    return values
+    if max(values.diffuse) > 0:  # sum of a metal and a diffuse surface: only this workflow supports both
+        del inputs["metallic"], inputs["ior"]
+        inputs["useSpecularWorkflow"] = ("Int", 1)
+        inputs["specularColor"] = ("Color3f", color)
+        inputs["diffuseColor"] = ("Color3f", working_to_rec709(values.diffuse))
+    return inputs
 
 
 def _ior(level):
@@ -79,10 +78,10 @@ def _ior(level):
     return float((1 + f0) / (1 - f0))
 
 
-def _write_images(context, usd_material, shader, parts):
-    def add(name, node, color_space, scale):
+def _write_images(context, usd_material, shader, tree, values):
+    def add(name, image, color_space, scale):
         texture = _add(usd_material, name, "UsdUVTexture")
-        texture.CreateInput("file", _type("Asset")).Set(_exported(context, node.image))
+        texture.CreateInput("file", _type("Asset")).Set(_exported(context, image))
         texture.CreateInput("sourceColorSpace", _type("Token")).Set(color_space)
         for wrap in ("wrapS", "wrapT"):
             texture.CreateInput(wrap, _type("Token")).Set("repeat")
@@ -90,29 +89,29 @@ def _write_images(context, usd_material, shader, parts):
         texture.CreateInput("st", _type("Float2")).ConnectToSource(uvs)
         return texture, texture.CreateOutput("rgb", _type("Float3"))
 
-    uvs = _write_uvs(usd_material, parts)
-    picture, dye = _colors(parts["ShaderNodeMix"])
-    texture, color = add("Velour_Color", _behind(picture), "sRGB", working_to_rec709(dye.default_value))
+    uvs = _write_uvs(usd_material, values.placed)
+    pictures = images(tree)
+    texture, color = add("Velour_Color", pictures[0], "sRGB", working_to_rec709(values.gain))
     shader.CreateInput("diffuseColor", _type("Color3f")).ConnectToSource(color)
-    if parts["ShaderNodeBsdfPrincipled"].inputs["Alpha"].is_linked:
+    principled = next(node for node in tree.nodes if node.bl_idname == "ShaderNodeBsdfPrincipled")
+    if principled.inputs["Alpha"].is_linked:
         alpha = texture.CreateOutput("a", _type("Float"))
         shader.CreateInput("opacity", _type("Float")).ConnectToSource(alpha)
-    if "ShaderNodeVectorRotate" in parts:
-        node = _behind(parts["ShaderNodeVectorRotate"].inputs["Vector"])
-        texture, normals = add("Velour_Normals", node, "raw", (2.0, 2.0, 2.0))
+    if len(pictures) > 1:
+        texture, normals = add("Velour_Normals", pictures[1], "raw", (2.0, 2.0, 2.0))
         texture.CreateInput("bias", _type("Float4")).Set((-1.0, -1.0, -1.0, 0.0))
         shader.CreateInput("normal", _type("Normal3f")).ConnectToSource(normals)
 
 
-def _write_uvs(usd_material, parts):
+def _write_uvs(usd_material, placed):
     """Adds the nodes that place the image; returns the output of the last one."""
     from pxr import Tf
 
     reader = _add(usd_material, _READER, "UsdPrimvarReader_float2")
-    name = parts["ShaderNodeUVMap"].uv_map
+    name = placed.uv_map
     reader.CreateInput("varname", _type("String")).Set(Tf.MakeValidIdentifier(name) if name else "st")
     output = reader.CreateOutput("result", _type("Float2"))
-    for number, step in enumerate(chain(parts["ShaderNodeMapping"])):
+    for number, step in enumerate(chain(placed)):
         transform = _add(usd_material, f"Velour_Placement_{number + 1}", "UsdTransform2d")
         transform.CreateInput("in", _type("Float2")).ConnectToSource(output)
         transform.CreateInput("rotation", _type("Float")).Set(step.degrees)
@@ -120,16 +119,6 @@ def _write_uvs(usd_material, parts):
         transform.CreateInput("translation", _type("Float2")).Set(step.translation)
         output = transform.CreateOutput("result", _type("Float2"))
     return output
-
-
-def _colors(mix):
-    """Color sockets of a multiplication: the image's, and its factor."""
-    return [socket for socket in mix.inputs if socket.enabled and socket.type == "RGBA"]
-
-
-def _behind(socket):
-    """The node linked to a socket."""
-    return socket.links[0].from_node
 
 
 def _exported(context, image):

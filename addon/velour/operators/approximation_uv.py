@@ -1,4 +1,4 @@
-"""Placement by an approximation's Mapping node as transforms that other programs support."""
+"""Placement of an approximation's tiles as transforms that other programs support."""
 
 import math
 from typing import NamedTuple
@@ -12,14 +12,10 @@ class Step(NamedTuple):
     translation: tuple
 
 
-def chain(mapping):
-    """One Step if possible; two if tiles are rotated and not square.
-
-    The Mapping node has type Texture: inverse translation, inverse rotation, division by its scale.
-    """
-    x, y, _ = mapping.inputs["Location"].default_value
-    angle = 0.0 - mapping.inputs["Rotation"].default_value[2]
-    repeats = tuple(1.0 / side for side in mapping.inputs["Scale"].default_value[:2])
+def chain(placed):
+    """One Step if possible; two if tiles are rotated and not square. `placed`: approximation_look.Placed."""
+    (x, y), repeats = placed.offset, placed.repeats
+    angle = 0.0 - placed.rotation
     moved = _turned((0.0 - x, 0.0 - y), angle)
     if angle == 0 or math.isclose(*repeats, rel_tol=1e-6):
         return (Step(repeats, math.degrees(angle), _scaled(moved, repeats)),)

@@ -99,6 +99,7 @@ class AskedFit:
             raise ExportError(
                 f"Material '{material.name}': no BTF is chosen; use File > Import > Measured Material."
             )
+        measured.refuse_linked_group(material, node)
         path = _normal(absolute_path(node.velour.measurement))
         return Chosen(path, node.velour.btf, material=material)
 

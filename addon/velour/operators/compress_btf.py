@@ -86,30 +86,30 @@ class VELOUR_OT_compress_btf(AskedFit, MakesModel, bpy.types.Operator):
             )
         return None
 
+    def _refitted(self, context):
+        return super()._refitted(context) if self.material else None
+
     def _remember(self, image):
         """Stores the model for the tile's panel."""
         owner = self._owner.take() if self._owner else None
         if owner is not None:
             owner.velour.model = image
 
-    def _wants_approximation(self):
-        return self._target is None or super()._wants_approximation()
-
     def _put(self):
         if self._fit is not None:
             remember(Path(cache_folder()), self._fit, self._seconds)
-        material = self._put_anew() if self._target else self._put_new()
+        material, node = self._put_anew() if self._target else self._put_new()
         if material is not None:
-            self._put_approximation(material)
+            self._put_approximation(material, node)
             self._say_what_it_is(material)
         return {"FINISHED"}
 
     def _put_anew(self):
-        """Puts the refitted model; returns the material if it still exists."""
-        material, node = measured.put_model(self._data, self._target, self.report)
+        """Puts the refitted model; returns the material and its node, or (None, None) if they are gone."""
+        material, node = measured.put_model(self._data, self._target, self.report, self.users)
         if node is not None:
             measured.after_fit(material, node, self._read_file, self._digest, self.report)
-        return material
+        return material, node
 
     def _put_new(self):
         material = measured.new_material(self._subject)
@@ -122,7 +122,7 @@ class VELOUR_OT_compress_btf(AskedFit, MakesModel, bpy.types.Operator):
             self._slot.put(material, self.report)
         else:
             material.use_fake_user = True
-        return material
+        return material, node
 
     def _say_what_it_is(self, material):
         report = self._report

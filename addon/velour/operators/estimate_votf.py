@@ -6,7 +6,6 @@ from ..core.outline_size import Made, outline_text, probes
 from ..core.read_job import ReadJob
 from ..export.files import StoredFile
 from ..native import votf_job
-from .approximation_group import is_wanted
 from .asked_outline import AskedOutline, export_structure, outlined_as
 from .background_job import JobsInSteps
 
@@ -23,7 +22,6 @@ class VELOUR_OT_estimate_votf(AskedOutline, JobsInSteps, bpy.types.Operator):
         asked = self._asked(context)
         self._subject, self._texels = asked.material.name, asked.texels
         self._key = outlined_as(asked.material, asked.tile.owner, asked.texels)
-        self._approximated = is_wanted(asked.material)
         scene, options, _notes = export_structure(context, asked)
         model = StoredFile.of(asked.node.image, f"Material '{asked.material.name}'")
         self._steps = _Probes(scene, model, asked.texels, options)
@@ -33,7 +31,7 @@ class VELOUR_OT_estimate_votf(AskedOutline, JobsInSteps, bpy.types.Operator):
     def _finish(self):
         if self._advance():
             return None
-        text = outline_text(self._texels, self._steps.made, self._approximated)
+        text = outline_text(self._texels, self._steps.made)
         state = bpy.context.window_manager.velour
         state.outline_estimate, state.outline_estimated = text, self._key
         self.report({"INFO"}, f"'{self._subject}': {text}")

@@ -50,6 +50,7 @@ class VELOUR_OT_fit(MakesModel, bpy.types.Operator):
             path = absolute_path(node.velour.measurement)
             call = f"bpy.ops.velour.compress_btf(material={material.name!r})"
             raise ExportError(f"{owner}: {path} is a BTF; fit it with {call}, or with Fit in its panel.")
+        measured.refuse_linked_group(material, node)
         self._target = JobTarget(material, node)
         self._subject = material.name
         settings = self._settings(node)
@@ -82,10 +83,10 @@ class VELOUR_OT_fit(MakesModel, bpy.types.Operator):
 
     def _put(self):
         data, info = self._data, self._info
-        material, node = measured.put_model(data, self._target, self.report)
+        material, node = measured.put_model(data, self._target, self.report, self.users)
         if node is None:
             return {"FINISHED"}
-        self._put_approximation(material)
+        self._put_approximation(material, node)
         measured.after_fit(material, node, self._read_file, self._digest, self.report)
         for warning in panel_warnings(info):
             self.report({"WARNING"}, f"Material '{material.name}': {warning}")

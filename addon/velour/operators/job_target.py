@@ -4,6 +4,8 @@ import uuid
 
 import bpy
 
+from ..export.nodes import all_measured
+
 _MOST_MARKS = 4  # per node; more than there are running and queued jobs
 _LISTS = {bpy.types.Object: "objects", bpy.types.Collection: "collections", bpy.types.Scene: "scenes"}
 
@@ -14,7 +16,10 @@ def key_of(datablock):
 
 
 class JobTarget:
-    """A measured material's node, found by a mark on it or by names, since undo may replace any datablock."""
+    """A measured material's node, found by a mark on it or by names, since undo may replace any datablock.
+
+    `node`: MeasuredNode.
+    """
 
     def __init__(self, material, node):
         self.material_name, self._node_name = material.name, node.name
@@ -28,14 +33,14 @@ class JobTarget:
             return material, node
         # Undo to a state before the mark removes it.
         material = bpy.data.materials.get(self.material_name)
-        node = material.node_tree.nodes.get(self._node_name) if material and material.node_tree else None
+        node = next((node for node in all_measured(material) if node.name == self._node_name), None)
         return (material, node) if node is not None else (None, None)
 
     def _marked(self):
         """Marked nodes. Copies have the mark as well; the original comes first if its name is unchanged."""
         for material in sorted(bpy.data.materials, key=lambda m: m.name != self.material_name):
-            for node in material.node_tree.nodes if material.node_tree else ():
-                if node.bl_idname == "ShaderNodeTexImage" and self._mark in node.velour.job.split():
+            for node in all_measured(material):
+                if self._mark in node.velour.job.split():
                     yield material, node
 
 

@@ -12,6 +12,7 @@ from ..core.measurement_files import file_filter
 from ..core.read_job import ReadJob, check
 from ..export import ExportError
 from ..export.files import sha256
+from ..export.nodes import velour_node
 from ..export.other_context import other_context
 from ..native import VelourError, library
 from . import measured
@@ -27,6 +28,7 @@ class _Found(NamedTuple):
     path: str
     kind: str
     digest: str  # SHA-256
+    info: dict
     data: bytes | None  # contents of a model file; None for other kinds
 
     @property
@@ -40,12 +42,12 @@ def found_file(path):
     if info["kind"] == "observation":
         raise ExportError(f"{path} is a scene usage file; choose a model or a measurement.")
     if info["kind"] != "model":
-        return _Found(path, info["kind"], info["sha256"], None)
+        return _Found(path, info["kind"], info["sha256"], info, None)
     try:
         data = read_bytes(path)
     except OSError as error:
         raise ExportError(f"{path} cannot be read ({error.strerror}); check the file.") from error
-    return _Found(path, info["kind"], sha256(data), data)
+    return _Found(path, info["kind"], sha256(data), info, data)
 
 
 def _find(paths):
@@ -175,7 +177,7 @@ class VELOUR_OT_load_material(OneJob, bpy.types.Operator, ImportHelper):
         else:
             image = measured.linked_model(file.path, file.digest)
         material = measured.new_material(file.name)
-        measured.ensure_node(material).image = image
+        measured.set_model(material, velour_node(material), image, self.report, info=file.info)
         return material
 
     def _run_all(self, jobs):

@@ -8,10 +8,9 @@ import bpy
 from ..core.measurement_files import INDICES
 from ..export import ExportError
 from ..export.files import StoredFile, absolute_path, sha256
-from ..export.nodes import active_output, velour_node
-from . import approximation_group
-
-NODE_NAME = "Velour"
+from ..export.nodes import velour_node
+from . import approximation_group, measured_group
+from .convert import convert
 
 
 def find_material(context, name):
@@ -62,30 +61,30 @@ def refuse_linked(material):
         )
 
 
+def refuse_linked_group(material, node):
+    """Raises ExportError if the node group of a MeasuredNode is linked."""
+    tree = node.group and node.group.node_tree
+    if tree and tree.library is not None:
+        raise ExportError(
+            f"Material '{material.name}': its node group '{tree.name}' is linked from {tree.library.filepath}"
+            " and cannot be changed; make it local with the icon beside its name in the Material tab, or"
+            " change it in that file."
+        )
+
+
 def new_material(name):
-    """Creates a material with a measured node and the group that approximates it."""
+    """Creates a material whose surface is a measured node without a model."""
     material = bpy.data.materials.new(name)
     if material.node_tree is None:
         material.use_nodes = True
     material.node_tree.nodes.clear()
-    approximation_group.put(material)
-    ensure_node(material)
+    measured_group.add(material)
     return material
 
 
 def ensure_node(material):
-    """The material's measured node, which is created and enabled if needed."""
-    if material.node_tree is None:
-        material.use_nodes = True
-    node = velour_node(material)
-    if node is None:
-        node = material.node_tree.nodes.new("ShaderNodeTexImage")
-        node.name = node.label = NODE_NAME
-        node.location = _free_place(material.node_tree)
-        node.velour.enabled = True
-        # Cycles reads the images of all nodes that are not muted, linked or not; models are not images.
-        node.mute = True
-    return node
+    """The material's measured node, which is added as its surface if needed."""
+    return velour_node(material) or measured_group.add(material)
 
 
 def file_image(path, name=None):
@@ -108,26 +107,37 @@ def packed_model(data, name, digest=None):
     return image
 
 
-def put_model(data, target, report):
+def put_model(data, target, report, users="SINGLE"):
     """Puts a model into a new image of a JobTarget; the previous image is kept, so that undo restores it.
 
-    Returns the material and the node; (None, None) if they are gone, but the image is kept."""
+    users: as for set_model(). Returns the material and the node; (None, None) if they are gone, but the image
+    is kept."""
     material, node = target.find()
     image = packed_model(data, material.name if material else target.material_name)
     if node is None:
         image.use_fake_user = True
         report({"WARNING"}, f"The material no longer exists; its model is kept as image '{image.name}'.")
         return None, None
-    set_model(node, image, report)
-    return material, node
+    return material, set_model(material, node, image, report, users)
 
 
-def set_model(node, image, report):
-    """Sets another model on a material's node, and disables its scene model."""
+def set_model(material, node, image, report, users="SINGLE", info=None):
+    """Sets another model on a material's node, and disables its scene model; returns the node.
+
+    users: materials that share the node's group: "SINGLE", this one alone gets the model, or "ALL". info: the
+    model's, which determines the node's inputs; None: they are not changed."""
+    refuse_linked_group(material, node)
+    if node.group is None:
+        node = convert(material)
+    if users == "SINGLE":
+        node = measured_group.make_single_user(node)
     node.image = image
+    if info is not None:
+        approximation_group.put_inputs(node, material, info)
     if node.velour.use_scene_model:
         node.velour.use_scene_model = False
         report({"INFO"}, "The scene model belongs to the previous model and was disabled; fit it again.")
+    return node
 
 
 def linked_model(path, digest):
@@ -205,9 +215,3 @@ def _data_space(image):
     """The color space of this configuration that leaves values unchanged."""
     names = image.colorspace_settings.bl_rna.properties["name"].enum_items.keys()
     return next((name for name in ("Non-Color", "Raw") if name in names), image.colorspace_settings.name)
-
-
-def _free_place(tree):
-    output = active_output(tree, "ShaderNodeOutputMaterial")
-    x, y = output.location if output else (0, 0)
-    return x, y + 280

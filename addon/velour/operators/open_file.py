@@ -11,6 +11,7 @@ from . import measured
 from .job_target import JobTarget
 from .load_material import found_file
 from .reads_first import ReadsFirst
+from .shared_group import ModelUsers
 
 _NAMES = {
     "model": "a model",
@@ -22,7 +23,8 @@ _MODELS = ".velour"
 
 
 class _OpensFile(ReadsFirst, ImportHelper):
-    """Operator mixin. `_kinds`: accepted kinds of files; `_put(node, file)` takes the file that was read."""
+    """Operator mixin. `_kinds`: accepted kinds of files; `_put(material, node, file)` takes the file
+    that was read."""
 
     filepath: StringProperty(name="File", subtype="FILE_PATH", options={"SKIP_SAVE"})
     material: StringProperty(
@@ -64,6 +66,8 @@ class _OpensFile(ReadsFirst, ImportHelper):
                 f"Material '{material.name}' is linked from another file; choose its files there or make it"
                 " local."
             )
+        if "model" in self._kinds:
+            measured.refuse_linked_group(material, node)
         self._target, self._subject = JobTarget(material, node), material.name
         return lambda: self._refusing_others(found_file(path))
 
@@ -74,11 +78,11 @@ class _OpensFile(ReadsFirst, ImportHelper):
         return file
 
     def _use(self, _context, file):
-        _material, node = self._target.find()
+        material, node = self._target.find()
         if node is None:
             self.report({"WARNING"}, "The material no longer exists, so the file was not used.")
             return {"CANCELLED"}
-        self._put(node, file)
+        self._put(material, node, file)
         return {"FINISHED"}
 
 
@@ -92,7 +96,7 @@ class VELOUR_OT_open_measurement(_OpensFile, bpy.types.Operator):
 
     _kinds = ("measurement", "btf")
 
-    def _put(self, node, file):
+    def _put(self, material, node, file):
         node.velour.measurement = measured.measurement_image(file.path, file.digest)
 
 
@@ -110,14 +114,14 @@ class _OpensModel(_OpensFile):
         return measured.linked_model(file.path, file.digest)
 
 
-class VELOUR_OT_open_model(_OpensModel, bpy.types.Operator):
+class VELOUR_OT_open_model(ModelUsers, _OpensModel, bpy.types.Operator):
     bl_idname = "velour.open_model"
     bl_label = "Open Model"
     bl_description = "Choose the file of a fitted model (.velour)"
     bl_options = {"UNDO"}
 
-    def _put(self, node, file):
-        measured.set_model(node, self._image(file), self.report)
+    def _put(self, material, node, file):
+        measured.set_model(material, node, self._image(file), self.report, self.users, file.info)
 
 
 class VELOUR_OT_open_scene_model(_OpensModel, bpy.types.Operator):
@@ -126,5 +130,5 @@ class VELOUR_OT_open_scene_model(_OpensModel, bpy.types.Operator):
     bl_description = "Choose the file of a model that was fitted for a scene (.velour)"
     bl_options = {"UNDO"}
 
-    def _put(self, node, file):
+    def _put(self, material, node, file):
         node.velour.scene_model = self._image(file)

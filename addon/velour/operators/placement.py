@@ -5,6 +5,7 @@ from bpy.props import StringProperty
 
 from ..export import ExportError
 from ..export.files import StoredFile
+from ..export.measured_look import constant_look
 from ..export.nodes import velour_node
 from ..export.placement import Tile
 from ..export.placement_report import report_on, uv_density_on
@@ -45,7 +46,8 @@ class PlacementOperator(ReadsFirst):
         obj, material = bpy.data.objects.get(obj_key), bpy.data.materials.get(material_key)
         if obj is None or velour_node(material) is None:
             raise ExportError(f"The object or its material '{self._subject}' no longer exists.")
-        tile = Tile.of(material, info)
+        node = velour_node(material)
+        tile = Tile.of(material, node, constant_look(node), info)
         if tile is None:
             raise ExportError(f"Material '{material.name}' is uniform and has no tiles to place.")
         self._use_on(context.evaluated_depsgraph_get(), obj, material, tile)

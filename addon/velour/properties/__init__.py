@@ -19,6 +19,7 @@ _POINTERS = (
     (bpy.types.Scene, VelourRenderSettings, {"LIBRARY_OVERRIDABLE"}),
     (bpy.types.ViewLayer, VelourLayerSettings, {"LIBRARY_OVERRIDABLE"}),
     (bpy.types.ShaderNodeTexImage, VelourMaterialSettings, {"LIBRARY_OVERRIDABLE"}),
+    (bpy.types.ShaderNodeGroup, VelourMaterialSettings, {"LIBRARY_OVERRIDABLE"}),
     (bpy.types.ShaderNodeTree, VelourApproximationState, {"LIBRARY_OVERRIDABLE"}),
     (bpy.types.Image, VelourFileSettings, {"LIBRARY_OVERRIDABLE"}),
     (bpy.types.Object, VelourTileSettings, {"LIBRARY_OVERRIDABLE"}),

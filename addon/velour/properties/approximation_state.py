@@ -1,4 +1,4 @@
-"""State of a native node group that approximates a measured material."""
+"""State of the nodes that approximate a measured material, in its node group."""
 
 import bpy
 from bpy.props import BoolProperty, FloatProperty, FloatVectorProperty, StringProperty
@@ -13,7 +13,7 @@ class VelourApproximationState(bpy.types.PropertyGroup):
 
     saved_by: saved_by()
     is_approximation: BoolProperty()
-    fitted: StringProperty()  # JSON from operators/approximation_look; empty: made by an older Velour
+    fitted: StringProperty()  # JSON from operators/approximation_look
     model: StringProperty()  # SHA-256 of the model's file; empty: no model yet
     relative_l2: FloatProperty(default=-1.0)
     by_view_angle: FloatVectorProperty(size=len(VIEW_ANGLES), default=(-1.0,) * len(VIEW_ANGLES))

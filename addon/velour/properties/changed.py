@@ -2,6 +2,7 @@
 
 # Other modules register their callbacks here.
 listeners = []  # called with the node tree that the setting belongs to
+uv_map_listeners = []  # called with the placement, before those
 period_listeners = []  # called with the object or collection
 
 
@@ -15,6 +16,13 @@ def period_changed(settings, context):
     changed(settings, context)
     for listener in period_listeners:
         listener(settings.id_data)
+
+
+def uv_map_changed(settings, context):
+    """Callback for the UV map of a placement."""
+    for listener in uv_map_listeners:
+        listener(settings)
+    look_changed(settings, context)
 
 
 def look_changed(settings, context):

@@ -3,7 +3,7 @@
 import bpy
 from bpy.props import EnumProperty, FloatProperty, FloatVectorProperty, StringProperty
 
-from .changed import look_changed
+from .changed import look_changed, uv_map_changed
 
 _OVERRIDE = {"LIBRARY_OVERRIDABLE"}
 
@@ -68,7 +68,7 @@ class VelourPlacementSettings(bpy.types.PropertyGroup):
     uv_map: StringProperty(
         name="UV Map",
         description="Name of the UV map that places the material. Empty: the active render UV map",
-        update=look_changed,
+        update=uv_map_changed,
         override=_OVERRIDE,
     )
     rotation: FloatProperty(

@@ -37,13 +37,6 @@ class VELOUR_MATERIAL_PT_approximation(MaterialPanel, bpy.types.Panel):
             draw_sentence(
                 context, layout, "The approximation is of another model. Press Refresh.", icon="ERROR"
             )
-        elif not state.fitted:
-            draw_sentence(
-                context,
-                layout,
-                "The approximation is from an older Velour. Press Refresh, so that it follows Tint and"
-                " Placement.",
-            )
         layout.operator(VELOUR_OT_approximate.bl_idname, text="Refresh", icon="FILE_REFRESH")
 
 

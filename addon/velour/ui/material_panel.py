@@ -4,15 +4,17 @@ import bpy
 
 from ..core.model_warnings import gain_warning, roughness_reason, tolerance_words
 from ..engine.engine import VelourRenderEngine
-from ..export.measured_materials import gain
+from ..export.measured_look import INPUTS, constant_look
 from ..export.newer import has_nodes
-from ..export.nodes import active_output, velour_node
+from ..export.nodes import active_output, former_node, velour_node
 from ..export.notes import Notes
 from ..export.objects import GEOMETRY
 from ..export.shaders import surface_layers
 from ..operators.accept_file import VELOUR_OT_accept_file
 from ..operators.add_material import VELOUR_OT_add_material
+from ..operators.approximation_group import is_editable
 from ..operators.asked_fit import refitted_as
+from ..operators.convert import VELOUR_OT_convert_materials
 from ..operators.fit import VELOUR_OT_fit
 from ..operators.load_material import VELOUR_OT_load_material
 from ..operators.measured import is_btf
@@ -23,6 +25,8 @@ from .preset_grid import draw_presets
 from .progress import draw_progress
 from .summaries import is_changed, measurement_summary, model_summary
 from .text import draw_sentence
+
+_LOOK = ("Tint", "Exposure", "Roughness Offset")
 
 
 class MaterialPanel:
@@ -56,12 +60,16 @@ class VELOUR_MATERIAL_PT_measured(MaterialPanel, bpy.types.Panel):
                     draw_presets(context, layout)
             return
         settings = node.velour
+        if node.group is not None:
+            layout.template_ID(node.group, "node_tree", text="Node Group")
         layout.template_ID(
             settings, "measurement", open=VELOUR_OT_open_measurement.bl_idname, text="Measurement"
         )
         if settings.measurement is not None:
             _draw_measurement(context, layout, settings)
-        layout.template_ID(node, "image", open=VELOUR_OT_open_model.bl_idname, text="Model")
+        if node.group is None:
+            _draw_former(context, layout, context.material)
+        layout.template_ID(node.texture, "image", open=VELOUR_OT_open_model.bl_idname, text="Model")
         info = model_summary(node.image) if node.image is not None else None
         info = info if isinstance(info, dict) else {}
         if settings.measurement is not None and is_btf(settings.measurement):
@@ -69,9 +77,10 @@ class VELOUR_MATERIAL_PT_measured(MaterialPanel, bpy.types.Panel):
         elif "texels" in info:  # there is no BTF to fit
             draw_progress(context, layout)
         else:
-            _draw_brdf(context, layout, settings, info)
+            _draw_brdf(context, layout, node, info)
         layout.column().prop(settings, "use_reference")
-        _draw_look(context, layout, settings, info)
+        if node.group is not None:
+            _draw_look(context, layout, node, info)
 
 
 def _draw_measurement(context, layout, settings):
@@ -97,14 +106,25 @@ def _draw_btf(context, layout, settings):
     draw_progress(context, layout)
 
 
-def _draw_brdf(context, layout, settings, info):
+def _draw_former(context, layout, material):
+    box = layout.box()
+    sentence = (
+        "This material is of the former layout. Convert it to edit its look and to mix it with shaders."
+    )
+    draw_sentence(context, box, sentence, icon="INFO")
+    if is_editable(material):
+        box.operator(VELOUR_OT_convert_materials.bl_idname, icon="NODETREE").material = material.name
+
+
+def _draw_brdf(context, layout, node, info):
+    settings = node.velour
     _draw_fit_settings(layout.column(align=True), settings)
     draw_sentence(context, layout, tolerance_words(settings.tolerance), icon="INFO")
     draw_progress(context, layout)
     layout.operator(VELOUR_OT_fit.bl_idname, icon="PLAY")
     row = layout.row()
     row.active = info.get("model", "scattered") == "scattered"
-    row.prop(settings, "neighbors")
+    row.prop(node.texture.velour, "neighbors")
 
 
 def _draw_fit_settings(column, settings):
@@ -119,24 +139,33 @@ def _draw_fit_settings(column, settings):
     column.prop(settings, "use_all_data")
 
 
-def _draw_look(context, layout, settings, info):
-    """Draws the settings of a measured material's look."""
-    column = layout.column(align=True)
-    column.prop(settings, "tint")
-    column.prop(settings, "exposure")
-    reason = roughness_reason(info, settings.use_reference)
-    row = column.row()
-    row.active = reason is None
-    row.prop(settings, "roughness", slider=True)
-    if reason and settings.roughness > 0:
+def _draw_look(context, layout, node, info):
+    """Draws the inputs of the node that are a measured material's look."""
+    column, look = layout.column(align=True), constant_look(node)
+    reason = roughness_reason(info, node.velour.use_reference)
+    for name in _LOOK:
+        socket = node.group.inputs.get(name)
+        if socket is not None:
+            row = column.row()
+            row.active = reason is None or name != INPUTS["roughness"]
+            draw_input(row, socket)
+    if reason and look.roughness > 0:
         draw_sentence(context, layout, reason, icon="INFO")
-    sentence = gain_warning(info.get("albedo_max"), gain(settings))
+    sentence = gain_warning(info.get("albedo_max"), look.gain)
     if sentence:
         draw_sentence(context, layout, sentence, icon="ERROR")
 
 
+def draw_input(layout, socket):
+    """Draws an input of a node, whose value has no effect while it is linked."""
+    if socket.is_linked:
+        layout.label(text=f"{socket.name}: linked")
+    else:
+        layout.prop(socket, "default_value", text=socket.name)
+
+
 class VELOUR_MATERIAL_PT_surface(MaterialPanel, bpy.types.Panel):
-    # Replaces Blender's panel, which would be above Velour's. Edits a measured material's approximation.
+    # Replaces Blender's panel, which would be above Velour's.
 
     bl_label = "Surface"
 
@@ -146,7 +175,7 @@ class VELOUR_MATERIAL_PT_surface(MaterialPanel, bpy.types.Panel):
 
     def draw(self, context):
         layout, material = self.layout, context.material
-        if velour_node(material) is not None:
+        if former_node(material) is not None:
             layout.label(text="Approximation for Material Preview and other engines", icon="INFO")
         output = (
             active_output(material.node_tree, "ShaderNodeOutputMaterial") if has_nodes(material) else None
@@ -174,6 +203,6 @@ class VELOUR_MATERIAL_PT_notes(MaterialPanel, bpy.types.Panel):
 
 def _notes(material):
     notes = Notes()
-    if material is not None and velour_node(material) is None:
+    if material is not None:
         surface_layers(material, notes)
     return notes

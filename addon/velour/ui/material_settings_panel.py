@@ -2,10 +2,12 @@
 
 import bpy
 
-from ..export.nodes import velour_node
+from ..export.notes import Notes
+from ..export.shaders import as_measured, surface_layers
 from .layer_panels import LayerPanel
 
-# Settings of materials that are not measured; stored with Cycles, and available while it is enabled.
+# Settings of materials that are not one measured model alone; stored with Cycles, and available while it
+# is enabled.
 _OF_CYCLES = {
     "emission_sampling": "Emission Sampling",  # 3.5 and newer
     "sample_as_light": "Multiple Importance",  # before
@@ -27,7 +29,7 @@ class VELOUR_MATERIAL_PT_settings(LayerPanel, bpy.types.Panel):
         layout.use_property_split = True
         layout.prop(material, "pass_index")
         cycles = getattr(material, "cycles", None)
-        if velour_node(material) is None:
+        if as_measured(surface_layers(material, Notes())) is None:
             for name, text in _OF_CYCLES.items():
                 if hasattr(cycles, name):
                     layout.prop(cycles, name, text=text)

@@ -3,8 +3,9 @@
 import bpy
 
 from ..export.nodes import velour_node
+from ..export.uv_maps import linked_uv_map
 from ..operators.placement import VELOUR_OT_keep_uv_density
-from .material_panel import MaterialPanel
+from .material_panel import MaterialPanel, draw_input
 from .model_panel import draw_rows
 from .placement_summary import measured
 from .summaries import model_summary
@@ -24,15 +25,19 @@ class VELOUR_MATERIAL_PT_placement(MaterialPanel, bpy.types.Panel):
         layout, info = self.layout, _info(context)
         layout.use_property_split = True
         layout.use_property_decorate = False
-        settings = velour_node(context.material).velour.placement
+        node = velour_node(context.material)
+        settings = node.velour.placement
         if _has_tiles(info):
             layout.row().prop(settings, "mode", expand=True)
             if settings.mode == "REPEATS":
                 layout.column().prop(settings, "repeats")
             else:
                 _draw_real_size(layout, settings, info.get("tile_metres"), context.object)
-        _draw_uv_map(layout, settings, context.object)
-        layout.prop(settings, "rotation")
+        linked = linked_uv_map(node)
+        _draw_uv_map(layout, settings if linked is None else linked, context.object)
+        for name in ("Rotation", "Scale"):
+            if node.group is not None and name in node.group.inputs:
+                draw_input(layout, node.group.inputs[name])
         if _has_tiles(info):
             layout.column().prop(settings, "offset")
             layout.prop(settings, settings.scale_property)
@@ -52,12 +57,12 @@ def _has_tiles(info):
     return "texels" in info or "shell" in info
 
 
-def _draw_uv_map(layout, settings, obj):
-    """Draws the UV map, with a search field for meshes."""
+def _draw_uv_map(layout, owner, obj):
+    """Draws the UV map of the placement or of a UV Map node, with a search field for meshes."""
     if obj is not None and obj.type == "MESH":
-        layout.prop_search(settings, "uv_map", obj.data, "uv_layers", icon="GROUP_UVS")
+        layout.prop_search(owner, "uv_map", obj.data, "uv_layers", icon="GROUP_UVS", text="UV Map")
     else:
-        layout.prop(settings, "uv_map")
+        layout.prop(owner, "uv_map", text="UV Map")
 
 
 def _draw_real_size(layout, settings, own_metres, obj):

@@ -8,6 +8,7 @@ from typing import NamedTuple
 import bpy
 from bpy.app.handlers import persistent
 
+from ..export.measured_look import constant_look
 from ..export.nodes import velour_node
 from ..export.outline_report import OutlineReport, outline_report_on
 from ..export.placement import Tile
@@ -84,7 +85,7 @@ def _report_of(obj, material, scene):
     depsgraph = bpy.context.evaluated_depsgraph_get()
     if obj is None or not isinstance(info, dict) or depsgraph.scene != scene:
         return None
-    tile = Tile.of(material, info)
+    tile = Tile.of(material, node, constant_look(node), info)
     placement = _placement_of(depsgraph, obj, material, info, tile)
     if "shell" not in info:
         return Measured(placement)

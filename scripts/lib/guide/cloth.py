@@ -19,8 +19,10 @@ def steps(desk, _measurement, _facts):
         _add_cloth()
         bpy.ops.velour.load_material(filepath=str(desk.folder.parent / "tile/weave.velour"))
     yield from desk.job()
-    placement = scenes.velour_node(bpy.context.view_layer.objects.active.active_material).velour.placement
-    placement.mode, placement.repeats, placement.rotation = "REPEATS", REPEATS, np.radians(ROTATION)
+    material = bpy.context.view_layer.objects.active.active_material
+    placement = scenes.velour_node(material).velour.placement
+    placement.mode, placement.repeats = "REPEATS", REPEATS
+    scenes.set_look(material, rotation=np.radians(ROTATION))
     scene.add_world()
     scene.look_at((0, 0, 0), (0.5, -3.9, 0.4), 90)
     yield from desk.show("MATERIAL")

@@ -1,6 +1,15 @@
-"""Shaders of materials that are not measured, as layers."""
+"""Shaders of materials, as layers."""
 
-from .layer import Layer, as_principled, shines, sources_of, split, unlike_reflection
+from .layer import Layer, as_measured, as_principled, shines, sources_of, split, unlike_reflection
 from .tree import surface_layers
 
-__all__ = ["Layer", "as_principled", "shines", "sources_of", "split", "surface_layers", "unlike_reflection"]
+__all__ = [
+    "Layer",
+    "as_measured",
+    "as_principled",
+    "shines",
+    "sources_of",
+    "split",
+    "surface_layers",
+    "unlike_reflection",
+]

@@ -10,8 +10,8 @@ _USUAL = {} if bpy.app.version >= (5, 0) else {**BLACK, "base_color": (0.8, 0.8,
 
 
 class Factor(NamedTuple):
-    kind: str  # "share" of a mix, its "rest", or a "gain"
-    value: float = 1.0
+    kind: str  # "share" of a mix, its "rest", a "gain", or a "tint", whose value is a color
+    value: float | tuple = 1.0
     picture: object = None  # image_nodes.Picture or corner_colors.CornerColors that replaces it
 
 
@@ -26,7 +26,8 @@ class Relief(NamedTuple):
 class Layer(NamedTuple):
     """Keywords of Shader.add_layer, pictures or CornerColors that replace some, and factors of its weight.
 
-    kind: as in Shader.add_layer. A principled layer may hold alpha and emission until split() separates them.
+    kind: as in Shader.add_layer, or "measured". A principled layer may hold alpha and emission until split()
+    separates them.
     """
 
     kind: str
@@ -35,6 +36,7 @@ class Layer(NamedTuple):
     factors: tuple = ()
     relief: object = None  # Relief of the reflecting part
     glow: object = None  # emission Layer, to which alpha also applies
+    measured: object = None  # Measured of a measured layer
 
     def weighed(self, factor):
         return self._replace(factors=(*self.factors, factor))
@@ -66,6 +68,13 @@ def as_principled(layers):
     if glow:
         layer = layer._replace(values={**layer.values, "emission": glow.values["base_color"]}, glow=None)
     return layer if layer.kind == "principled" else None
+
+
+def as_measured(layers):
+    """The Measured of a material that is one measured model and nothing else; None if it is mixed."""
+    if len(layers) != 1 or layers[0].factors or layers[0].relief:
+        return None
+    return layers[0].measured
 
 
 def shines(layer):
@@ -122,6 +131,8 @@ def simplified(layers):
 def _constant(factor):
     """The constant value of a factor; None if a picture provides it."""
     if factor.picture is not None:
+        return None
+    if factor.kind == "tint":
         return None
     share = min(max(factor.value, 0.0), 1.0)
     return {"share": share, "rest": 1.0 - share, "gain": max(factor.value, 0.0)}[factor.kind]

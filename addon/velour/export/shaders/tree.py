@@ -1,19 +1,26 @@
 """Reads the layers of a material's surface from its active output."""
 
 from ..newer import has_nodes
-from ..nodes import active_output
-from ..plugs import Plug, fed_by
+from ..nodes import active_output, former_node
+from ..plugs import Plug, fed_by, inside, is_measured
 from .layer import Factor, black, diffuse, gray, simplified, split
+from .measured import former_layer, read_measured
 from .readers import READERS
 from .values import Reader
 
 _MOST_LAYERS = 64  # nested mixes with shared shaders can have far more
 
 
-def surface_layers(material, notes):
-    """The Layers of a material that is not measured; notes what is left out."""
+def surface_layers(material, notes, opens_measured=False):
+    """The Layers of a material; notes what is left out.
+
+    opens_measured: read the nodes in measured groups instead of their models.
+    """
     if material is None:
         return [gray()]
+    former = None if opens_measured else former_node(material)
+    if former is not None:
+        return [former_layer(former)]
     if not has_nodes(material):
         return [diffuse(tuple(material.diffuse_color[:3]))]  # the viewport color, as in Cycles
     owner = f"Material '{material.name}'"
@@ -25,7 +32,7 @@ def surface_layers(material, notes):
     for name in ("Volume", "Displacement"):
         if fed_by(Plug(output.inputs[name])):
             notes.add(f"{owner}: {name.lower()} is not supported; ignored.")
-    reader = Reader(owner, notes)
+    reader = Reader(owner, notes, opens_measured)
     layers = simplified(_read(plug, reader))
     if reader.steps_left <= 0 or len(layers) > _MOST_LAYERS:
         notes.add(f"{owner}: mixing more than {_MOST_LAYERS} shaders is not supported; rendered gray.")
@@ -53,6 +60,11 @@ def _read(plug, reader):
         return _read_mix(plug, reader)
     if node.bl_idname == "ShaderNodeAddShader":
         return [layer for part in _shaders(plug, reader) for layer in part]
+    if is_measured(plug):
+        if not reader.opens_measured:
+            return read_measured(plug, reader)
+        inner = fed_by(inside(plug))
+        return _read(inner, reader) if inner else []
     read = READERS.get(node.bl_idname)
     if read is None:
         reader.notes.add(

@@ -13,9 +13,10 @@ _MOST_STEPS = 256
 class Reader:
     """Reads inputs of one material's nodes; notes what it leaves out."""
 
-    def __init__(self, owner, notes):
+    def __init__(self, owner, notes, opens_measured=False):
         self.owner = owner
         self.notes = notes
+        self.opens_measured = opens_measured  # read the nodes in measured groups instead of their models
         self.steps_left = _MOST_STEPS  # shaders that may still be read
 
     def number(self, plug):
@@ -47,11 +48,8 @@ class Reader:
     def note(self, plug, sentence):
         self.notes.add(f"{self.owner}: node '{plug.node.name}': {sentence}")
 
-    def note_link(self, plug, reason=""):
-        self.note(
-            plug,
-            f"the link to '{plug.socket.name}' is not supported{reason}; the value of the input is used.",
-        )
+    def note_link(self, plug, reason="", used="the value of the input"):
+        self.note(plug, f"the link to '{plug.socket.name}' is not supported{reason}; {used} is used.")
 
 
 def own_value(socket, asked=None):

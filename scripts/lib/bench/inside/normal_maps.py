@@ -48,7 +48,8 @@ def _scene(model):
 def _approximate(material, path):
     """Creates the approximation, always with a normal map. Returns its own error estimates and seconds."""
     decided, normal_map._LEAST_GAIN = normal_map._LEAST_GAIN, -math.inf
-    steps = Steps(Model.load(path), approximation_group.has_layers())
+    opened = Model.load(path)
+    steps = Steps(opened, approximation_group.has_layers())
     seconds = dict.fromkeys(("fit", "colors", "normals"), 0.0)
     # The fit and the colors take two jobs each: the first tabulates the model.
     for step in ("fit", "fit", "colors", "colors", "normals"):
@@ -56,7 +57,7 @@ def _approximate(material, path):
         job.start().wait()
         seconds[step] += time.perf_counter() - begin
     steps.next_job()
-    approximation_group.put(material, steps.result)
+    approximation_group.put(build.measured_node(material), material, steps.result, opened.info())
     normals, without, with_map = job.result()
     return {
         "texels": steps.result.color_map.shape[1::-1],

@@ -110,9 +110,10 @@ def world(picture=None, strength=1.0, color=(0, 0, 0), rotation=0.0):
 
 
 def measured_node(of):
-    """The node of a material that has a model or a measurement."""
-    nodes = of.node_tree.nodes
-    return next(node for node in nodes if node.bl_idname == "ShaderNodeTexImage" and node.velour.enabled)
+    """The MeasuredNode of a material."""
+    from velour.export.nodes import velour_node
+
+    return velour_node(of)
 
 
 def render(folder, name):

@@ -75,7 +75,8 @@ def change_material(time):
         node = next(node for node in material.node_tree.nodes if node.type == "BSDF_DIFFUSE")
         node.inputs["Color"].default_value = (0.5, 0.1 * (time % 9), 0.3, 1)
     else:
-        build.measured_node(material).velour.placement.rotation = 0.1 * (time + 1)
+        group = next(node for node in material.node_tree.nodes if node.type == "GROUP")
+        group.inputs["Rotation"].default_value = 0.1 * (time + 1)
 
 
 def move_object(time):
