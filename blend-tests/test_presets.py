@@ -10,7 +10,7 @@ from pathlib import Path
 import bpy
 import numpy as np
 
-from support import inputs
+from support import inputs, scenes
 from support.blender import BlenderTest, run_blender
 
 CATALOG = "6f3f5b36-31cf-4d4e-9a8b-6a1c0f5ad101"
@@ -32,12 +32,6 @@ assert node.image.packed_file and node.image.packed_file.size > 1000
 assert not [image.name for image in bpy.data.images if image.source == "FILE" and not image.packed_file]
 print("ASSET READ")
 """
-
-
-def measured_node(material):
-    return next(
-        n for n in material.node_tree.nodes if n.bl_idname == "ShaderNodeTexImage" and n.velour.enabled
-    )
 
 
 def _script(name):
@@ -126,13 +120,13 @@ class OnePreset(BlenderTest):
         bpy.ops.velour.add_preset(preset="Polished Gold")
         material = bpy.context.object.active_material
         self.assertEqual(material.name, "Polished Gold")
-        self.assertTrue(measured_node(material).image.packed_file)
+        self.assertTrue(scenes.velour_node(material).image.packed_file)
 
     def test_cloths_repeat(self):
         bpy.ops.velour.add_preset(preset="Denim", assign=False)
         material = bpy.data.materials["Denim"]
         self.assertTrue(material.use_fake_user)
-        self.assertGreater(measured_node(material).velour.placement.repeats[0], 1)
+        self.assertGreater(scenes.velour_node(material).velour.placement.repeats[0], 1)
 
     def test_an_unknown_preset_is_refused_with_the_names(self):
         with self.assertRaisesRegex(RuntimeError, "Mithril.*Polished Gold"):

@@ -5,6 +5,7 @@ from bpy.props import BoolProperty, IntProperty, StringProperty
 
 from ..core import presets
 from ..core.files import read_bytes
+from ..native import Model, VelourError
 from . import measured
 from .slots import SlotTarget
 
@@ -36,8 +37,8 @@ class VELOUR_OT_add_preset(bpy.types.Operator):
 
     def execute(self, context):
         try:
-            material = make(find(self.preset, self.directory))
-        except (OSError, ValueError) as error:
+            material = make(find(self.preset, self.directory), self.report)
+        except (OSError, ValueError, VelourError) as error:
             self.report({"ERROR"}, str(error))
             return {"CANCELLED"}
         target = SlotTarget.asked(context, self)
@@ -61,12 +62,14 @@ def find(name, directory=""):
     raise ValueError(f"There is no preset {name!r}; there are {', '.join(p.name for p in listed)}.")
 
 
-def make(preset):
-    """A new material with the model of a preset, without its approximation."""
+def make(preset, report):
+    """A new material with the model of a preset, without its approximation; raises OSError or VelourError."""
     data = read_bytes(preset.model)
+    with Model.load(preset.model) as model:
+        info = model.info()
     material = measured.new_material(preset.name)
-    node = measured.ensure_node(material)
-    node.image = measured.packed_model(data, preset.name)
+    image = measured.packed_model(data, preset.name)
+    node = measured.set_model(material, measured.ensure_node(material), image, report, info=info)
     if preset.repeats:
         node.velour.placement.repeats = (preset.repeats,) * 2
     return material

@@ -10,6 +10,7 @@ from mathutils import Vector
 from ..core import presets
 from ..core.ball import ball_mesh, studio
 from ..engine.engine import VelourRenderEngine
+from ..native import VelourError
 from . import add_preset
 
 NAME = "Velour Look"
@@ -35,7 +36,7 @@ class VELOUR_OT_new_look(bpy.types.Operator):
     def execute(self, context):
         try:
             material = self._material()
-        except (OSError, ValueError) as error:
+        except (OSError, ValueError, VelourError) as error:
             self.report({"ERROR"}, str(error))
             return {"CANCELLED"}
         scene = bpy.data.scenes.new(NAME)
@@ -58,8 +59,8 @@ class VELOUR_OT_new_look(bpy.types.Operator):
         """Material of the ball; None without presets."""
         listed = presets.listed()
         if self.preset:
-            return add_preset.make(add_preset.find(self.preset))
-        return add_preset.make(listed[0]) if listed else None
+            return add_preset.make(add_preset.find(self.preset), self.report)
+        return add_preset.make(listed[0], self.report) if listed else None
 
 
 def _set_up(scene):
