@@ -1,12 +1,13 @@
 """Blender materials by number in the library's scene."""
 
-from ..native import Shader, VelourError
+from ..native import Shader, TextureSlot, VelourError
 from .corner_colors import CornerColors, shader_colors
 from .measured_materials import MeasuredMaterials
 from .model_hashes import model_hashes
 from .nodes import velour_node
 from .notes import ExportError
 from .placement import Tile
+from .programs import Computed, finished
 from .shaders import as_principled, shines, sources_of, split, surface_layers, unlike_reflection
 from .shaders.relief import correction
 from .textures import TextureTable
@@ -18,11 +19,12 @@ class MaterialTable:
     """Adds each material once, with its full model; those that may switch to a scene model are in `reduced`.
 
     `strict` refuses measured materials that cannot be read; otherwise (previews, the viewport) they render as
-    their Principled approximation, with a note.
+    their Principled approximation, with a note. `metres`: per unit of Blender's coordinates.
     """
 
-    def __init__(self, scene, notes, strict=True):
+    def __init__(self, scene, notes, strict=True, metres=1.0):
         self._scene = scene
+        self._metres = metres
         self._notes = notes
         self.strict = strict
         self._numbers = {}
@@ -32,6 +34,7 @@ class MaterialTable:
         self._tiles = {}  # Tiles of repeating materials
         self._turns = {}  # rotation of other anisotropic materials, radians
         self._textured = set()  # materials with textures
+        self._programs = {}  # of materials; None: none
         self._textures = TextureTable(scene, notes)
         self._measured = MeasuredMaterials(scene, notes)
         self.models = {}  # file hashes of measured materials, by full name
@@ -148,10 +151,11 @@ class MaterialTable:
         return self._add_shader(material)
 
     def _add_shader(self, material):
-        layers = surface_layers(material, self._notes)
-        sources, reliefs = sources_of(layers)
+        layers = surface_layers(material, self._notes, self._metres)
+        sources, reliefs, draft = sources_of(layers)
         self._uv_maps[_key(material)] = shader_maps(_owner(material), sources, reliefs, self._notes)
         self._colors[_key(material)] = shader_colors(_owner(material), sources, self._notes)
+        self._programs[_key(material)] = draft and self._finished(draft, material)
         self.glows = self.glows or any(map(shines, layers))
         plain = as_principled(layers)
         if plain:
@@ -166,6 +170,16 @@ class MaterialTable:
                 for part in split(layer):
                     self._add_layer(shader, part, material)
             return self._with_rays(self._scene.add_shader_material(shader), material)
+
+    def _finished(self, draft, material):
+        """The Program of a Draft."""
+        key = _key(material)
+
+        def texture(picture, is_color):
+            self._textured.add(key)
+            return self._textures.texture(picture, is_color, _owner(material))
+
+        return finished(draft, self._uv_maps[key], self._colors[key], texture)
 
     def _with_rays(self, number, material):
         """Sets backface culling and light sampling of a material; returns its number."""
@@ -191,7 +205,9 @@ class MaterialTable:
         return {name: slot for name, slot in slots.items() if slot}
 
     def _slot(self, picture, is_color, material):
-        """TextureSlot of a picture; None: use the socket's own value."""
+        """TextureSlot of a picture or of what replaces one; None: use the socket's own value."""
+        if isinstance(picture, Computed):
+            return TextureSlot(self._programs[_key(material)].texture(picture.index))
         if isinstance(picture, CornerColors):
             colors = self._colors[_key(material)]
             return self._textures.of_corners(colors.index(picture)) if picture in colors else None

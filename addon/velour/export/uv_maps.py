@@ -2,7 +2,7 @@
 
 from typing import NamedTuple
 
-from .image_nodes import Picture
+from .image_nodes import Coordinates, Picture
 from .nodes import velour_node
 
 MOST_SETS = 4  # VLR_MOST_UV_SETS
@@ -50,9 +50,8 @@ def placed_map(material):
 
 
 def shader_maps(owner, sources, reliefs, notes):
-    """UvMaps of a material that is not measured, from the pictures in its layers and Reliefs."""
-    pictures = [source for source in sources if isinstance(source, Picture)]
-    pictures += [relief.picture for relief in reliefs]
+    """UvMaps of a material that is not measured, from the sources of its layers and the UV maps of its reliefs."""
+    pictures = [source for source in sources if isinstance(source, (Picture, Coordinates))]
     names = tuple(sorted({picture.coordinates for picture in pictures}))
     if not names:
         return UNUSED
@@ -66,7 +65,7 @@ def shader_maps(owner, sources, reliefs, notes):
 
 
 def _relief_map(owner, names, reliefs, notes):
-    asked = list(dict.fromkeys(relief.uv_map for relief in reliefs))
+    asked = list(dict.fromkeys(reliefs))
     if len(asked) > 1:
         notes.add(
             f"{owner}: its Normal Maps use several UV maps; the tangents of all follow {_called(asked[0])}."

@@ -10,8 +10,8 @@ from .values import Reader
 _MOST_LAYERS = 64  # nested mixes with shared shaders can have far more
 
 
-def surface_layers(material, notes):
-    """The Layers of a material that is not measured; notes what is left out."""
+def surface_layers(material, notes, metres=1.0):
+    """The Layers of a material that is not measured; notes what is left out. `metres`: per unit of coordinates."""
     if material is None:
         return [gray()]
     if not has_nodes(material):
@@ -25,7 +25,7 @@ def surface_layers(material, notes):
     for name in ("Volume", "Displacement"):
         if fed_by(Plug(output.inputs[name])):
             notes.add(f"{owner}: {name.lower()} is not supported; ignored.")
-    reader = Reader(owner, notes)
+    reader = Reader(owner, notes, metres)
     layers = simplified(_read(plug, reader))
     if reader.steps_left <= 0 or len(layers) > _MOST_LAYERS:
         notes.add(f"{owner}: mixing more than {_MOST_LAYERS} shaders is not supported; rendered gray.")
