@@ -35,10 +35,14 @@ HWY_INLINE LanesPoint<N> filled(Lanes x) {
 /// What an octave finds: distance, color and position of a feature point.
 template <int N>
 struct VoronoiFind {
-  Lanes distance = 0.0f;
-  LanesPoint<3> color = filled<3>(0.0f);
-  LanesPoint<N> position = filled<N>(0.0f);
+  Lanes distance;  // without initializers, whose implicit constructors would lack the instruction set
+  LanesPoint<3> color;
+  LanesPoint<N> position;
 };
+template <int N>
+HWY_INLINE VoronoiFind<N> nothing_found() {
+  return {0.0f, filled<3>(0.0f), filled<N>(0.0f)};
+}
 
 template <int N>
 HWY_INLINE LanesPoint<N> operator+(const LanesPoint<N>& a, const LanesPoint<N>& b) {
@@ -259,7 +263,7 @@ HWY_INLINE VoronoiFind<N> second_nearest(const LanesPoint<N>& p, const VoronoiSh
 template <int N>
 HWY_INLINE VoronoiFind<N> smooth_nearest(const LanesPoint<N>& p, const VoronoiShape& shape) {
   const Cell<N> cell(p);
-  VoronoiFind<N> found;
+  VoronoiFind<N> found = nothing_found<N>();
   bool first = true;
   each_cell<N, 2>([&](const LanesPoint<N>& offset) {
     const LanesPoint<N> point = feature_point(cell.corner, offset, shape);
@@ -348,7 +352,7 @@ HWY_INLINE Lanes largest_distance(const VoronoiShape& shape) {
 template <int N>
 HWY_INLINE VoronoiFind<N> summed(const LanesPoint<N>& p, const VoronoiShape& shape) {
   Lanes amplitude = 1.0f, total = 0.0f, scale = 1.0f;
-  VoronoiFind<N> sum;
+  VoronoiFind<N> sum = nothing_found<N>();
   for (int i = 0;; ++i) {
     const Lanes at(static_cast<float>(i));
     const Lanes part = smaller(larger(shape.detail - at + 1.0f, 0.0f), 1.0f);
