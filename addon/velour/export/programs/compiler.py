@@ -17,6 +17,7 @@ class Compiler:
         self.metres = metres
         self.draft = Draft()
         self.shift = "none"  # the point at which sources are read
+        self.displaced_normal = None  # Value of the surface's normal with displacement as bump
         self._values = {}
         self._depth = 0
 
@@ -73,6 +74,14 @@ class Compiler:
             return self.input(plug)
         finally:
             self.shift = before
+
+    def surface_normal(self):
+        """The shading normal on the viewer's side."""
+        return self.draft.source("normal") if self.displaced_normal is None else self.displaced_normal
+
+    def computed_normal(self):
+        """The Computed of the surface's normal if it is displaced, else None."""
+        return self.displaced_normal and self.draft.output(self.displaced_normal, "normal")
 
     def source(self, kind, number=0):
         """A property of the surface that moves with the point."""

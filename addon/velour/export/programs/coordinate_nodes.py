@@ -27,7 +27,7 @@ def _object(c, plug):
 
 
 def _reflection(c, _plug):
-    incoming, normal = c.draft.source("incoming"), c.draft.source("normal")
+    incoming, normal = c.draft.source("incoming"), c.surface_normal()
     mirrored = c.draft.vector_math("reflect", incoming, normal)[0]
     return c.draft.vector_math("scale", mirrored, scale=-1.0)[0]
 
@@ -41,7 +41,7 @@ _COORDINATES = {
 }
 _GEOMETRY = {
     "Position": lambda c: position(c),
-    "Normal": lambda c: c.draft.source("normal"),
+    "Normal": lambda c: c.surface_normal(),
     "True Normal": lambda c: c.draft.source("geometric_normal"),
     "Incoming": lambda c: c.draft.source("incoming"),
     "Backfacing": lambda c: c.draft.source("backfacing").component(0),

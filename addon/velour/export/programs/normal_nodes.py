@@ -6,7 +6,7 @@ from ..image_nodes import UnsupportedError
 def _normal(c, plug):
     """The Normal input of a node; unlinked: the surface's."""
     given = c.linked(plug.input("Normal"))
-    return c.draft.source("normal") if given is None else given
+    return c.surface_normal() if given is None else given
 
 
 def _fresnel(c, plug):
@@ -44,6 +44,32 @@ def bumped(c, plug, normal, heights, distance):
     return c.draft.one("bump", inputs, 3)
 
 
+def displaced(c, plug):
+    """The surface's normal with the output of a Displacement node as bump; raises UnsupportedError."""
+    node = plug.node
+    if node.bl_idname != "ShaderNodeDisplacement":
+        raise UnsupportedError(f"'{node.name}' is not a Displacement node")
+    if c.linked(plug.input("Normal")) is not None:
+        raise UnsupportedError(f"'{node.name}' has a linked normal")
+    heights = [_displacement(c, plug, shift) for shift in ("none", "x", "y")]
+    return bumped(c, plug, c.draft.source("normal"), heights, _metres_of(c, node.space))
+
+
+def _displacement(c, plug, shift):
+    height, middle, scale = (c.shifted(shift, plug.input(name)) for name in ("Height", "Midlevel", "Scale"))
+    return c.draft.math("multiply", c.draft.math("subtract", height, middle), scale)
+
+
+def _metres_of(c, space):
+    """Meters per unit of displacement; in object space it is scaled with the object, here along the surface."""
+    if space == "WORLD":
+        return c.draft.number(c.metres)
+    here, beside = (c.draft.source("object_position", 0, shift) for shift in ("none", "x"))
+    in_object = c.draft.vector_math("distance", here, beside)[1]
+    in_world = c.draft.vector_math("length", c.draft.source("step_x"))[1]
+    return c.draft.math("divide", in_world, in_object)
+
+
 def _normal_map(c, plug):
     node = plug.node
     if node.space != "TANGENT":
@@ -52,7 +78,7 @@ def _normal_map(c, plug):
     axes = [c.draft.source(f"map_{name}") for name in ("tangent", "bitangent", "normal")]
     color, strength = c.input(plug.input("Color")), c.input(plug.input("Strength"))
     strength = c.draft.math("maximum", strength, 0.0)
-    return c.draft.one("normal_map", (color, strength, *axes, c.draft.source("normal")), 3)
+    return c.draft.one("normal_map", (color, strength, *axes, c.surface_normal()), 3)
 
 
 def _direction(c, plug):

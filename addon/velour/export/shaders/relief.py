@@ -21,7 +21,8 @@ def read_relief(plug, reader):
     """The Relief of a shader node, or None; notes unsupported links to its normal."""
     fed = fed_by(plug.input("Normal"))
     if fed is None:
-        return None
+        displaced = reader.compiler.computed_normal()
+        return displaced and Relief(displaced, 1.0)
     if fed.node.bl_idname == "ShaderNodeNormalMap":
         if fed.node.space != "TANGENT":
             reader.note(fed, "only normal maps in tangent space are supported; ignored.")

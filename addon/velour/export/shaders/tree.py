@@ -1,8 +1,10 @@
 """Reads the layers of a material's surface from its active output."""
 
+from ..image_nodes import UnsupportedError
 from ..newer import has_nodes
 from ..nodes import active_output
 from ..plugs import Plug, fed_by
+from ..programs import displaced
 from .layer import Factor, black, diffuse, gray, simplified, split
 from .readers import READERS
 from .values import Reader
@@ -22,10 +24,10 @@ def surface_layers(material, notes, metres=1.0):
     if plug is None:
         notes.add(f"{owner}: it has no surface shader; rendered black.")
         return [black()]
-    for name in ("Volume", "Displacement"):
-        if fed_by(Plug(output.inputs[name])):
-            notes.add(f"{owner}: {name.lower()} is not supported; ignored.")
+    if fed_by(Plug(output.inputs["Volume"])):
+        notes.add(f"{owner}: volume is not supported; ignored.")
     reader = Reader(owner, notes, metres)
+    _read_displacement(fed_by(Plug(output.inputs["Displacement"])), material, reader)
     layers = simplified(_read(plug, reader))
     if reader.steps_left <= 0 or len(layers) > _MOST_LAYERS:
         notes.add(f"{owner}: mixing more than {_MOST_LAYERS} shaders is not supported; rendered gray.")
@@ -35,6 +37,25 @@ def surface_layers(material, notes, metres=1.0):
     ):
         notes.add(f"{owner}: opaque shadows of transparent surfaces are not supported; light passes through.")
     return layers
+
+
+def _read_displacement(plug, material, reader):
+    """Bends the surface's normal by displacement as bump; notes other displacement."""
+    if plug is None:
+        return
+    if _displacement_method(material) != "BUMP":
+        reader.notes.add(f"{reader.owner}: displacement is not supported other than as bump; ignored.")
+        return
+    try:
+        reader.compiler.displaced_normal = displaced(reader.compiler, plug)
+    except UnsupportedError as reason:
+        reader.notes.add(f"{reader.owner}: displacement is ignored: {reason}.")
+
+
+def _displacement_method(material):
+    """BUMP, DISPLACEMENT or BOTH; a Cycles setting before Blender 4.1."""
+    of_cycles = getattr(getattr(material, "cycles", None), "displacement_method", "BUMP")
+    return getattr(material, "displacement_method", of_cycles)
 
 
 def _shadows_are_clear(material):
