@@ -18,7 +18,7 @@ class BoardTest(ParityTest):
         stage.world((0, 0, 0))
 
     def show(self, builds):
-        """Adds a square for each of up to COLUMNS x ROWS functions, which get a Nodes and return an output."""
+        """Adds squares for up to COLUMNS x ROWS functions, which get a Nodes and return an output."""
         for number, build in enumerate(builds):
             square(number, build)
 
@@ -67,7 +67,9 @@ class Nodes:
     def color(self):
         """Red and green along the square's sides."""
         apart = self.add("SeparateXYZ", {0: self.add("TexCoord").outputs["UV"]})
-        return self.add("CombineXYZ", {"X": apart.outputs["X"], "Y": apart.outputs["Y"], "Z": 0.35}).outputs[0]
+        return self.add("CombineXYZ", {"X": apart.outputs["X"], "Y": apart.outputs["Y"], "Z": 0.35}).outputs[
+            0
+        ]
 
     def halved(self, output):
         """Half of an output and a half: its values from -1 to 1, as a color."""
@@ -95,5 +97,7 @@ def square(number, build):
 
 def _named(sockets, name):
     """The first socket of that identifier or name; names of newer Blenders."""
-    found = [s for s in sockets if s.identifier == name] + [s for s in sockets if s.name == name and s.enabled]
+    found = [s for s in sockets if s.identifier == name] + [
+        s for s in sockets if s.name == name and s.enabled
+    ]
     return found[0]

@@ -5,20 +5,10 @@ import bpy
 from . import stage
 from .board import COLUMNS, ROWS, BoardTest
 
-_MATH = (
-    "ADD SUBTRACT MULTIPLY DIVIDE MULTIPLY_ADD POWER LOGARITHM SQRT INVERSE_SQRT ABSOLUTE EXPONENT MINIMUM MAXIMUM"
-    " LESS_THAN GREATER_THAN SIGN COMPARE SMOOTH_MIN SMOOTH_MAX ROUND FLOOR CEIL TRUNC FRACT MODULO WRAP SNAP"
-    " PINGPONG SINE COSINE TANGENT ARCSINE ARCCOSINE ARCTANGENT ARCTAN2 SINH COSH TANH RADIANS DEGREES"
-).split()
-_VECTOR = (
-    "ADD SUBTRACT MULTIPLY DIVIDE MULTIPLY_ADD CROSS_PRODUCT PROJECT REFLECT REFRACT FACEFORWARD DOT_PRODUCT"
-    " DISTANCE LENGTH SCALE NORMALIZE ABSOLUTE MINIMUM MAXIMUM FLOOR CEIL FRACTION MODULO WRAP SNAP SINE COSINE"
-    " TANGENT"
-).split()
-_BLENDS = (
-    "MIX DARKEN MULTIPLY BURN LIGHTEN SCREEN DODGE ADD OVERLAY SOFT_LIGHT LINEAR_LIGHT DIFFERENCE SUBTRACT DIVIDE"
-    " HUE SATURATION COLOR VALUE"
-).split()
+
+def _items(idname, name):
+    """Items of a node's enum property."""
+    return [i.identifier for i in getattr(bpy.types, idname).bl_rna.properties[name].enum_items]
 
 
 def _in_boards(items):
@@ -44,7 +34,9 @@ class Numbers(BoardTest):
 
             return built
 
-        self._assert_all("Math: all operations", [build(each) for each in _MATH])
+        self._assert_all(
+            "Math: all operations", [build(each) for each in _items("ShaderNodeMath", "operation")]
+        )
 
     def test_vector_math(self):
         def build(operation):
@@ -56,7 +48,10 @@ class Numbers(BoardTest):
 
             return built
 
-        self._assert_all("Vector Math: all operations", [build(each) for each in _VECTOR])
+        self._assert_all(
+            "Vector Math: all operations",
+            [build(each) for each in _items("ShaderNodeVectorMath", "operation")],
+        )
 
     def test_mix_color(self):
         def build(blend):
@@ -67,14 +62,20 @@ class Numbers(BoardTest):
 
             return built
 
-        self._assert_all("Mix Color: all blend modes", [build(each) for each in _BLENDS])
+        self._assert_all(
+            "Mix Color: all blend modes", [build(each) for each in _items("ShaderNodeMix", "blend_type")]
+        )
 
     def test_mixes(self):
         def numbers(nodes):
             return nodes.add("Mix", {"Factor_Float": nodes.ramp(), "A_Float": 0.9, "B_Float": 0.1}).outputs[0]
 
         def vectors(nodes):
-            inputs = {"Factor_Vector": nodes.color(), "A_Vector": (0.9, 0.1, 0.4), "B_Vector": (0.2, 0.7, 0.3)}
+            inputs = {
+                "Factor_Vector": nodes.color(),
+                "A_Vector": (0.9, 0.1, 0.4),
+                "B_Vector": (0.2, 0.7, 0.3),
+            }
             mix = nodes.add("Mix", inputs, data_type="VECTOR", factor_mode="NON_UNIFORM")
             return mix.outputs[1]
 
@@ -154,7 +155,13 @@ class Numbers(BoardTest):
     def test_ranges(self):
         def build(curve, clamped):
             def built(nodes):
-                inputs = {"Value": nodes.ramp(), "From Min": 0.2, "From Max": 0.7, "To Min": 0.9, "Steps": 3.0}
+                inputs = {
+                    "Value": nodes.ramp(),
+                    "From Min": 0.2,
+                    "From Max": 0.7,
+                    "To Min": 0.9,
+                    "Steps": 3.0,
+                }
                 range_of = nodes.add("MapRange", inputs, interpolation_type=curve, clamp=clamped)
                 return nodes.halved(range_of.outputs[0])
 
@@ -165,7 +172,11 @@ class Numbers(BoardTest):
             return nodes.add("Clamp", inputs, clamp_type="RANGE").outputs[0]
 
         def vectors(nodes):
-            inputs = {"Vector": nodes.color(), "From_Max_FLOAT3": (0.5, 0.7, 1), "To_Min_FLOAT3": (0.3, 0.6, 0)}
+            inputs = {
+                "Vector": nodes.color(),
+                "From_Max_FLOAT3": (0.5, 0.7, 1),
+                "To_Min_FLOAT3": (0.3, 0.6, 0),
+            }
             range_of = nodes.add("MapRange", inputs, data_type="FLOAT_VECTOR")
             return range_of.outputs["Vector"]
 
@@ -193,7 +204,7 @@ class Textures(BoardTest):
     def _of(self, idname, inputs, output=0, **properties):
         def built(nodes):
             node = nodes.add(idname, {"Vector": nodes.place(), **inputs}, **properties)
-            return nodes.halved(node.outputs[output] if isinstance(output, int) else node.outputs[output])
+            return nodes.halved(node.outputs[output])
 
         return built
 
@@ -224,7 +235,9 @@ class Textures(BoardTest):
 
         features = (("F1", "Color"), ("F2", "Distance"), ("SMOOTH_F1", "Color"))
         builds = [build(d, feature, out) for d in ("2D", "3D", "4D") for feature, out in features]
-        builds += [build("3D", "F1", "Distance", metric) for metric in ("MANHATTAN", "CHEBYCHEV", "MINKOWSKI")]
+        builds += [
+            build("3D", "F1", "Distance", metric) for metric in ("MANHATTAN", "CHEBYCHEV", "MINKOWSKI")
+        ]
         builds += [build(d, "DISTANCE_TO_EDGE", "Distance") for d in ("2D", "3D", "4D")]
         builds += [build(d, "N_SPHERE_RADIUS", "Radius") for d in ("2D", "3D")]
         self.show(builds)
@@ -297,4 +310,6 @@ class Inputs(BoardTest):
             return mixed.outputs[2]
 
         self.show([built])
-        self.assert_ignored("Unsupported nodes below others", "'Wireframe' is not a node that Velour evaluates")
+        self.assert_ignored(
+            "Unsupported nodes below others", "'Wireframe' is not a node that Velour evaluates"
+        )

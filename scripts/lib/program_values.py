@@ -1,35 +1,45 @@
-"""Evaluates nodes at a few points, in Blender (scripts/program_values), and writes rows of program_values.inc.
+"""Evaluates nodes at a few points in Blender, and writes rows of program_values.inc (scripts/program_values).
 
 A row: version, operation, choices, values of the input registers, first output register, values.
 """
 
 import sys
+from pathlib import Path
 
 import bpy
 import numpy as np
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "addon"))
+from velour.native import table  # noqa: E402  (found by the line above)
 
 VERSION = bpy.app.version
 NEW, NEWEST = VERSION >= (4, 1), VERSION >= (5, 0)
 POINTS = np.array([(0.13, 0.72, 0.41), (-2.31, 0.58, -0.17), (3.74, 2.26, -1.93)], np.float32)
 _USUAL = {"Detail": 0.0, "Roughness": 0.5, "Lacunarity": 2.0, "Offset": 0.0, "Gain": 1.0, "Distortion": 0.0}
-_NOISE = "Vector W Scale Detail Roughness Lacunarity Offset Gain Distortion".split()
-_VORONOI = "Vector W Scale Detail Roughness Lacunarity Smoothness Exponent Randomness".split()
+_NOISE = ("Vector", "W", "Scale", "Detail", "Roughness", "Lacunarity", "Offset", "Gain", "Distortion")
+_VORONOI = (
+    "Vector",
+    "W",
+    "Scale",
+    "Detail",
+    "Roughness",
+    "Lacunarity",
+    "Smoothness",
+    "Exponent",
+    "Randomness",
+)
 _WAVE = ("Vector", "Scale", "Distortion", "Detail", "Detail Scale", "Detail Roughness", "Phase Offset")
-_BRICK = ("Vector", "Color1", "Color2", "Mortar", "Scale", "Mortar Size", "Mortar Smooth", "Bias", "Brick Width")
-_MATH = (
-    "ADD SUBTRACT MULTIPLY DIVIDE MULTIPLY_ADD POWER LOGARITHM SQRT INVERSE_SQRT ABSOLUTE EXPONENT MINIMUM MAXIMUM"
-    " LESS_THAN GREATER_THAN SIGN COMPARE SMOOTH_MIN SMOOTH_MAX ROUND FLOOR CEIL TRUNC FRACT MODULO FLOORED_MODULO"
-    " WRAP SNAP PINGPONG SINE COSINE TANGENT ARCSINE ARCCOSINE ARCTANGENT ARCTAN2 SINH COSH TANH RADIANS DEGREES"
-).split()
-_VECTOR = (
-    "ADD SUBTRACT MULTIPLY DIVIDE MULTIPLY_ADD CROSS_PRODUCT PROJECT REFLECT REFRACT FACEFORWARD DOT_PRODUCT"
-    " DISTANCE LENGTH SCALE NORMALIZE ABSOLUTE MINIMUM MAXIMUM FLOOR CEIL FRACTION MODULO WRAP SNAP SINE COSINE"
-    " TANGENT"
-).split()
-_BLENDS = (
-    "MIX DARKEN MULTIPLY BURN LIGHTEN SCREEN DODGE ADD OVERLAY SOFT_LIGHT LINEAR_LIGHT DIFFERENCE EXCLUSION"
-    " SUBTRACT DIVIDE HUE SATURATION COLOR VALUE"
-).split()
+_BRICK = (
+    "Vector",
+    "Color1",
+    "Color2",
+    "Mortar",
+    "Scale",
+    "Mortar Size",
+    "Mortar Smooth",
+    "Bias",
+    "Brick Width",
+)
 _FRACTALS = ("FBM", "MULTIFRACTAL", "HYBRID_MULTIFRACTAL", "RIDGED_MULTIFRACTAL", "HETERO_TERRAIN")
 _COLORS = {"Color1": (0.1, 0.2, 0.3, 1), "Color2": (0.6, 0.5, 0.4, 1), "Mortar": (0.9, 0.1, 0.5, 1)}
 
@@ -58,11 +68,26 @@ def _noise():
             inputs = {"W": 0.37, "Scale": 1.7, "Detail": detail, "Roughness": rough, "Distortion": dist}
             yield "noise", (d, 0, 1, 1), "TexNoise", place, {**inputs, "Lacunarity": 2.0}, _NOISE, both
         for kind, name in enumerate(_FRACTALS):
-            inputs = {"W": 0.37, "Scale": 1.7, "Detail": 2.6, "Roughness": 0.6, "Lacunarity": 1.9, "Offset": 0.4}
+            inputs = {
+                "W": 0.37,
+                "Scale": 1.7,
+                "Detail": 2.6,
+                "Roughness": 0.6,
+                "Lacunarity": 1.9,
+                "Offset": 0.4,
+            }
             inputs |= {"Gain": 1.3, "Distortion": 0.2}
             properties = {**place, "noise_type": name, "normalize": False}
             yield "noise", (d, kind, 0, 1), "TexNoise", properties, inputs, _NOISE, both
-        yield "white_noise", (d,), "TexWhiteNoise", place, {"W": 0.37}, ("Vector", "W"), {"Value": 0, "Color": 1}
+        yield (
+            "white_noise",
+            (d,),
+            "TexWhiteNoise",
+            place,
+            {"W": 0.37},
+            ("Vector", "W"),
+            {"Value": 0, "Color": 1},
+        )
 
 
 def _musgrave():
@@ -73,7 +98,13 @@ def _musgrave():
                 inputs = {"W": 0.37, "Scale": 1.7, "Detail": detail, "Dimension": 0.8, "Lacunarity": 1.9}
                 inputs |= {"Offset": 0.4, "Gain": 1.3}
                 properties = {"musgrave_dimensions": f"{d + 1}D", "musgrave_type": name}
-                ours = {"Detail": detail - 1, "Roughness": 1.9**-0.8, "Lacunarity": 1.9, "Offset": 0.4, "Gain": 1.3}
+                ours = {
+                    "Detail": detail - 1,
+                    "Roughness": 1.9**-0.8,
+                    "Lacunarity": 1.9,
+                    "Offset": 0.4,
+                    "Gain": 1.3,
+                }
                 yield (
                     *("noise", (d, kind, 0, 0), "TexMusgrave", properties, inputs, _NOISE, {"Fac": 0}),
                     {**inputs, **ours},
@@ -109,7 +140,12 @@ def _patterns():
             properties = {"wave_type": name, "wave_profile": ("SIN", "SAW", "TRI")[axis % 3]}
             properties["bands_direction"] = ("X", "Y", "Z", "DIAGONAL")[axis]
             properties["rings_direction"] = ("X", "Y", "Z", "SPHERICAL")[axis]
-            inputs = {"Scale": 0.7, "Distortion": 0.0 if axis == 1 else 2.0, "Detail": 1.5, "Detail Scale": 1.3}
+            inputs = {
+                "Scale": 0.7,
+                "Distortion": 0.0 if axis == 1 else 2.0,
+                "Detail": 1.5,
+                "Detail Scale": 1.3,
+            }
             inputs |= {"Detail Roughness": 0.4, "Phase Offset": 0.6}
             yield "wave", (kind, axis, axis % 3), "TexWave", properties, inputs, _WAVE, {"Fac": 0}
     kinds = ("LINEAR", "QUADRATIC", "EASING", "DIAGONAL", "SPHERICAL", "QUADRATIC_SPHERE", "RADIAL")
@@ -131,14 +167,14 @@ def _patterns():
 
 
 def _numbers():
-    for number, name in enumerate(_MATH):
+    for number, name in enumerate(map(str.upper, table.MATH)):
         inputs, names = {"Value_001": 0.6, "Value_002": 0.25}, ("@Value", "Value_001", "Value_002")
         yield "math", (number,), "Math", {"operation": name}, inputs, names, {"Value": 0}
-    for number, name in enumerate(_VECTOR):
+    for number, name in enumerate(map(str.upper, table.VECTOR_MATH[:27])):  # the others are newer
         inputs = {"Vector_001": (0.6, -1.2, 0.35), "Vector_002": (0.2, 0.9, -0.4), "Scale": 0.7}
         output = {"Value": 3} if name in ("DOT_PRODUCT", "DISTANCE", "LENGTH") else {"Vector": 0}
         yield "vector_math", (number,), "VectorMath", {"operation": name}, inputs, ("Vector", *inputs), output
-    for number, name in enumerate(_BLENDS):
+    for number, name in enumerate(map(str.upper, table.BLENDS)):
         inputs = {"Factor_Float": 0.35, "B_Color": (0.2, 0.75, 0.4, 1)}
         properties = {"data_type": "RGBA", "blend_type": name}
         names = ("Factor_Float", "@A_Color", "B_Color")
@@ -237,7 +273,9 @@ def main():
             for name, first in outputs.items():
                 values = ", ".join(_number(v) for v in found[name][number])
                 chosen = ", ".join(str(int(c)) for c in choices)
-                rows.append(f'{{"{bpy.app.version_string[:3]}", Operation::{operation}, {{{chosen}}}, {{{given}}}')
+                rows.append(
+                    f'{{"{bpy.app.version_string[:3]}", Operation::{operation}, {{{chosen}}}, {{{given}}}'
+                )
                 rows[-1] += f", {first}, {{{values}}}}},"
     with open(sys.argv[-1], "w") as file:
         file.write("\n".join(rows) + "\n")

@@ -30,7 +30,7 @@ class CornerColors(NamedTuple):
     otherwise: float = 0.0  # value on meshes without the attribute
 
 
-# Not an attribute: positions in the mesh's texture space before deformation, which has a texture space from 0 to 1.
+# Not an attribute: positions before deformation, from 0 to 1 over the mesh's texture space.
 GENERATED = CornerColors(None, "Generated", False)
 
 

@@ -23,9 +23,7 @@ class LiveExport:
         self.scene = Scene() if scene is None else scene
         try:
             set_working_space(self.scene)
-            self._materials = MaterialTable(
-                self.scene, Notes(), False, metres_per_unit(depsgraph.scene)
-            )
+            self._materials = MaterialTable(self.scene, Notes(), False, metres_per_unit(depsgraph.scene))
             self._meshes = KeptMeshes()
             self._world = WorldLight(self.scene)
             self._look = look.key()

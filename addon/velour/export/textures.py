@@ -17,7 +17,7 @@ class TextureTable:
         self._textures = {}
 
     def slot(self, picture, is_color, owner, uv_maps, instead="the value of its input"):
-        """TextureSlot of a Picture for a material's UvMaps, if there are any; None, with a note, if it cannot be read.
+        """TextureSlot of a Picture for a material's UvMaps, if any; None, with a note, if it cannot be read.
 
         `instead`: what is shown then.
         """
@@ -36,7 +36,7 @@ class TextureTable:
         return TextureSlot(self._textures[color_set])
 
     def texture(self, picture, is_color, owner):
-        """The Texture of a Picture inside a program; one that cannot be read is magenta, as in Cycles, with a note."""
+        """The Texture of a Picture in a program; if it cannot be read, magenta with a note, as in Cycles."""
         slot = self.slot(picture, is_color, owner, None, "magenta")
         if slot:
             return slot.texture
@@ -47,9 +47,7 @@ class TextureTable:
         try:
             pixels = working_pixels(picture.image, self._notes, picture.beside_alpha)
         except VelourError as error:
-            self._notes.add(
-                f"{owner}: image '{picture.image.name}' is replaced by {instead}: {error}"
-            )
+            self._notes.add(f"{owner}: image '{picture.image.name}' is replaced by {instead}: {error}")
             return None
         if pixels is None:
             path = absolute_path(picture.image) or "no file"

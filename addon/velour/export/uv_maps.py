@@ -50,7 +50,7 @@ def placed_map(material):
 
 
 def shader_maps(owner, sources, reliefs, notes):
-    """UvMaps of a material that is not measured, from the sources of its layers and the UV maps of its reliefs."""
+    """UvMaps of a material that is not measured, from sources of its layers and UV maps of its reliefs."""
     pictures = [source for source in sources if isinstance(source, (Picture, Coordinates))]
     names = tuple(sorted({picture.coordinates for picture in pictures}))
     if not names:

@@ -64,7 +64,7 @@ class Program(Handle):
         images: Sequence[Texture] = (),
         step: float = 1.0,
     ) -> Program:
-        """`constants`: values of the first registers; the further ones are written by instructions, each once."""
+        """`constants`: values of the first registers; instructions write the others, each once."""
         values = checked("constants", np.asarray(constants, np.float32), (None,))
         tables = [np.asarray(each.table, np.float32).ravel() for each in instructions]
         starts = np.cumsum([0, *(len(each) for each in tables)])

@@ -33,7 +33,7 @@ class Compiler:
         return found
 
     def input(self, plug):
-        """The Value of an input, as its type; what cannot be evaluated is noted and replaced by its own value."""
+        """The Value of an input, as its type; its own value, with a note, if it cannot be evaluated."""
         fed = followed(plug)
         if fed is None or not fed.socket.is_output:
             return own(self.draft, (fed or plug).socket, plug.socket.type)

@@ -7,7 +7,7 @@ MOST_INSTRUCTIONS = 2048  # nested groups may share nodes many times
 
 
 class Value(NamedTuple):
-    """Registers of a value: 1 or 3. Constants count down from -1, so that those found later need no renumbering."""
+    """Registers of a value: 1 or 3. Constants count down from -1, so that none is renumbered later."""
 
     first: int
     size: int

@@ -13,8 +13,10 @@ def sources_of_draft(draft):
 
 
 def finished(draft, maps, colors, texture):
-    """The Program of a Draft. `maps`: UvMaps; `colors`: CornerColors by set; `texture`: a function that makes the
-    Texture of a Picture, as color or number; None: it cannot be read."""
+    """The Program of a Draft.
+
+    maps: UvMaps. colors: CornerColors by set. texture: makes the Texture of a Picture, of colors or numbers.
+    """
     images, numbers = [], {}
     for step in draft.steps:
         for choice in step.choices:

@@ -61,7 +61,7 @@ def _displacement(c, plug, shift):
 
 
 def _metres_of(c, space):
-    """Meters per unit of displacement; in object space it is scaled with the object, here along the surface."""
+    """Meters per unit of displacement; in object space it scales with the object, along the surface."""
     if space == "WORLD":
         return c.draft.number(c.metres)
     here, beside = (c.draft.source("object_position", 0, shift) for shift in ("none", "x"))

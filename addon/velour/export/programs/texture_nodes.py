@@ -92,9 +92,7 @@ def _voronoi(c, plug):
         *(c.input(plug.input(name)) for name in ("Smoothness", "Exponent", "Randomness")),
     )
     flags = int(getattr(node, "normalize", False)) + 2 * _INTEGER_HASH
-    found = c.draft.step(
-        "voronoi", inputs, (1, 3, 3, 1, 1), (dimensions - 1, feature, metric, flags)
-    )
+    found = c.draft.step("voronoi", inputs, (1, 3, 3, 1, 1), (dimensions - 1, feature, metric, flags))
     return found[_VORONOI[plug.socket.name]]
 
 
@@ -119,7 +117,7 @@ def _gradient(c, plug):
 
 
 def _factor_or_color(c, plug, operation, names, choices=(), more=()):
-    """Of a texture whose outputs are a factor and a color."""
+    """The asked output of a texture that returns a factor and a color."""
     inputs = place(c, plug), *(c.input(plug.input(name)) for name in names), *more
     factor, color = c.draft.step(operation, inputs, (1, 3), choices)
     return color if plug.socket.type == "RGBA" else factor

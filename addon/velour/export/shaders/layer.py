@@ -26,9 +26,10 @@ class Relief(NamedTuple):
 
 
 class Layer(NamedTuple):
-    """Keywords of Shader.add_layer, pictures, CornerColors or Computed that replace some, and factors of its weight.
+    """Keywords of Shader.add_layer, sources that replace some, and factors of its weight.
 
     kind: as in Shader.add_layer. A principled layer may hold alpha and emission until split() separates them.
+    pictures: Pictures, CornerColors and Computed.
     """
 
     kind: str
@@ -78,8 +79,8 @@ def shines(layer):
 
 
 def sources_of(layers):
-    """What the layers read from meshes: Pictures, Coordinates and CornerColors, those of their program first; the UV
-    maps of tangents of normal maps; and the Draft of their program, or None."""
+    """What the layers read from meshes: Pictures, Coordinates and CornerColors, those of their program first;
+    the UV maps of tangents of normal maps; and the Draft of their program, or None."""
     parts = [*layers, *(layer.glow for layer in layers if layer.glow)]
     given = [source for part in parts for source in part.pictures.values()]
     given += [factor.picture for part in parts for factor in part.factors if factor.picture]

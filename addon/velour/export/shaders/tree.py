@@ -13,7 +13,10 @@ _MOST_LAYERS = 64  # nested mixes with shared shaders can have far more
 
 
 def surface_layers(material, notes, metres=1.0):
-    """The Layers of a material that is not measured; notes what is left out. `metres`: per unit of coordinates."""
+    """The Layers of a material that is not measured; notes what is left out.
+
+    metres: per unit of Blender's coordinates.
+    """
     if material is None:
         return [gray()]
     if not has_nodes(material):

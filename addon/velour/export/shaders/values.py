@@ -39,7 +39,7 @@ class Reader:
         return value
 
     def _source_of(self, fed, asked):
-        """The Picture, CornerColors or Computed at an output that feeds the socket `asked`; raises UnsupportedError."""
+        """What an output that feeds the socket `asked` provides; raises UnsupportedError."""
         is_number = isinstance(asked.default_value, (int, float))
         if fed.node.bl_idname in ("ShaderNodeVertexColor", "ShaderNodeAttribute"):
             return corner_colors_of(fed, is_number)
