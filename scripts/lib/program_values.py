@@ -10,7 +10,7 @@ import bpy
 import numpy as np
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "addon"))
-from velour.native import table  # noqa: E402  (found by the line above)
+from velour.native import table  # found by the line above
 
 VERSION = bpy.app.version
 NEW, NEWEST = VERSION >= (4, 1), VERSION >= (5, 0)

@@ -135,9 +135,9 @@ vlr_status vlr_shader_weigh_layer(vlr_shader* shader, const vlr_factor_desc* des
                   "The shader has no layer that the factor could weight; add a layer before its factors.");
     }
     const auto texture = number_slot(factor.texture, factor.map, factor.set, "vlr_factor_desc.texture");
-    shader->last->factors.push_back({static_cast<LayerFactor::Kind>(factor.kind), factor.value, texture});
     shader->sets.add(texture);
     shader->opacity.add(texture);
+    shader->last->factors.push_back({static_cast<LayerFactor::Kind>(factor.kind), factor.value, texture});
   });
 }
 
