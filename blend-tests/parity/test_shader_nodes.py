@@ -3,7 +3,7 @@
 import bpy
 
 from . import stage
-from .board import COLUMNS, ROWS, BoardTest
+from .board import COLUMNS, ROWS, BoardTest, Nodes
 
 
 def _items(idname, name):
@@ -313,3 +313,71 @@ class Inputs(BoardTest):
         self.assert_ignored(
             "Unsupported nodes below others", "'Wireframe' is not a node that Velour evaluates"
         )
+
+
+class Views(BoardTest):
+    """Nodes of the view and of normals, on spheres under a sharp sun."""
+
+    def setUp(self):
+        super().setUp()
+        stage.sharp_sun()
+
+    def _sphere(self, number, build):
+        """A sphere whose diffuse shader `build` changes."""
+        ball = stage.sphere(radius=0.45, segments=32, rings=16)
+        ball.location = (number % COLUMNS + 0.5, number // COLUMNS + 0.5, 0)
+        material = ball.data.materials[0].copy()
+        ball.data.materials[0] = material
+        nodes = Nodes(material.node_tree)
+        shader = next(n for n in nodes.tree.nodes if n.bl_idname == "ShaderNodeBsdfDiffuse")
+        build(nodes, shader)
+
+    def test_fresnel(self):
+        def colored(idname, output, inputs):
+            def built(nodes, shader):
+                nodes.set(shader, "Color", nodes.add(idname, inputs).outputs[output])
+
+            return built
+
+        builds = [
+            colored("Fresnel", 0, {"IOR": 1.45}),
+            colored("LayerWeight", "Fresnel", {"Blend": 0.3}),
+            colored("LayerWeight", "Facing", {"Blend": 0.3}),
+            colored("LayerWeight", "Facing", {"Blend": 0.7}),
+        ]
+        for number, build in enumerate(builds):
+            self._sphere(number, build)
+        self.assert_parity("Fresnel, Layer Weight")
+
+    def test_bump(self):
+        def bumped(**settings):
+            def built(nodes, shader):
+                place = nodes.add("TexCoord").outputs["Object"]
+                height = nodes.add("TexNoise", {"Vector": place, "Scale": 4.0, "Detail": 0.0})
+                inputs = {"Height": height.outputs[0], "Distance": 0.2, "Strength": 0.8}
+                bump = nodes.add("Bump", inputs, **settings)
+                nodes.set(shader, "Normal", bump.outputs[0])
+
+            return built
+
+        def chained(nodes, shader):
+            wave = nodes.add("TexWave", {"Vector": nodes.add("TexCoord").outputs["Object"], "Scale": 1.5})
+            first = nodes.add("Bump", {"Height": wave.outputs[1], "Distance": 0.05})
+            place = nodes.add("TexCoord").outputs["Generated"]
+            height = nodes.add("TexNoise", {"Vector": place, "Scale": 6.0, "Detail": 0.0})
+            second = nodes.add(
+                "Bump", {"Height": height.outputs[0], "Distance": 0.1, "Normal": first.outputs[0]}
+            )
+            nodes.set(shader, "Normal", second.outputs[0])
+
+        def displaced(nodes, _shader):
+            place = nodes.add("TexCoord").outputs["Object"]
+            height = nodes.add("TexNoise", {"Vector": place, "Scale": 4.0, "Detail": 0.0})
+            moved = nodes.add("Displacement", {"Height": height.outputs[0], "Scale": 0.2})
+            end = next(n for n in nodes.tree.nodes if n.bl_idname == "ShaderNodeOutputMaterial")
+            nodes.set(end, "Displacement", moved.outputs[0])
+
+        builds = [bumped(), bumped(invert=True), chained, displaced]
+        for number, build in enumerate(builds):
+            self._sphere(number, build)
+        self.assert_parity("Bump: strength, distance, invert, chained; displacement as bump")
