@@ -53,8 +53,8 @@ class Notes(NotesTest):
         node = next(
             n for n in tree.nodes if n.bl_idname == "ShaderNodeBsdfPrincipled" and n.outputs[0].is_linked
         )
-        checker = tree.nodes.new("ShaderNodeTexChecker")
-        tree.links.new(checker.outputs["Color"], node.inputs["Base Color"])
+        wires = tree.nodes.new("ShaderNodeWireframe")
+        tree.links.new(wires.outputs[0], node.inputs["Base Color"])
         self.assert_said("Material 'Glass'", node.name, "Base Color")
 
     def _linked(self, idname, shader="ShaderNodeBsdfDiffuse", socket="Normal"):
@@ -66,8 +66,12 @@ class Notes(NotesTest):
         return node, other
 
     def test_other_normals(self):
-        node, bump = self._linked("ShaderNodeBump")
-        self.assert_said("Material 'Glass'", node.name, "'Normal'", f"'{bump.name}' is not a Normal Map")
+        node, tangent = self._linked("ShaderNodeTangent")
+        self.assert_said("Material 'Glass'", node.name, "'Normal'", f"'{tangent.name}' is not a node that")
+
+    def test_bump(self):
+        self._linked("ShaderNodeBump")
+        self.assertEqual(self.notes(), [])
 
     def test_spaces_of_normal_maps(self):
         glossy, normal_map = self._linked("ShaderNodeNormalMap", "ShaderNodeBsdfGlossy")

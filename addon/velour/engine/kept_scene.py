@@ -12,6 +12,7 @@ from ..export import Notes
 from ..export.look import scene_key
 from ..export.nodes import model_names
 from ..export.scene import SceneExport
+from ..export.units import metres_per_unit
 from ..export.world import shown_world
 
 _all = weakref.WeakSet()
@@ -32,7 +33,9 @@ class KeptScene:
     @contextlib.contextmanager
     def frame(self, depsgraph, strict, asked):
         """The SceneExport of a frame, which is not kept after an error or a cancel."""
-        export = self._followed(depsgraph, strict, asked) or SceneExport(Notes(), strict, asked)
+        export = self._followed(depsgraph, strict, asked) or SceneExport(
+            Notes(), strict, asked, metres_per_unit(depsgraph.scene)
+        )
         try:
             yield export
         except BaseException:

@@ -30,6 +30,10 @@ class CornerColors(NamedTuple):
     otherwise: float = 0.0  # value on meshes without the attribute
 
 
+# Not an attribute: positions before deformation, from 0 to 1 over the mesh's texture space.
+GENERATED = CornerColors(None, "Generated", False)
+
+
 def corner_colors_of(plug, is_number):
     """CornerColors of an attribute node's output. `is_number`: it is linked to a float input, not a color."""
     node, part = plug.node, plug.socket.name
@@ -78,7 +82,7 @@ def corner_colors(mesh, arrays, colors):
 
 
 def has_attribute(mesh, asked):
-    return _attribute(mesh, asked.name) is not None
+    return asked == GENERATED or _attribute(mesh, asked.name) is not None
 
 
 def missing_colors(obj, asked, material_name):
@@ -114,12 +118,23 @@ def _attribute(mesh, name):
 
 def _corner_values(mesh, arrays, asked):
     """[corners x 3], or None."""
+    if asked == GENERATED:
+        return _generated(mesh)[arrays.corner_vertices]
     attribute = _attribute(mesh, asked.name)
     if attribute is None:
         return None
     values = np.empty((len(attribute.data), attribute.size), np.float32)
     attribute.data.foreach_get(attribute.field, values.reshape(-1))
     return _SPREAD[attribute.domain](mesh, arrays, _shown(values, asked))
+
+
+def _generated(mesh):
+    """[vertices x 3] Generated coordinates, as in Cycles (mesh_texture_space)."""
+    places = np.empty((len(mesh.vertices), 3), np.float32)
+    mesh.vertices.foreach_get("undeformed_co", places.reshape(-1))
+    middle = np.array(mesh.texspace_location, np.float32)
+    half = np.array(mesh.texspace_size, np.float32)
+    return (places - middle) / np.where(half != 0.0, 2.0 * half, 1.0) + 0.5
 
 
 def _shown(values, asked):

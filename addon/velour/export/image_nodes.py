@@ -10,6 +10,7 @@ from .plugs import fed_by
 
 _WRAPS = {"REPEAT": "repeat", "EXTEND": "extend", "CLIP": "clip", "MIRROR": "mirror"}
 _SOURCES = ("FILE", "GENERATED")
+_IDENTITY = np.eye(2, 3, dtype=np.float32)
 
 
 class Picture(NamedTuple):
@@ -24,12 +25,25 @@ class Picture(NamedTuple):
     coordinates: str  # name of the mesh's UV map; empty: the active render map
 
 
+class Coordinates(NamedTuple):
+    """Texture coordinates that are used without an image."""
+
+    coordinates: str  # as Picture.coordinates
+
+
 class UnsupportedError(Exception):
     """Why a node cannot be rendered, as the end of a sentence."""
 
 
 def picture_of(plug, owner, notes):
-    """The Picture at a node's output; raises UnsupportedError unless it is an Image Texture."""
+    """The Picture at a node's output; raises UnsupportedError unless it is an Image Texture on a UV map."""
+    picture = unplaced_picture(plug, owner, notes)
+    uv_map, coordinates = uv_placement(plug.input("Vector"))
+    return picture._replace(uv_map=uv_map, coordinates=coordinates)
+
+
+def unplaced_picture(plug, owner, notes):
+    """Like picture_of(), whatever the coordinates are; those of the Picture are the mesh's own."""
     node = plug.node
     if node.bl_idname != "ShaderNodeTexImage":
         raise UnsupportedError(f"'{node.name}' is not an Image Texture")
@@ -42,7 +56,8 @@ def picture_of(plug, owner, notes):
         node.outputs["Alpha"].is_linked,
         choice(_WRAPS, node.extension, "REPEAT", f"{owner}: node '{node.name}'", "extension", notes),
         "closest" if node.interpolation == "Closest" else "linear",
-        *_picture_map(plug.input("Vector")),
+        _IDENTITY,
+        "",
     )
 
 
@@ -55,7 +70,11 @@ def _check(node):
         raise UnsupportedError(f"'{node.name}' is not projected with Flat")
 
 
-def _picture_map(vector):
+def is_identity(uv_map):
+    return bool((uv_map == _IDENTITY).all())
+
+
+def uv_placement(vector):
     """`uv_map` and `coordinates` of an Image Texture's Vector input; unlinked: the mesh's own."""
     matrix, name = uv_map_of(vector)
     return matrix, name or ""
@@ -68,9 +87,9 @@ def uv_map_of(vector):
     """
     fed = fed_by(vector)
     if fed is None:
-        return np.eye(2, 3, dtype=np.float32), None
+        return _IDENTITY, None
     if fed.node.bl_idname != "ShaderNodeMapping":
-        return np.eye(2, 3, dtype=np.float32), _coordinates(fed)
+        return _IDENTITY, _coordinates(fed)
     coordinates = fed_by(fed.input("Vector"))
     if coordinates is None:
         raise UnsupportedError(f"'{fed.node.name}' has no coordinates linked to it")

@@ -10,6 +10,7 @@ from .kept_meshes import KeptMeshes
 from .materials import MaterialTable
 from .notes import Notes
 from .objects import ObjectExport
+from .units import metres_per_unit
 from .world import add_world, shown_world
 from .world_light import WorldLight
 
@@ -22,7 +23,7 @@ class LiveExport:
         self.scene = Scene() if scene is None else scene
         try:
             set_working_space(self.scene)
-            self._materials = MaterialTable(self.scene, Notes(), strict=False)
+            self._materials = MaterialTable(self.scene, Notes(), False, metres_per_unit(depsgraph.scene))
             self._meshes = KeptMeshes()
             self._world = WorldLight(self.scene)
             self._look = look.key()

@@ -1,11 +1,12 @@
 """Blender materials by number in the library's scene."""
 
-from ..native import Shader, VelourError
+from ..native import Shader, TextureSlot, VelourError
 from .corner_colors import CornerColors, shader_colors
 from .measured_materials import MeasuredMaterials
 from .model_hashes import model_hashes
 from .notes import ExportError, Notes
 from .placement import Tile
+from .programs import Computed, finished
 from .shaders import (
     as_measured,
     as_principled,
@@ -25,11 +26,12 @@ class MaterialTable:
     """Adds each material once, with its full model; those that may switch to a scene model are in `reduced`.
 
     `strict` refuses measured materials that cannot be read; otherwise (previews, the viewport) the nodes in
-    their groups are rendered, with a note.
+    their groups are rendered, with a note. `metres`: per unit of Blender's coordinates.
     """
 
-    def __init__(self, scene, notes, strict=True):
+    def __init__(self, scene, notes, strict=True, metres=1.0):
         self._scene = scene
+        self._metres = metres
         self._notes = notes
         self.strict = strict
         self._numbers = {}
@@ -39,6 +41,7 @@ class MaterialTable:
         self._tiles = {}  # Tiles of repeating materials
         self._turns = {}  # rotation of other anisotropic materials, radians
         self._textured = set()  # materials with textures
+        self._programs = {}  # of materials; None: none
         self._textures = TextureTable(scene, notes)
         self._measured = MeasuredMaterials(scene, notes)
         self.models = {}  # file hashes of measured materials, by full name
@@ -140,7 +143,7 @@ class MaterialTable:
         return self._uv_maps[key], self._colors.get(key), placed, key in self._textured
 
     def _add(self, material):
-        layers = surface_layers(material, self._notes)
+        layers = surface_layers(material, self._notes, self._metres)
         if not any(layer.measured for layer in layers):
             return self._add_shader(material, layers)
         try:
@@ -155,13 +158,15 @@ class MaterialTable:
                 raise
             self._notes.add(str(error))
         self._forget_needs(material)
-        return self._add_shader(material, surface_layers(material, Notes(), opens_measured=True))
+        opened = surface_layers(material, Notes(), self._metres, opens_measured=True)
+        return self._add_shader(material, opened)
 
     def _add_shader(self, material, layers):
-        sources, reliefs = sources_of(layers)
+        sources, reliefs, draft = sources_of(layers)
         placed = self._note_mixed(material, layers)
         self._uv_maps[_key(material)] = shader_maps(_owner(material), sources, reliefs, self._notes, placed)
         self._colors[_key(material)] = shader_colors(_owner(material), sources, self._notes)
+        self._programs[_key(material)] = draft and self._finished(draft, material)
         self.glows = self.glows or any(map(shines, layers))
         plain = as_principled(layers)
         if plain:
@@ -218,6 +223,16 @@ class MaterialTable:
         measured = [layer.measured for layer in layers if layer.measured]
         return [each for each in measured if "shell" in self._measured.of_layer(material, each).info]
 
+    def _finished(self, draft, material):
+        """The Program of a Draft."""
+        key = _key(material)
+
+        def texture(picture, is_color):
+            self._textured.add(key)
+            return self._textures.texture(picture, is_color, _owner(material))
+
+        return finished(draft, self._uv_maps[key], self._colors[key], texture)
+
     def _with_rays(self, number, material):
         """Sets backface culling and light sampling of a material; returns its number."""
         self._scene.hide_backs(number, hidden_backs(material))
@@ -246,7 +261,9 @@ class MaterialTable:
         return {name: slot for name, slot in slots.items() if slot}
 
     def _slot(self, picture, is_color, material):
-        """TextureSlot of a picture; None: use the socket's own value."""
+        """TextureSlot of a picture or of what replaces one; None: use the socket's own value."""
+        if isinstance(picture, Computed):
+            return TextureSlot(self._programs[_key(material)].texture(picture.index))
         if isinstance(picture, CornerColors):
             colors = self._colors[_key(material)]
             return self._textures.of_corners(colors.index(picture)) if picture in colors else None

@@ -16,14 +16,18 @@ class TextureTable:
         self._notes = notes
         self._textures = {}
 
-    def slot(self, picture, is_color, owner, uv_maps):
-        """TextureSlot of a Picture for a material's UvMaps; None, with a note, if it cannot be read."""
+    def slot(self, picture, is_color, owner, uv_maps, instead="the value of its input"):
+        """TextureSlot of a Picture for a material's UvMaps, if any; None, with a note, if it cannot be read.
+
+        `instead`: what is shown then.
+        """
         channels = (picture.alpha, picture.beside_alpha, is_color)
         key = (picture.image.as_pointer(), *channels, picture.wrap, picture.filter)
         if key not in self._textures:
-            self._textures[key] = self._read(picture, is_color, owner)
+            self._textures[key] = self._read(picture, is_color, owner, instead)
         texture = self._textures[key]
-        return TextureSlot(texture, picture.uv_map, uv_maps.number(picture.coordinates)) if texture else None
+        number = uv_maps.number(picture.coordinates) if uv_maps else 0
+        return TextureSlot(texture, picture.uv_map, number) if texture else None
 
     def of_corners(self, color_set):
         """TextureSlot of a set of corner colors."""
@@ -31,19 +35,25 @@ class TextureTable:
             self._textures[color_set] = Texture.of_corners(color_set)
         return TextureSlot(self._textures[color_set])
 
-    def _read(self, picture, is_color, owner):
+    def texture(self, picture, is_color, owner):
+        """The Texture of a Picture in a program; if it cannot be read, magenta with a note, as in Cycles."""
+        slot = self.slot(picture, is_color, owner, None, "magenta")
+        if slot:
+            return slot.texture
+        pixels = np.array((((1.0, 0.0, 1.0),),), np.float32)
+        return self._scene.texture(pixels, channel=-1 if is_color else 0)
+
+    def _read(self, picture, is_color, owner, instead):
         try:
             pixels = working_pixels(picture.image, self._notes, picture.beside_alpha)
         except VelourError as error:
-            self._notes.add(
-                f"{owner}: image '{picture.image.name}' is replaced by the value of its input: {error}"
-            )
+            self._notes.add(f"{owner}: image '{picture.image.name}' is replaced by {instead}: {error}")
             return None
         if pixels is None:
             path = absolute_path(picture.image) or "no file"
             self._notes.add(
-                f"{owner}: image '{picture.image.name}' ({path}) cannot be read and is replaced by the value"
-                f" of its input; {FIND}."
+                f"{owner}: image '{picture.image.name}' ({path}) cannot be read and is replaced by"
+                f" {instead}; {FIND}."
             )
             return None
         options = {"wrap": picture.wrap, "filter": picture.filter}

@@ -2,7 +2,7 @@
 
 from typing import NamedTuple
 
-from .image_nodes import Picture
+from .image_nodes import Coordinates, Picture
 from .nodes import source, velour_node
 
 MOST_SETS = 4  # VLR_MOST_UV_SETS
@@ -65,12 +65,11 @@ def linked_uv_map(node):
 
 
 def shader_maps(owner, sources, reliefs, notes, first=None):
-    """UvMaps of a material from the pictures in its layers and Reliefs.
+    """UvMaps of a material from sources of its layers and UV maps of its reliefs.
 
     first: name of the map of a measured layer. It alone is placed, so other layers have a set of their own.
     """
-    pictures = [each for each in sources if isinstance(each, Picture)]
-    pictures += [relief.picture for relief in reliefs]
+    pictures = [source for source in sources if isinstance(source, (Picture, Coordinates))]
     names = tuple(sorted({picture.coordinates for picture in pictures}))
     if first is not None:
         names = (first, *names)
@@ -89,7 +88,7 @@ def shader_maps(owner, sources, reliefs, notes, first=None):
 
 def _relief_map(owner, usual, reliefs, notes):
     """Name of the map of normal maps' tangents; None if it is `usual` or there are none."""
-    asked = list(dict.fromkeys(relief.uv_map for relief in reliefs))
+    asked = list(dict.fromkeys(reliefs))
     if len(asked) > 1:
         notes.add(
             f"{owner}: its Normal Maps use several UV maps; the tangents of all follow {_called(asked[0])}."

@@ -30,6 +30,7 @@ _MODULES = {
     "observation": ("Observation",),
     "passes": ("INSTANCE_LABEL", "MATERIAL_LABEL", "Passes", "cryptomatte_id"),
     "plot": ("Plot",),
+    "program": ("Instruction", "Output", "Program"),
     "progressive": ("Picture", "ProgressiveJob"),
     "realtime": ("btf_maps_job", "light_map_job", "lobe_rows_job", "principled_rows_job", "shell_maps_job"),
     "scene": ("Scene",),

@@ -238,6 +238,39 @@ class PrincipledTextures(Struct):
     ]
 
 
+class Instruction(ctypes.Structure):
+    _fields_ = [
+        ("operation", c_int32),
+        ("choice", c_int32 * 4),
+        ("input", c_uint32 * 12),
+        ("output", c_uint32),
+        ("table", c_uint32),
+        ("table_size", c_uint32),
+    ]
+
+
+class ProgramOutput(ctypes.Structure):
+    _fields_ = [("first", c_uint32), ("kind", c_int32)]
+
+
+class ProgramDesc(Struct):
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("registers", c_uint32),
+        ("constant_count", c_uint32),
+        ("instruction_count", c_uint32),
+        ("table_count", c_uint32),
+        ("image_count", c_uint32),
+        ("output_count", c_uint32),
+        ("step", c_float),
+        ("constants", c_void_p),
+        ("instructions", c_void_p),
+        ("tables", c_void_p),
+        ("images", c_void_p),
+        ("outputs", c_void_p),
+    ]
+
+
 class LayerDesc(Struct):
     _fields_ = [
         ("struct_size", c_uint32),
@@ -422,6 +455,9 @@ STRUCTS = {
     "vlr_principled_desc": PrincipledDesc,
     "vlr_tile_options": TileOptions,
     "vlr_texture_options": TextureOptions,
+    "vlr_instruction": Instruction,
+    "vlr_program_output": ProgramOutput,
+    "vlr_program_desc": ProgramDesc,
     "vlr_principled_textures": PrincipledTextures,
     "vlr_layer_desc": LayerDesc,
     "vlr_factor_desc": FactorDesc,

@@ -33,7 +33,7 @@ extern "C" {
 #endif
 
 /* Increases whenever a struct or the meaning of a call changes. */
-#define VLR_ABI_VERSION 10
+#define VLR_ABI_VERSION 11
 
 typedef int32_t vlr_status;
 enum {
@@ -54,6 +54,7 @@ typedef struct vlr_btf vlr_btf;
 typedef struct vlr_model vlr_model;
 typedef struct vlr_scene vlr_scene;
 typedef struct vlr_texture vlr_texture;         /* an image that replaces a parameter of a material */
+typedef struct vlr_program vlr_program;         /* values computed at each point of a surface */
 typedef struct vlr_shader vlr_shader;           /* the layers of a material under construction */
 typedef struct vlr_observation vlr_observation; /* scene usage of one material */
 typedef struct vlr_tile vlr_tile;               /* procedural mesostructure */
@@ -618,6 +619,265 @@ VLR_API void vlr_principled_textures_init(vlr_principled_textures* textures);
 VLR_API vlr_status vlr_scene_add_textured_material(vlr_scene* scene, const vlr_principled_desc* desc,
                                                    const vlr_principled_textures* textures, uint32_t* material);
 
+/* ---- programs: values computed at each point ------------------------------------------------------------------- */
+
+/* Operations are Blender's nodes of the same name, with the formulas of Cycles. Inputs -> outputs; choices. A number
+ * after a name counts registers, else it is one; tables are rows of floats. Undefined values, like 1 / 0, are 0.
+ *
+ * SOURCE -> value 3; VLR_SOURCE_*, set, VLR_SHIFT_*
+ * IMAGE place 3 -> color 3; number of the image, 0 or 1 + UV set whose footprint, times the table (2 x 2, row-major),
+ * is averaged; 0: a point MATH a, b, c -> value; VLR_MATH_*, 1: clamped to [0, 1] VECTOR_MATH a 3, b 3, c 3, scale ->
+ * vector 3, value; VLR_VECTOR_* MIX_COLOR factor, a 3, b 3 -> color 3; VLR_BLEND_*, 1: factor clamped, 1: color clamped
+ * MIX_NUMBER factor, a, b -> value; 1: factor clamped
+ * MIX_VECTOR factor 3, a 3, b 3 -> vector 3; 1: factor clamped
+ * COMBINE 3 components -> color 3; VLR_COLOR_MODEL_*. SEPARATE color 3 -> 3 components; VLR_COLOR_MODEL_*
+ * RAMP factor -> color 3, alpha; 1: interpolated; table: at least 2 rows of RGBA, evenly from 0 to 1
+ * CURVES factor, color 3, place of the first and of the last row -> color 3; 1: continued beyond the table; table: at
+ *   least 2 rows of RGB
+ * HUE_SATURATION hue, saturation, value, factor, color 3 -> color 3
+ * INVERT factor, color 3 -> color 3. GAMMA color 3, gamma -> color 3. BRIGHT_CONTRAST color 3, bright, contrast ->
+ * color 3 CLAMP value, min, max -> value; 1: min and max may be swapped MAP_RANGE value, from min, from max, to min, to
+ * max, steps -> value; VLR_RANGE_*, 1: clamped MAP_RANGE_VECTOR: the same of vectors MAPPING vector 3, location 3,
+ * rotation 3 (radians), scale 3 -> vector 3; VLR_MAPPING_* TRANSFORM point 3 -> point 3; table: 3 x 4 matrix, row-major
+ * FRESNEL ior, normal 3, incoming 3, backfacing -> factor
+ * LAYER_WEIGHT blend, normal 3, incoming 3, backfacing -> fresnel, facing
+ * NOISE vector 3, w, scale, detail, roughness, lacunarity, offset, gain, distortion -> value, color 3; dimensions - 1,
+ *   VLR_NOISE_*, 1: normalized (fBM), 1: the color is needed. Detail may be down to -1: no octave at all
+ * VORONOI vector 3, w, scale, detail, roughness, lacunarity, smoothness, exponent, randomness -> distance, color 3,
+ *   position 3, w, radius; dimensions - 1, VLR_VORONOI_*, VLR_METRIC_*, 1: normalized + 2: integer hash of Blender 5
+ * WAVE vector 3, scale, distortion, detail, detail scale, detail roughness, phase -> factor; 0: bands, 1: rings,
+ *   VLR_WAVE_AXIS_*, VLR_WAVE_PROFILE_*
+ * GRADIENT vector 3 -> factor; VLR_GRADIENT_*. CHECKER vector 3, color 3, color 3, scale -> factor, color 3
+ * BRICK vector 3, color 3, color 3, mortar 3, scale, mortar size, mortar smooth, bias, width, height, offset, squash ->
+ *   factor, color 3; frequencies of offset and squash
+ * MAGIC vector 3, scale, distortion -> factor, color 3; depth, 1: scaled before it is wrapped, as in newer Blenders
+ * WHITE_NOISE vector 3, w -> value, color 3; dimensions - 1
+ * NORMAL_MAP color 3, strength, tangent 3, bitangent 3, normal 3, normal without tangents 3 -> unit normal 3
+ * BUMP strength, distance, height, heights shifted by x and by y, normal 3, step x 3, step y 3 -> unit normal 3 */
+enum {
+  VLR_OPERATION_SOURCE = 0,
+  VLR_OPERATION_IMAGE = 1,
+  VLR_OPERATION_MATH = 2,
+  VLR_OPERATION_VECTOR_MATH = 3,
+  VLR_OPERATION_MIX_COLOR = 4,
+  VLR_OPERATION_MIX_VECTOR = 5,
+  VLR_OPERATION_COMBINE = 6,
+  VLR_OPERATION_SEPARATE = 7,
+  VLR_OPERATION_RAMP = 8,
+  VLR_OPERATION_CURVES = 9,
+  VLR_OPERATION_HUE_SATURATION = 10,
+  VLR_OPERATION_INVERT = 11,
+  VLR_OPERATION_GAMMA = 12,
+  VLR_OPERATION_BRIGHT_CONTRAST = 13,
+  VLR_OPERATION_CLAMP = 14,
+  VLR_OPERATION_MAP_RANGE = 15,
+  VLR_OPERATION_MAPPING = 16,
+  VLR_OPERATION_TRANSFORM = 17,
+  VLR_OPERATION_FRESNEL = 18,
+  VLR_OPERATION_LAYER_WEIGHT = 19,
+  VLR_OPERATION_NOISE = 20,
+  VLR_OPERATION_VORONOI = 21,
+  VLR_OPERATION_WAVE = 22,
+  VLR_OPERATION_GRADIENT = 23,
+  VLR_OPERATION_CHECKER = 24,
+  VLR_OPERATION_BRICK = 25,
+  VLR_OPERATION_MAGIC = 26,
+  VLR_OPERATION_WHITE_NOISE = 27,
+  VLR_OPERATION_NORMAL_MAP = 28,
+  VLR_OPERATION_BUMP = 29,
+  VLR_OPERATION_MIX_NUMBER = 30,
+  VLR_OPERATION_MAP_RANGE_VECTOR = 31
+};
+/* Properties of the surface at a point; directions are unit and in world space unless noted. UV: coordinates of the
+ * set, and 0. CORNER: corner colors of the set. POSITION: meters. OBJECT_POSITION, OBJECT_NORMAL: object space. NORMAL:
+ * shading normal on the viewer's side, as is GEOMETRIC_NORMAL. INCOMING: towards the viewer. BACKFACING: 1 behind the
+ * mesh's normal. MAP_*: axes of normal maps in tangent space. STEP_X and STEP_Y: from the point to the shifted points
+ * of VLR_SHIFT_*, about a pixel wide, meters. */
+enum {
+  VLR_SOURCE_UV = 0,
+  VLR_SOURCE_CORNER = 1,
+  VLR_SOURCE_POSITION = 2,
+  VLR_SOURCE_OBJECT_POSITION = 3,
+  VLR_SOURCE_NORMAL = 4,
+  VLR_SOURCE_OBJECT_NORMAL = 5,
+  VLR_SOURCE_GEOMETRIC_NORMAL = 6,
+  VLR_SOURCE_INCOMING = 7,
+  VLR_SOURCE_BACKFACING = 8,
+  VLR_SOURCE_MAP_TANGENT = 9,
+  VLR_SOURCE_MAP_BITANGENT = 10,
+  VLR_SOURCE_MAP_NORMAL = 11,
+  VLR_SOURCE_STEP_X = 12,
+  VLR_SOURCE_STEP_Y = 13
+};
+enum { VLR_SHIFT_NONE = 0, VLR_SHIFT_X = 1, VLR_SHIFT_Y = 2 };
+enum {
+  VLR_MATH_ADD = 0,
+  VLR_MATH_SUBTRACT = 1,
+  VLR_MATH_MULTIPLY = 2,
+  VLR_MATH_DIVIDE = 3,
+  VLR_MATH_MULTIPLY_ADD = 4,
+  VLR_MATH_POWER = 5,
+  VLR_MATH_LOGARITHM = 6,
+  VLR_MATH_SQRT = 7,
+  VLR_MATH_INVERSE_SQRT = 8,
+  VLR_MATH_ABSOLUTE = 9,
+  VLR_MATH_EXPONENT = 10,
+  VLR_MATH_MINIMUM = 11,
+  VLR_MATH_MAXIMUM = 12,
+  VLR_MATH_LESS_THAN = 13,
+  VLR_MATH_GREATER_THAN = 14,
+  VLR_MATH_SIGN = 15,
+  VLR_MATH_COMPARE = 16,
+  VLR_MATH_SMOOTH_MIN = 17,
+  VLR_MATH_SMOOTH_MAX = 18,
+  VLR_MATH_ROUND = 19,
+  VLR_MATH_FLOOR = 20,
+  VLR_MATH_CEIL = 21,
+  VLR_MATH_TRUNC = 22,
+  VLR_MATH_FRACT = 23,
+  VLR_MATH_MODULO = 24,
+  VLR_MATH_FLOORED_MODULO = 25,
+  VLR_MATH_WRAP = 26,
+  VLR_MATH_SNAP = 27,
+  VLR_MATH_PINGPONG = 28,
+  VLR_MATH_SINE = 29,
+  VLR_MATH_COSINE = 30,
+  VLR_MATH_TANGENT = 31,
+  VLR_MATH_ARCSINE = 32,
+  VLR_MATH_ARCCOSINE = 33,
+  VLR_MATH_ARCTANGENT = 34,
+  VLR_MATH_ARCTAN2 = 35,
+  VLR_MATH_SINH = 36,
+  VLR_MATH_COSH = 37,
+  VLR_MATH_TANH = 38,
+  VLR_MATH_RADIANS = 39,
+  VLR_MATH_DEGREES = 40
+};
+enum {
+  VLR_VECTOR_ADD = 0,
+  VLR_VECTOR_SUBTRACT = 1,
+  VLR_VECTOR_MULTIPLY = 2,
+  VLR_VECTOR_DIVIDE = 3,
+  VLR_VECTOR_MULTIPLY_ADD = 4,
+  VLR_VECTOR_CROSS_PRODUCT = 5,
+  VLR_VECTOR_PROJECT = 6,
+  VLR_VECTOR_REFLECT = 7,
+  VLR_VECTOR_REFRACT = 8,
+  VLR_VECTOR_FACEFORWARD = 9,
+  VLR_VECTOR_DOT_PRODUCT = 10,
+  VLR_VECTOR_DISTANCE = 11,
+  VLR_VECTOR_LENGTH = 12,
+  VLR_VECTOR_SCALE = 13,
+  VLR_VECTOR_NORMALIZE = 14,
+  VLR_VECTOR_ABSOLUTE = 15,
+  VLR_VECTOR_MINIMUM = 16,
+  VLR_VECTOR_MAXIMUM = 17,
+  VLR_VECTOR_FLOOR = 18,
+  VLR_VECTOR_CEIL = 19,
+  VLR_VECTOR_FRACTION = 20,
+  VLR_VECTOR_MODULO = 21,
+  VLR_VECTOR_WRAP = 22,
+  VLR_VECTOR_SNAP = 23,
+  VLR_VECTOR_SINE = 24,
+  VLR_VECTOR_COSINE = 25,
+  VLR_VECTOR_TANGENT = 26,
+  VLR_VECTOR_POWER = 27,
+  VLR_VECTOR_SIGN = 28,
+  VLR_VECTOR_ROUND = 29
+};
+enum {
+  VLR_BLEND_MIX = 0,
+  VLR_BLEND_DARKEN = 1,
+  VLR_BLEND_MULTIPLY = 2,
+  VLR_BLEND_BURN = 3,
+  VLR_BLEND_LIGHTEN = 4,
+  VLR_BLEND_SCREEN = 5,
+  VLR_BLEND_DODGE = 6,
+  VLR_BLEND_ADD = 7,
+  VLR_BLEND_OVERLAY = 8,
+  VLR_BLEND_SOFT_LIGHT = 9,
+  VLR_BLEND_LINEAR_LIGHT = 10,
+  VLR_BLEND_DIFFERENCE = 11,
+  VLR_BLEND_EXCLUSION = 12,
+  VLR_BLEND_SUBTRACT = 13,
+  VLR_BLEND_DIVIDE = 14,
+  VLR_BLEND_HUE = 15,
+  VLR_BLEND_SATURATION = 16,
+  VLR_BLEND_COLOR = 17,
+  VLR_BLEND_VALUE = 18
+};
+enum { VLR_COLOR_MODEL_RGB = 0, VLR_COLOR_MODEL_HSV = 1, VLR_COLOR_MODEL_HSL = 2 };
+enum { VLR_RANGE_LINEAR = 0, VLR_RANGE_STEPPED = 1, VLR_RANGE_SMOOTHSTEP = 2, VLR_RANGE_SMOOTHERSTEP = 3 };
+enum { VLR_MAPPING_POINT = 0, VLR_MAPPING_TEXTURE = 1, VLR_MAPPING_VECTOR = 2, VLR_MAPPING_NORMAL = 3 };
+enum {
+  VLR_NOISE_FBM = 0,
+  VLR_NOISE_MULTIFRACTAL = 1,
+  VLR_NOISE_HYBRID_MULTIFRACTAL = 2,
+  VLR_NOISE_RIDGED_MULTIFRACTAL = 3,
+  VLR_NOISE_HETERO_TERRAIN = 4
+};
+enum {
+  VLR_VORONOI_F1 = 0,
+  VLR_VORONOI_F2 = 1,
+  VLR_VORONOI_SMOOTH_F1 = 2,
+  VLR_VORONOI_DISTANCE_TO_EDGE = 3,
+  VLR_VORONOI_N_SPHERE_RADIUS = 4
+};
+enum { VLR_METRIC_EUCLIDEAN = 0, VLR_METRIC_MANHATTAN = 1, VLR_METRIC_CHEBYCHEV = 2, VLR_METRIC_MINKOWSKI = 3 };
+enum { VLR_WAVE_AXIS_X = 0, VLR_WAVE_AXIS_Y = 1, VLR_WAVE_AXIS_Z = 2, VLR_WAVE_AXIS_WHOLE = 3 };
+enum { VLR_WAVE_PROFILE_SIN = 0, VLR_WAVE_PROFILE_SAW = 1, VLR_WAVE_PROFILE_TRI = 2 };
+enum {
+  VLR_GRADIENT_LINEAR = 0,
+  VLR_GRADIENT_QUADRATIC = 1,
+  VLR_GRADIENT_EASING = 2,
+  VLR_GRADIENT_DIAGONAL = 3,
+  VLR_GRADIENT_SPHERICAL = 4,
+  VLR_GRADIENT_QUADRATIC_SPHERE = 5,
+  VLR_GRADIENT_RADIAL = 6
+};
+enum { VLR_VALUE_COLOR = 0, VLR_VALUE_NUMBER = 1, VLR_VALUE_NORMAL = 2 };
+
+typedef struct vlr_instruction {
+  int32_t operation;   /* VLR_OPERATION_* */
+  int32_t choice[4];   /* unused ones are 0 */
+  uint32_t input[12];  /* first register of each input */
+  uint32_t output;     /* first register of all outputs */
+  uint32_t table;      /* index of its first value in vlr_program_desc.tables */
+  uint32_t table_size; /* number of its values; 0 for operations without a table */
+} vlr_instruction;
+
+typedef struct vlr_program_output {
+  uint32_t first; /* register */
+  int32_t kind;   /* VLR_VALUE_*: 3 registers, a single one, or a unit direction in world space */
+} vlr_program_output;
+
+/* Instructions run in order. Each register is written once, by a constant or an instruction, before it is read. The
+ * arrays are copied. */
+typedef struct vlr_program_desc {
+  uint32_t struct_size;
+  uint32_t registers; /* at most 16384 */
+  uint32_t constant_count;
+  uint32_t instruction_count; /* at most 4096 */
+  uint32_t table_count;       /* at most 4194304 */
+  uint32_t image_count;
+  uint32_t output_count; /* at most 16 */
+  float step; /* distance of shifted points as a share of a pixel's width; 1 */
+  const float* constants; /* values of the first registers */
+  const vlr_instruction* instructions;
+  const float* tables;
+  const vlr_texture* const* images; /* of pixels */
+  const vlr_program_output* outputs;
+} vlr_program_desc;
+VLR_API void vlr_program_desc_init(vlr_program_desc* desc);
+
+/* Refuses, with a sentence that names the instruction, what is not a program. */
+VLR_API vlr_status vlr_program_create(const vlr_program_desc* desc, vlr_program** out);
+VLR_API void vlr_program_free(vlr_program* program);
+/* An output of a program, instead of an image: as a color, a number or a normal map (an output that is a normal). Maps
+ * and sets of texture coordinates are ignored. All parameters of a material use one program, which runs once for each
+ * point. */
+VLR_API vlr_status vlr_texture_of_program(const vlr_program* program, uint32_t output, vlr_texture** out);
+
 /* ---- shaders: materials mixed from others --------------------------------------------------------------------- */
 
 enum {
@@ -646,8 +906,8 @@ typedef struct vlr_layer_desc {
   int32_t kind;                            /* VLR_LAYER_* */
   const vlr_principled_desc* surface;      /* NULL: its defaults; alpha and emission are ignored */
   const vlr_principled_textures* textures; /* NULL: none; only those that the kind uses */
-  const vlr_texture* normal; /* reflecting layers: a normal map, colors; NULL: none. It follows the MikkTSpace tangents
-                                of the mesh's relief_uvs */
+  const vlr_texture* normal; /* reflecting layers: a normal map, colors, which follows the MikkTSpace tangents of the
+                                mesh's relief_uvs, or a program's normal; NULL: none */
   float normal_map[6];       /* as those of vlr_principled_textures */
   float normal_strength;     /* scale of its tilt, not negative; 1 */
   uint32_t normal_set;       /* as those of vlr_principled_textures */

@@ -61,12 +61,19 @@ struct vlr_texture {
   std::shared_ptr<const velour::Texture<velour::Rgb>> color;
   std::shared_ptr<const velour::Texture<float>> number;
   std::optional<uint32_t> corner_colors;  // index of the mesh's set of corner colors
+  std::shared_ptr<const velour::Program> program;  // whose output `output` it is
+  uint32_t output = 0;
+};
+
+struct vlr_program {
+  std::shared_ptr<const velour::Program> program;
 };
 
 struct vlr_shader {
   velour::ShaderLayers layers;
   bool relief = false;  // a layer has a normal map
   velour::MeshSets sets;
+  velour::MeshSets opacity;  // sets of slots that opacity depends on
   velour::LayerWeight* last = nullptr;  // of the layer added last; null: no layer
 };
 

@@ -4,6 +4,7 @@
 #include "capi/conversions.h"
 #include "material/glossy_material.h"
 #include "material/normal_map.h"
+#include "material/program/program.h"
 #include "material/rough_diffuse_material.h"
 
 using namespace velour;
@@ -15,6 +16,14 @@ Rgb base_color(const vlr_principled_desc& d) { return {d.base_color[0], d.base_c
 
 TextureSlot<Rgb> normal_slot(const vlr_layer_desc& layer) {
   return color_slot(layer.normal, layer.normal_map, layer.normal_set, "vlr_layer_desc.normal");
+}
+
+/// Throws Error(invalid_argument) if the layer's normal is an output of a program that is not a normal.
+void require_normal(const vlr_layer_desc& layer) {
+  if (layer.normal == nullptr || !layer.normal->program) return;
+  if (layer.normal->program->outputs()[layer.normal->output].is_normal) return;
+  refuse("vlr_layer_desc.normal is output " + std::to_string(layer.normal->output) +
+         " of a program, which is not a normal (VLR_VALUE_NORMAL).");
 }
 
 std::shared_ptr<const Material> with_normals(std::shared_ptr<const Material> material, const vlr_layer_desc& layer,
@@ -64,11 +73,13 @@ PrincipledTextures textures_of(const vlr_layer_desc& layer) {
   return converted_textures(read_options(layer.textures, vlr_principled_textures_init, "vlr_principled_textures"));
 }
 
-LayerWeight& add_layer(ShaderLayers& layers, MeshSets& sets, const vlr_layer_desc& layer) {
+LayerWeight& add_layer(vlr_shader& shader, const vlr_layer_desc& layer) {
+  ShaderLayers& layers = shader.layers;
   const auto desc = read_options(layer.surface, vlr_principled_desc_init, "vlr_principled_desc");
   const PrincipledTextures textures = textures_of(layer);
-  sets.add(sets_of(textures));
-  sets.add(normal_slot(layer));
+  shader.sets.add(sets_of(textures));
+  shader.sets.add(normal_slot(layer));
+  if (layer.kind == VLR_LAYER_TRANSPARENT) shader.opacity.add(textures.base_color);
   if (layer.kind == VLR_LAYER_TRANSPARENT || layer.kind == VLR_LAYER_EMISSION) {
     auto& to = layer.kind == VLR_LAYER_EMISSION ? layers.emissive : layers.transparent;
     to.push_back({base_color(desc), textures.base_color});
@@ -107,8 +118,9 @@ vlr_status vlr_shader_add_layer(vlr_shader* shader, const vlr_layer_desc* desc) 
     const auto layer = read_options(desc, vlr_layer_desc_init, "vlr_layer_desc");
     require_choice(layer.kind, VLR_LAYER_EMISSION, "vlr_layer_desc.kind");
     require_choice(layer.normal_correction, VLR_RELIEF_AS_IT_IS, "vlr_layer_desc.normal_correction");
-    shader->last = &add_layer(shader->layers, shader->sets, layer);
-    shader->relief |= layer.normal != nullptr;
+    require_normal(layer);
+    shader->last = &add_layer(*shader, layer);
+    shader->relief |= layer.normal != nullptr && !layer.normal->program;
   });
 }
 
@@ -123,8 +135,9 @@ vlr_status vlr_shader_weigh_layer(vlr_shader* shader, const vlr_factor_desc* des
                   "The shader has no layer that the factor could weight; add a layer before its factors.");
     }
     const auto texture = number_slot(factor.texture, factor.map, factor.set, "vlr_factor_desc.texture");
-    shader->last->factors.push_back({static_cast<LayerFactor::Kind>(factor.kind), factor.value, texture});
     shader->sets.add(texture);
+    shader->opacity.add(texture);
+    shader->last->factors.push_back({static_cast<LayerFactor::Kind>(factor.kind), factor.value, texture});
   });
 }
 
@@ -133,10 +146,9 @@ vlr_status vlr_scene_add_shader_material(vlr_scene* scene, const vlr_shader* sha
     require(scene, "scene");
     require(shader, "shader");
     require(material, "material");
-    *material = scene->scene->add_material({.material = make_layered_material(shader->layers),
-                                            .rec709_colors = false,
-                                            .relief = shader->relief,
-                                            .uv_sets = shader->sets.uvs,
-                                            .color_sets = shader->sets.colors});
+    SurfaceMaterial surface{
+        .material = make_layered_material(shader->layers), .rec709_colors = false, .relief = shader->relief};
+    use_sets(surface, shader->sets, shader->opacity.outputs);
+    *material = scene->scene->add_material(std::move(surface));
   });
 }

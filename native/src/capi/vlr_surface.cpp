@@ -5,6 +5,7 @@
 #include "capi/handles.h"
 #include "image/picture.h"
 #include "material/principled/principled_material.h"
+#include "material/program/program.h"
 #include "material/texture.h"
 
 using namespace velour;
@@ -31,6 +32,7 @@ size_t known_set(uint32_t set, const char* field) {
 
 TextureSlot<Rgb> color_slot(const vlr_texture* texture, const float* map, uint32_t set, const char* field) {
   if (texture == nullptr) return {};
+  if (texture->program) return TextureSlot<Rgb>::output_of(texture->program, texture->output);
   if (texture->corner_colors) return TextureSlot<Rgb>::colors_of_corners(*texture->corner_colors);
   if (!texture->color) refuse_kind(field, "colors (channel -1)");
   return {texture->color, map_from(map), known_set(set, field)};
@@ -38,6 +40,7 @@ TextureSlot<Rgb> color_slot(const vlr_texture* texture, const float* map, uint32
 
 TextureSlot<float> number_slot(const vlr_texture* texture, const float* map, uint32_t set, const char* field) {
   if (texture == nullptr) return {};
+  if (texture->program) return TextureSlot<float>::output_of(texture->program, texture->output);
   if (texture->corner_colors) return TextureSlot<float>::colors_of_corners(*texture->corner_colors);
   if (!texture->number) refuse_kind(field, "numbers (channel 0 or higher)");
   return {texture->number, map_from(map), known_set(set, field)};
@@ -50,6 +53,15 @@ MeshSets sets_of(const PrincipledTextures& t) {
   sets.add(t.roughness);
   sets.add(t.alpha);
   return sets;
+}
+
+void use_sets(SurfaceMaterial& surface, const MeshSets& sets, uint32_t opacity_outputs) {
+  surface.uv_sets = sets.uvs;
+  surface.color_sets = sets.colors;
+  if (!sets.program) return;
+  surface.program = sets.program->only(sets.outputs);
+  surface.relief |= surface.program->has_relief();
+  if (opacity_outputs != 0 && !surface.material->opaque()) surface.opacity = sets.program->only(opacity_outputs);
 }
 
 PrincipledTextures converted_textures(const vlr_principled_textures& t) {
@@ -108,11 +120,13 @@ vlr_status vlr_scene_add_textured_material(vlr_scene* scene, const vlr_principle
     const auto given = read_options(desc, vlr_principled_desc_init, "vlr_principled_desc");
     const auto pictures =
         converted_textures(read_options(textures, vlr_principled_textures_init, "vlr_principled_textures"));
-    *material = scene->scene->add_material({.material = material_of(given, pictures),
-                                            .emission = {given.emission[0], given.emission[1], given.emission[2]},
-                                            .rec709_colors = false,
-                                            .uv_sets = sets_of(pictures).uvs,
-                                            .color_sets = sets_of(pictures).colors});
+    SurfaceMaterial surface{.material = material_of(given, pictures),
+                            .emission = {given.emission[0], given.emission[1], given.emission[2]},
+                            .rec709_colors = false};
+    MeshSets opacity;
+    opacity.add(pictures.alpha);
+    use_sets(surface, sets_of(pictures), opacity.outputs);
+    *material = scene->scene->add_material(std::move(surface));
   });
 }
 

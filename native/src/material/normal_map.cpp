@@ -58,11 +58,18 @@ class NormalMappedMaterial final : public Material {
     return map_.correction != ReliefCorrection::none && is_lobe;
   }
 
+  /// Not normalized; zero: there is none.
+  Vec3 normal_at(const SurfaceSite& site) const {
+    const Rgb given = map_.texture.at(site, Rgb(0.5f, 0.5f, 1.0f));
+    if (map_.texture.program) return given;
+    const Vec3 map = 2.0f * given - 1.0f;
+    return site.relief *
+           Vec3(map_.strength * map.x, map_.strength * map.y, 1 + (map.z - 1) * std::clamp(map_.strength, 0.0f, 1.0f));
+  }
+
   /// Frame about the mapped normal of a lobe, or of the diffuse part.
   Frame frame_of(bool is_lobe, const Vec3& wv, const SurfaceSite& site) const {
-    Vec3 map = 2.0f * map_.texture.at(site, Rgb(0.5f, 0.5f, 1.0f)) - 1.0f;
-    map = {map_.strength * map.x, map_.strength * map.y, 1 + (map.z - 1) * std::clamp(map_.strength, 0.0f, 1.0f)};
-    const Vec3 normal = site.relief * map;
+    const Vec3 normal = normal_at(site);
     const float length = glm::length(normal);
     if (!(length > 0) || !std::isfinite(length)) return Frame::about(Vec3(0, 0, 1));
     return Frame::about(keeps_mirrors_above(is_lobe) ? with_mirror_above(normal / length, site.ground, wv)

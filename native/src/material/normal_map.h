@@ -25,7 +25,7 @@ enum class ReliefPart {
 };
 
 /// Colors in [0, 1] encode components in [-1, 1] along tangent, bitangent and normal of the surface
-/// (SurfaceSite::relief).
+/// (SurfaceSite::relief). An output of a program is the normal itself; `strength` does not apply to it.
 struct NormalMap {
   TextureSlot<Rgb> texture{};
   /// Strength of the tilt. 0: unmapped surface, 1: as in the texture, more: exaggerated.
@@ -37,7 +37,7 @@ struct NormalMap {
 /// cosines with the mapped and the surface normal, 0 where the light is behind either. A view behind the mapped normal
 /// is moved to its horizon. Unless the correction excludes it, the normal is turned towards the geometric normal until
 /// the mirror image of the view is above the geometric surface. Diffuse light fades out before the surface's own
-/// horizon, where it would otherwise end in a hard line. Without SurfaceSite::relief the material is unchanged.
+/// horizon, where it would otherwise end in a hard line. Without SurfaceSite::relief a map changes nothing.
 std::shared_ptr<const Material> make_normal_mapped(std::shared_ptr<const Material> material, const NormalMap& map,
                                                    ReliefPart part);
 

@@ -25,6 +25,10 @@ struct SurfaceSite {
   /// Interpolated corner colors of the mesh, for materials that use them. Not averaged over the footprint.
   static constexpr size_t kMaxColorSets = 4;
   std::array<Rgb, kMaxColorSets> colors{};
+  /// Outputs of the material's program (SurfaceMaterial::program), if it has one. Numbers are in all components,
+  /// normals are unit and in the local frame.
+  static constexpr size_t kMaxComputed = 16;
+  std::array<Rgb, kMaxComputed> computed{};
   /// For HoledBtfMaterial: offset from `uv` to its mirror image at a silhouette close enough for texels to reach over
   /// it; else zero.
   Vec2 beyond_outline{0.0f};
@@ -37,11 +41,13 @@ struct SurfaceSite {
   /// Place on a set of texture coordinates below kMaxSets; 0: `uv`.
   SitePlace place(size_t set) const { return set == 0 ? SitePlace{uv, footprint} : others[set - 1]; }
 
-  /// The average of a repeating texture, and gray in place of a mesh's colors: for tables and fits of a whole material.
+  /// The average of a repeating texture, and gray in place of a mesh's colors and of what a program computes: for
+  /// tables and fits of a whole material.
   static SurfaceSite everywhere() {
     SurfaceSite site{.uv = Vec2(0.5f), .footprint = Mat2(1.0f)};
     site.others.fill(site.place(0));
     site.colors.fill(Rgb(0.5f));
+    site.computed.fill(Rgb(0.5f));
     return site;
   }
 };

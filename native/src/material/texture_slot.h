@@ -1,4 +1,4 @@
-// A texture or a mesh's own colors in place of a number or a color of a material.
+// A texture, a mesh's own colors or an output of a program in place of a number or a color of a material.
 #pragma once
 
 #include <algorithm>
@@ -11,6 +11,8 @@
 #include "math/sphere/vec.h"
 
 namespace velour {
+
+class Program;
 
 // Affine map of texture coordinates: places an image or a tile on a surface.
 
@@ -32,8 +34,9 @@ template <class T>
 struct TextureSlot {
   std::shared_ptr<const Texture<T>> texture;
   TextureMap map;           // from the surface's coordinates to the image's
-  size_t set;               // set of coordinates (SurfaceSite::place) or of mesh colors
+  size_t set;               // set of coordinates (SurfaceSite::place) or of mesh colors, or output of the program
   bool of_corners = false;  // use the mesh's colors (SurfaceSite::colors); a number takes the first channel
+  std::shared_ptr<const Program> program{};  // use what it computed (SurfaceSite::computed)
 
   // Not an aggregate: GCC 12 warns about uninitialized members of aggregates in braced lists.
   TextureSlot(std::shared_ptr<const Texture<T>> picture = nullptr, const TextureMap& to_picture = {},
@@ -45,17 +48,24 @@ struct TextureSlot {
     return slot;
   }
 
-  bool given() const { return texture || of_corners; }
+  static TextureSlot output_of(std::shared_ptr<const Program> computing, size_t output) {
+    TextureSlot slot(nullptr, {}, output);
+    slot.program = std::move(computing);
+    return slot;
+  }
+
+  bool given() const { return texture || of_corners || program; }
 
   T at(const SurfaceSite& site, const T& otherwise) const {
-    if (of_corners) return corner_value(site.colors[set]);
+    if (program) return first_of(site.computed[set]);
+    if (of_corners) return first_of(site.colors[set]);
     if (!texture) return otherwise;
     const SitePlace place = site.place(set);
     return texture->look_up(map.point(place.uv), map.map * place.footprint);
   }
 
  private:
-  static T corner_value(const Rgb& color) {
+  static T first_of(const Rgb& color) {
     if constexpr (std::is_same_v<T, Rgb>)
       return color;
     else
@@ -63,19 +73,30 @@ struct TextureSlot {
   }
 };
 
-/// Number of texture coordinate sets and corner color sets of a mesh that a material uses.
+/// What a material needs of a site: numbers of texture coordinate sets and corner color sets of a mesh, and a program.
 struct MeshSets {
   uint8_t uvs = 0, colors = 0;
+  std::shared_ptr<const Program> program{};
+  uint32_t outputs = 0;  // of the program that are used, as bits
 
+  /// Throw Error(invalid_argument) if both need a program and these differ.
   void add(const MeshSets& other) {
     uvs = std::max(uvs, other.uvs);
     colors = std::max(colors, other.colors);
+    if (other.program) use(other.program, other.outputs);
   }
   template <class T>
   void add(const TextureSlot<T>& slot) {
-    uint8_t& count = slot.of_corners ? colors : uvs;
-    if (slot.given()) count = std::max(count, static_cast<uint8_t>(1 + slot.set));
+    if (slot.program) {
+      use(slot.program, uint32_t{1} << slot.set);
+    } else if (slot.given()) {
+      uint8_t& count = slot.of_corners ? colors : uvs;
+      count = std::max(count, static_cast<uint8_t>(1 + slot.set));
+    }
   }
+
+ private:
+  void use(const std::shared_ptr<const Program>& computing, uint32_t used);
 };
 
 }  // namespace velour

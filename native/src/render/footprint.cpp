@@ -23,18 +23,19 @@ RaySides across(const RayCone& cone, const Vec3& direction) {
 }
 
 PixelFootprint::PixelFootprint(const Scene& scene, int width, int height, int camera_rays)
-    : camera_(scene.camera()), needed_(varies(scene)) {
-  const float part = std::max(kMinPart, 1.0f / std::sqrt(static_cast<float>(camera_rays)));
+    : camera_(scene.camera()),
+      needed_(varies(scene)),
+      part_(std::max(kMinPart, 1.0f / std::sqrt(static_cast<float>(camera_rays)))) {
   const Vec2 window(camera_.window[1] - camera_.window[0], camera_.window[3] - camera_.window[2]);
-  pitch_ = part * window / Vec2(static_cast<float>(width), static_cast<float>(height));
+  pitch_ = part_ * window / Vec2(static_cast<float>(width), static_cast<float>(height));
 }
 
 RayCone PixelFootprint::cone_along(const Vec3& direction) const {
   const float side = std::sqrt(std::abs(pitch_.x * pitch_.y));
-  if (camera_.type == Camera::Type::orthographic) return {side, 0.0f};
+  if (camera_.type == Camera::Type::orthographic) return {side, 0.0f, part_};
   // A pixel lies at distance 1 / cosine from the eye, and its area appears scaled by the cosine.
   const float cosine = -glm::dot(direction, camera_.camera_to_world.column(2));
-  return {0.0f, side * std::sqrt(cosine) * cosine};
+  return {0.0f, side * std::sqrt(cosine) * cosine, part_};
 }
 
 RaySides PixelFootprint::sides(const Vec3& position) const {

@@ -14,8 +14,11 @@ namespace velour {
 /// different image.
 struct RayCone {
   float width = 0, spread = 0;
+  float part = 1;  // its width as a share of a pixel's
 
-  RayCone at(float distance) const { return {width + distance * spread, spread}; }
+  RayCone at(float distance) const { return {width + distance * spread, spread, part}; }
+  /// Width of a whole pixel.
+  float pixel() const { return width / part; }
 };
 
 /// Two sides of a parallelogram in world space. Only their projection along the ray counts.
@@ -46,6 +49,7 @@ class PixelFootprint {
 
   const Camera& camera_;
   const bool needed_;
+  float part_;  // of a pixel's side
   Vec2 pitch_;  // size of the footprint of camera rays; meters at distance 1, or anywhere (orthographic)
 };
 

@@ -1,6 +1,7 @@
 #include "render/vertex.h"
 
 #include "material/material.h"
+#include "material/program/program.h"
 #include "render/shell_crossing.h"
 
 namespace velour {
@@ -63,6 +64,7 @@ Vertex::Vertex(const Scene& scene, const SurfacePoint& point, const ShellCrossin
   if (surface->uv_sets > 1) find_others(scene, hit, ray.direction, sides);
   find_colors(scene, hit);
   if (surface->relief) find_relief(scene, hit);
+  if (surface->program) find_computed(scene, point, hit, -ray.direction);
   if (crossing != nullptr && surface->holed()) {
     // At a point: a footprint would average over the holes, which the rays of a pixel do.
     site.footprint = Mat2(0.0f);
@@ -88,6 +90,15 @@ void Vertex::find_others(const Scene& scene, const Hit& hit, const Vec3& directi
 
 void Vertex::find_colors(const Scene& scene, const Hit& hit) {
   for (size_t set = 0; set < surface->color_sets; ++set) site.colors[set] = scene.color(hit, set);
+}
+
+void Vertex::find_computed(const Scene& scene, const SurfacePoint& point, const Hit& hit, const Vec3& incoming) {
+  const Program& program = *surface->program;
+  compute(program, {scene, hit, point, incoming, cone.pixel()}, site);
+  site.ground = frame.to_local(geometric_normal);
+  for (size_t i = 0; i < program.outputs().size(); ++i) {
+    if (program.outputs()[i].is_normal) site.computed[i] = frame.to_local(site.computed[i]);
+  }
 }
 
 void Vertex::find_site(const SurfacePoint& point, const TexturePoint& texture, const Vec3& direction,

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include "material/material.h"
 #include "math/sphere/frame.h"
+#include "render/computed.h"
 #include "render/footprint.h"
 #include "render/lights/light_tree.h"
 #include "scene/scene.h"
@@ -99,6 +100,7 @@ struct Vertex {
   void find_relief(const Scene& scene, const Hit& hit);
   void find_others(const Scene& scene, const Hit& hit, const Vec3& direction, const RaySides& sides);
   void find_colors(const Scene& scene, const Hit& hit);
+  void find_computed(const Scene& scene, const SurfacePoint& point, const Hit& hit, const Vec3& incoming);
   void find_site(const SurfacePoint& point, const TexturePoint& texture, const Vec3& direction, const RaySides& sides);
 };
 
@@ -114,12 +116,13 @@ inline bool passes_back(const SurfaceMaterial& surface, const Ray& ray, const Hi
 
 /// Site at which a material is queried for opacity and transmission: a point, because the rays of a pixel average what
 /// a footprint would.
-inline SurfaceSite point_site(const Scene& scene, const Hit& hit, const SurfaceMaterial& surface) {
+inline SurfaceSite point_site(const Scene& scene, const Ray& ray, const Hit& hit, const SurfaceMaterial& surface) {
   SurfaceSite site;
   if (!surface.material->varies()) return site;
   site.uv = scene.texture(hit).uv;
   for (size_t set = 1; set < surface.uv_sets; ++set) site.others[set - 1].uv = scene.texture(hit, set).uv;
   for (size_t set = 0; set < surface.color_sets; ++set) site.colors[set] = scene.color(hit, set);
+  if (surface.opacity) compute(*surface.opacity, {scene, hit, scene.surface(hit), -ray.direction}, site);
   return site;
 }
 

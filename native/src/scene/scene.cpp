@@ -286,20 +286,34 @@ TexturePoint Scene::texture(const Hit& hit, size_t set) const {
           map[0].y * point.u_gradient + map[1].y * point.v_gradient};
 }
 
-TexturePoint Scene::texture_of_mesh(const Hit& hit, size_t set) const {
+bool Scene::find_dual_edges(const Hit& hit, Vec3d& dual1, Vec3d& dual2) const {
   const Instance& instance = instances_[hit.instance];
   const Mesh& mesh = traced_mesh(instance);
-  if (!mesh.has_uvs()) return {};
   const glm::uvec3& corner = mesh.triangles()[hit.triangle];
-  const std::span<const Vec2, 3> uv = mesh.corner_uvs(hit.triangle, set);
   const auto edge = [&](int k) {
     return Vec3d(instance.object_to_world.vector(mesh.positions()[corner[k]] - mesh.positions()[corner[0]]));
   };
-  // The dot products of the gradients with the edges are uv[k] - uv[0], so they are sums of the edges' dual vectors.
   const Vec3d e1 = edge(1), e2 = edge(2), normal = glm::cross(e1, e2);
   const double square = glm::dot(normal, normal);
-  if (!(square > 0.0)) return {};
-  const Vec3d dual1 = glm::cross(e2, normal) / square, dual2 = glm::cross(normal, e1) / square;
+  if (!(square > 0.0)) return false;
+  dual1 = glm::cross(e2, normal) / square;
+  dual2 = glm::cross(normal, e1) / square;
+  return true;
+}
+
+Vec2 Scene::barycentric_step(const Hit& hit, const Vec3& offset) const {
+  Vec3d dual1, dual2;
+  if (!find_dual_edges(hit, dual1, dual2)) return Vec2(0.0f);
+  return Vec2(glm::dot(dual1, Vec3d(offset)), glm::dot(dual2, Vec3d(offset)));
+}
+
+TexturePoint Scene::texture_of_mesh(const Hit& hit, size_t set) const {
+  const Mesh& mesh = traced_mesh(instances_[hit.instance]);
+  if (!mesh.has_uvs()) return {};
+  const std::span<const Vec2, 3> uv = mesh.corner_uvs(hit.triangle, set);
+  // The dot products of the gradients with the edges are uv[k] - uv[0], so they are sums of the edges' dual vectors.
+  Vec3d dual1, dual2;
+  if (!find_dual_edges(hit, dual1, dual2)) return {};
   const Vec2 d1 = uv[1] - uv[0], d2 = uv[2] - uv[0];
   const auto gradient = [&](int i) {
     return Vec3(static_cast<double>(d1[i]) * dual1 + static_cast<double>(d2[i]) * dual2);

@@ -46,6 +46,7 @@ class SceneKeep {
 };
 
 class Material;
+class Program;
 
 /// The material of a material slot, and how it is shown.
 struct SurfaceMaterial {
@@ -56,6 +57,9 @@ struct SurfaceMaterial {
   bool brushed = false;       // uniform and anisotropic: +x is smooth_tangent(), its meshes need tangents
   uint8_t uv_sets = 1;        // number of texture coordinate sets in use, at most SurfaceSite::kMaxSets
   uint8_t color_sets = 0;     // number of corner color sets in use, at most SurfaceSite::kMaxColorSets
+  /// Computes SurfaceSite::computed; null: the material uses none of it. `opacity`: the part of it that alpha() and
+  /// passing() depend on; null: none.
+  std::shared_ptr<const Program> program = nullptr, opacity = nullptr;
   /// Structure over the surface that rays can pass through; null: none. Needs texture coordinates.
   std::shared_ptr<const ShellField> shell = nullptr;
   /// True: the structure's own surface is shaded and shadowed. False: f describes the appearance of the structure over
@@ -221,6 +225,13 @@ class Scene {
   Rgb color(const Hit& hit, size_t set) const {
     return traced_mesh(instances_[hit.instance]).color(hit.triangle, {hit.u, hit.v}, set);
   }
+  /// Position of a hit in object space.
+  Vec3 object_position(const Hit& hit) const {
+    return traced_mesh(instances_[hit.instance]).position(hit.triangle, {hit.u, hit.v});
+  }
+  /// Derivatives of Hit::u and Hit::v along world-space `offset`, projected onto the triangle; 0 on one without an
+  /// area.
+  Vec2 barycentric_step(const Hit& hit, const Vec3& offset) const;
   /// Axes of a normal map at a hit in world space: tangent, bitangent, and normal towards the mesh's front, not
   /// normalized. Zero without texture coordinates, or if no material of the mesh needs tangents.
   Mat3 relief(const Hit& hit) const;
@@ -274,6 +285,8 @@ class Scene {
   /// Null if the texture coordinates are the mesh's own.
   const TextureMap* placement(const Hit& hit) const;
   TexturePoint texture_of_mesh(const Hit& hit, size_t set) const;
+  /// Gradients of Hit::u and Hit::v in world space: vectors dual to the triangle's edges.
+  bool find_dual_edges(const Hit& hit, Vec3d& dual1, Vec3d& dual2) const;
   Vec3 rounding(const Instance& instance, const Hit& hit) const;
   /// SurfacePoint::tangent in object space.
   Vec3 tangent(const Hit& hit) const;

@@ -4,6 +4,8 @@ from typing import NamedTuple
 
 import bpy
 
+from ..programs import Computed, sources_of_draft
+
 BLACK = {"base_color": (0.0, 0.0, 0.0), "metallic": 0.0, "roughness": 1.0, "specular": 0.0}
 # Without a material, Cycles shows diffuse before 5.0, and Principled since; no property reveals it.
 _USUAL = {} if bpy.app.version >= (5, 0) else {**BLACK, "base_color": (0.8, 0.8, 0.8)}
@@ -12,11 +14,11 @@ _USUAL = {} if bpy.app.version >= (5, 0) else {**BLACK, "base_color": (0.8, 0.8,
 class Factor(NamedTuple):
     kind: str  # "share" of a mix, its "rest", a "gain", or a "tint", whose value is a color
     value: float | tuple = 1.0
-    picture: object = None  # image_nodes.Picture or corner_colors.CornerColors that replaces it
+    picture: object = None  # image_nodes.Picture, corner_colors.CornerColors or Computed that replaces it
 
 
 class Relief(NamedTuple):
-    """A normal map."""
+    """A normal map, or a Computed normal in place of its picture."""
 
     picture: object
     strength: float
@@ -24,10 +26,11 @@ class Relief(NamedTuple):
 
 
 class Layer(NamedTuple):
-    """Keywords of Shader.add_layer, pictures or CornerColors that replace some, and factors of its weight.
+    """Keywords of Shader.add_layer, sources that replace some, and factors of its weight.
 
     kind: as in Shader.add_layer, or "measured". A principled layer may hold alpha and emission until split()
     separates them.
+    pictures: Pictures, CornerColors and Computed.
     """
 
     kind: str
@@ -85,11 +88,20 @@ def shines(layer):
 
 
 def sources_of(layers):
-    """The Pictures and CornerColors of the layers, and their Reliefs."""
+    """What the layers read from meshes: Pictures, Coordinates and CornerColors, those of their program first;
+    the UV maps of tangents of normal maps; and the Draft of their program, or None."""
     parts = [*layers, *(layer.glow for layer in layers if layer.glow)]
-    sources = [source for part in parts for source in part.pictures.values()]
-    sources += [factor.picture for part in parts for factor in part.factors if factor.picture]
-    return sources, [part.relief for part in parts if part.relief]
+    given = [source for part in parts for source in part.pictures.values()]
+    given += [factor.picture for part in parts for factor in part.factors if factor.picture]
+    reliefs = [part.relief for part in parts if part.relief]
+    given += [relief.picture for relief in reliefs]
+    drafts = [source.draft for source in given if isinstance(source, Computed)]
+    sources = [source for source in given if not isinstance(source, Computed)]
+    maps = [relief.uv_map for relief in reliefs if not isinstance(relief.picture, Computed)]
+    if not drafts:
+        return sources, maps, None
+    draft = drafts[0]
+    return [*sources_of_draft(draft), *sources], [*maps, *draft.relief_maps], draft
 
 
 def unlike_reflection(layers):

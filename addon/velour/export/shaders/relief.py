@@ -1,8 +1,8 @@
-"""Normal Map nodes."""
+"""Normals of shader nodes."""
 
 import bpy
 
-from ..corner_colors import CornerColors
+from ..image_nodes import Picture, UnsupportedError
 from ..plugs import fed_by
 from .layer import Relief
 
@@ -21,18 +21,20 @@ def read_relief(plug, reader):
     """The Relief of a shader node, or None; notes unsupported links to its normal."""
     fed = fed_by(plug.input("Normal"))
     if fed is None:
+        displaced = reader.compiler.computed_normal()
+        return displaced and Relief(displaced, 1.0)
+    if fed.node.bl_idname == "ShaderNodeNormalMap":
+        if fed.node.space != "TANGENT":
+            reader.note(fed, "only normal maps in tangent space are supported; ignored.")
+            return None
+        _, picture = reader.number(fed.input("Color"))
+        strength, varies = reader.number(fed.input("Strength"))
+        if picture is None or (varies is None and strength <= 0.0):
+            return None
+        if isinstance(picture, Picture) and varies is None:
+            return Relief(picture, strength, fed.node.uv_map)
+    try:
+        return Relief(reader.compiler.computed(fed, fed.socket, "normal"), 1.0)
+    except UnsupportedError as reason:
+        reader.note_link(plug.input("Normal"), f" ({reason})")
         return None
-    if fed.node.bl_idname != "ShaderNodeNormalMap":
-        reader.note_link(plug.input("Normal"), f" ('{fed.node.name}' is not a Normal Map)")
-        return None
-    if fed.node.space != "TANGENT":
-        reader.note(fed, "only normal maps in tangent space are supported; ignored.")
-        return None
-    _, picture = reader.number(fed.input("Color"))
-    strength = max(reader.value(fed.input("Strength")), 0.0)
-    if isinstance(picture, CornerColors):
-        reader.note_link(fed.input("Color"), " (it is not an image)")
-        return None
-    if picture is None or strength == 0.0:
-        return None
-    return Relief(picture, strength, fed.node.uv_map)

@@ -1,8 +1,10 @@
 """Reads the layers of a material's surface from its active output."""
 
+from ..image_nodes import UnsupportedError
 from ..newer import has_nodes
 from ..nodes import active_output, former_node
 from ..plugs import Plug, fed_by, inside, is_measured
+from ..programs import displaced
 from .layer import Factor, black, diffuse, gray, simplified, split
 from .measured import former_layer, read_measured
 from .readers import READERS
@@ -11,9 +13,10 @@ from .values import Reader
 _MOST_LAYERS = 64  # nested mixes with shared shaders can have far more
 
 
-def surface_layers(material, notes, opens_measured=False):
+def surface_layers(material, notes, metres=1.0, opens_measured=False):
     """The Layers of a material; notes what is left out.
 
+    metres: per unit of Blender's coordinates.
     opens_measured: read the nodes in measured groups instead of their models.
     """
     if material is None:
@@ -29,10 +32,10 @@ def surface_layers(material, notes, opens_measured=False):
     if plug is None:
         notes.add(f"{owner}: it has no surface shader; rendered black.")
         return [black()]
-    for name in ("Volume", "Displacement"):
-        if fed_by(Plug(output.inputs[name])):
-            notes.add(f"{owner}: {name.lower()} is not supported; ignored.")
-    reader = Reader(owner, notes, opens_measured)
+    if fed_by(Plug(output.inputs["Volume"])):
+        notes.add(f"{owner}: volume is not supported; ignored.")
+    reader = Reader(owner, notes, metres, opens_measured)
+    _read_displacement(fed_by(Plug(output.inputs["Displacement"])), material, reader)
     layers = simplified(_read(plug, reader))
     if reader.steps_left <= 0 or len(layers) > _MOST_LAYERS:
         notes.add(f"{owner}: mixing more than {_MOST_LAYERS} shaders is not supported; rendered gray.")
@@ -42,6 +45,25 @@ def surface_layers(material, notes, opens_measured=False):
     ):
         notes.add(f"{owner}: opaque shadows of transparent surfaces are not supported; light passes through.")
     return layers
+
+
+def _read_displacement(plug, material, reader):
+    """Bends the surface's normal by displacement as bump; notes other displacement."""
+    if plug is None:
+        return
+    if _displacement_method(material) != "BUMP":
+        reader.notes.add(f"{reader.owner}: displacement is not supported other than as bump; ignored.")
+        return
+    try:
+        reader.compiler.displaced_normal = displaced(reader.compiler, plug)
+    except UnsupportedError as reason:
+        reader.notes.add(f"{reader.owner}: displacement is ignored: {reason}.")
+
+
+def _displacement_method(material):
+    """BUMP, DISPLACEMENT or BOTH; a Cycles setting before Blender 4.1."""
+    of_cycles = getattr(getattr(material, "cycles", None), "displacement_method", "BUMP")
+    return getattr(material, "displacement_method", of_cycles)
 
 
 def _shadows_are_clear(material):

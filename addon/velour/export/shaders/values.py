@@ -4,8 +4,9 @@ import numpy as np
 
 from ..color import luminance_weights
 from ..corner_colors import corner_colors_of
-from ..image_nodes import UnsupportedError, picture_of
+from ..image_nodes import UnsupportedError, picture_of, uv_placement
 from ..plugs import followed
+from ..programs import Compiler
 
 _MOST_STEPS = 256
 
@@ -13,14 +14,18 @@ _MOST_STEPS = 256
 class Reader:
     """Reads inputs of one material's nodes; notes what it leaves out."""
 
-    def __init__(self, owner, notes, opens_measured=False):
+    def __init__(self, owner, notes, metres=1.0, opens_measured=False):
+        """`metres`: per unit of Blender's coordinates.
+
+        opens_measured: read the nodes in measured groups instead of their models."""
         self.owner = owner
         self.notes = notes
-        self.opens_measured = opens_measured  # read the nodes in measured groups instead of their models
+        self.opens_measured = opens_measured
+        self.compiler = Compiler(self, metres)
         self.steps_left = _MOST_STEPS  # shaders that may still be read
 
     def number(self, plug):
-        """Value or color of an input that may be textured, and its Picture, CornerColors or None."""
+        """Value or color of an input that may vary, and its Picture, CornerColors, Computed or None."""
         fed = followed(plug) if plug else None
         if fed is None or not fed.socket.is_output:
             return own_value((fed or plug).socket, plug.socket) if plug else 0.0, None
@@ -33,17 +38,29 @@ class Reader:
             return own_value(plug.socket), None
 
     def value(self, plug):
-        """Value or color of an input that cannot be textured; notes a link."""
+        """Value or color of an input that cannot vary; notes a link."""
         value, picture = self.number(plug)
         if picture is not None:
             self.note_link(plug)
         return value
 
     def _source_of(self, fed, asked):
-        """The Picture or CornerColors at an output that feeds the socket `asked`; raises UnsupportedError."""
+        """What an output that feeds the socket `asked` provides; raises UnsupportedError."""
+        is_number = isinstance(asked.default_value, (int, float))
         if fed.node.bl_idname in ("ShaderNodeVertexColor", "ShaderNodeAttribute"):
-            return corner_colors_of(fed, isinstance(asked.default_value, (int, float)))
-        return picture_of(fed, self.owner, self.notes)
+            return corner_colors_of(fed, is_number)
+        if fed.node.bl_idname == "ShaderNodeTexImage" and self._is_on_uv_map(fed):
+            return picture_of(fed, self.owner, self.notes)
+        return self.compiler.computed(fed, asked, "number" if is_number else "color")
+
+    @staticmethod
+    def _is_on_uv_map(fed):
+        """Whether an Image Texture needs no program."""
+        try:
+            uv_placement(fed.input("Vector"))
+        except UnsupportedError:
+            return False
+        return True
 
     def note(self, plug, sentence):
         self.notes.add(f"{self.owner}: node '{plug.node.name}': {sentence}")

@@ -5,6 +5,7 @@
 #include <iterator>
 
 #include "material/material.h"
+#include "render/computed.h"
 
 namespace velour {
 namespace {
@@ -41,6 +42,23 @@ bool is_similarity(const Affine& map, double& area_scale) {
          std::abs(glm::dot(x, y)) < slack && std::abs(glm::dot(y, z)) < slack && std::abs(glm::dot(z, x)) < slack;
 }
 
+Hit hit_of(const Scene& scene, const Scene::Instance& instance, uint32_t triangle, const Vec2& place) {
+  Hit hit;
+  hit.distance = 0;
+  hit.geometric_normal = instance.normal_to_world * double_area(scene.traced_mesh(instance), triangle, {});
+  hit.u = place.x;
+  hit.v = place.y;
+  hit.triangle = triangle;
+  hit.instance = static_cast<uint32_t>(&instance - scene.instances().data());
+  return hit;
+}
+
+/// As seen along the normal.
+void compute_facing(const Program& program, const Scene& scene, const Hit& hit, SurfaceSite& site) {
+  const SurfacePoint point = scene.surface(hit);
+  compute(program, {scene, hit, point, point.geometric_normal}, site);
+}
+
 uint32_t slot_of(const Mesh& mesh, uint32_t triangle, const Scene::Instance& instance) {
   return std::min<uint32_t>(mesh.material_slot(triangle), static_cast<uint32_t>(instance.materials.size() - 1));
 }
@@ -49,17 +67,20 @@ uint32_t slot_of(const Mesh& mesh, uint32_t triangle, const Scene::Instance& ins
 
 bool emits(const SurfaceMaterial& m) { return !m.shell && (m.emission != Rgb(0.0f) || m.material->emits()); }
 
-float mean_emission(const SurfaceMaterial& m, const Mesh& mesh, uint32_t triangle, const TextureMap* placed) {
+float mean_emission(const SurfaceMaterial& m, const Scene& scene, const Scene::Instance& instance, uint32_t triangle,
+                    const TextureMap* placed) {
   if (!m.material->varies()) return luminance_at(m, {});
+  const Mesh& mesh = scene.traced_mesh(instance);
   SurfaceSite own = site_of(mesh, triangle, placed), all = SurfaceSite::everywhere();
   const auto light = [&] { return std::max(luminance_at(m, own), kMinOfMean * luminance_at(m, all)); };
-  if (m.color_sets == 0) return light();
+  if (m.color_sets == 0 && !m.program) return light();
   // Includes the corners, so that a triangle counts as emissive if any corner is, whatever the mean color is.
   constexpr Vec2 kPlaces[] = {{1 / 3.0f, 1 / 3.0f}, {0, 0}, {1, 0}, {0, 1}};
   float sum = 0;
   for (const Vec2& place : kPlaces) {
     for (size_t set = 0; set < m.color_sets; ++set)
       own.colors[set] = all.colors[set] = mesh.color(triangle, place, set);
+    if (m.program) compute_facing(*m.program, scene, hit_of(scene, instance, triangle, place), own);
     sum += light();
   }
   return sum / static_cast<float>(std::size(kPlaces));
@@ -83,7 +104,8 @@ EmissiveGroup::EmissiveGroup(const Scene& scene, const Scene::Instance& instance
     const SurfaceMaterial& material = scene.materials()[instance.materials[slot]];
     if (!material.drawn_to || !emits(material)) continue;
     const TextureMap* placed = instance.placements.empty() ? nullptr : &instance.placements[slot];
-    const float power = 0.5f * glm::length(double_area(mesh, t, {})) * mean_emission(material, mesh, t, placed);
+    const float power =
+        0.5f * glm::length(double_area(mesh, t, {})) * mean_emission(material, scene, instance, t, placed);
     if (!(power > 0.0f) || !std::isfinite(power)) continue;
     LightTree::Light& light = lights.emplace_back(LightTree::Light{Bounds{}, power});
     for (int k = 0; k < 3; ++k) light.box.add(mesh.positions()[mesh.triangles()[t][k]]);

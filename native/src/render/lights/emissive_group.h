@@ -10,8 +10,9 @@ namespace velour {
 bool emits(const SurfaceMaterial& material);
 
 /// Luminance that a triangle emits to either side: about its mean if the material varies, and above 0 wherever the
-/// material emits at all, so that rounding in the mean of texels loses no light.
-float mean_emission(const SurfaceMaterial& material, const Mesh& mesh, uint32_t triangle, const TextureMap* placed);
+/// material emits at all, so that rounding in the mean of texels loses no light. Programs are evaluated on `instance`.
+float mean_emission(const SurfaceMaterial& material, const Scene& scene, const Scene::Instance& instance,
+                    uint32_t triangle, const TextureMap* placed);
 
 /// Immutable. Shared by instances with the same mesh, materials and placements.
 class EmissiveGroup {

@@ -1,0 +1,85 @@
+"""Coordinates, geometry and attributes."""
+
+import numpy as np
+
+from ..corner_colors import GENERATED, corner_colors_of
+from ..image_nodes import UnsupportedError
+from .draft import CornerSet, UvSet
+
+
+def generated(c):
+    """Coordinates from 0 to 1 over the mesh's texture space."""
+    return c.source("corner", CornerSet(GENERATED))
+
+
+def position(c):
+    """World-space position in Blender's units."""
+    place = c.source("position")
+    return place if c.metres == 1.0 else c.draft.vector_math("scale", place, scale=1.0 / c.metres)[0]
+
+
+def _object(c, plug):
+    other = plug.node.object
+    if other is None:
+        return c.source("object_position")
+    matrix = np.array(other.matrix_world.inverted_safe(), np.float64)[:3]
+    return c.draft.one("transform", (position(c),), 3, (), tuple(matrix.ravel().tolist()))
+
+
+def _reflection(c, _plug):
+    incoming, normal = c.draft.source("incoming"), c.surface_normal()
+    mirrored = c.draft.vector_math("reflect", incoming, normal)[0]
+    return c.draft.vector_math("scale", mirrored, scale=-1.0)[0]
+
+
+_COORDINATES = {
+    "Generated": lambda c, _plug: generated(c),
+    "Normal": lambda c, _plug: c.draft.source("object_normal"),
+    "UV": lambda c, _plug: c.source("uv", UvSet("")),
+    "Object": _object,
+    "Reflection": _reflection,
+}
+_GEOMETRY = {
+    "Position": lambda c: position(c),
+    "Normal": lambda c: c.surface_normal(),
+    "True Normal": lambda c: c.draft.source("geometric_normal"),
+    "Incoming": lambda c: c.draft.source("incoming"),
+    "Backfacing": lambda c: c.draft.source("backfacing").component(0),
+}
+
+
+def _unsupported(plug):
+    return UnsupportedError(f"output '{plug.socket.name}' of '{plug.node.name}' is not supported")
+
+
+def _coordinates(c, plug):
+    if plug.node.from_instancer or plug.socket.name not in _COORDINATES:
+        raise _unsupported(plug)
+    return _COORDINATES[plug.socket.name](c, plug)
+
+
+def _geometry(c, plug):
+    if plug.socket.name not in _GEOMETRY:
+        raise _unsupported(plug)
+    return _GEOMETRY[plug.socket.name](c)
+
+
+def _uv_map(c, plug):
+    if plug.node.from_instancer:
+        raise _unsupported(plug)
+    return c.source("uv", UvSet(plug.node.uv_map))
+
+
+def _attribute(c, plug):
+    colors = corner_colors_of(plug, False)
+    value = c.source("corner", CornerSet(colors))
+    return value.component(0) if colors.part in ("Fac", "Alpha") else value
+
+
+NODES = {
+    "ShaderNodeTexCoord": _coordinates,
+    "ShaderNodeNewGeometry": _geometry,
+    "ShaderNodeUVMap": _uv_map,
+    "ShaderNodeAttribute": _attribute,
+    "ShaderNodeVertexColor": _attribute,
+}
