@@ -32,7 +32,7 @@ def measure(run: Run) -> dict:
     with open(log, "w", encoding="utf-8") as file:
         status = subprocess.run(command, stdout=file, stderr=file, env=os.environ | environment).returncode
     said = [line for line in log.read_text(errors="replace").splitlines() if line.startswith("real time")]
-    if status or not said:
+    if status or not (folder / "net.npy").is_file():
         raise blender.BlenderError(f"nothing was drawn; {log} says why")
     traced, drawn = np.load(folder / "net.npy")[..., :3]
     white, rows = np.percentile(traced, 99.5), round(_SHOWN * traced.shape[0])
