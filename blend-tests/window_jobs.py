@@ -220,7 +220,7 @@ def waiting_given_up(folder):
     scenes.use_engine()
     for name in ("Second", "Third"):
         material.copy().name = name
-        _invoke(bpy.ops.velour.fit, material=name, **_QUICK)
+        _invoke(bpy.ops.velour.fit, material=name, users="SINGLE", **_QUICK)
     _invoke(bpy.ops.velour.fit_for_scene, material="Paint", current_frame=True)
     state = bpy.context.window_manager.velour
     assert state.waiting == 3

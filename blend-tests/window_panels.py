@@ -150,7 +150,7 @@ def fit_and_cancel(folder):
     material = _measured_cube()
     before = scenes.velour_node(material).image.name
     yield from window.show_properties("MATERIAL")
-    _start_fit(model="SCATTERED", tolerance=0.0005, max_lobes=64)
+    _start_fit(model="SCATTERED", tolerance=0.0005, max_lobes=64, users="SINGLE")
     yield 0.8
     assert bpy.context.window_manager.velour.running
     window.screenshot(folder, "fit-running")
@@ -172,9 +172,11 @@ def two_fits(folder):
     before = scenes.velour_node(other).image.name
     yield from window.show_properties("MATERIAL")
     idle = window.screenshot(folder, "two-fits-before")
-    _start_fit(model="SCATTERED", tolerance=0.0005, max_lobes=64)
+    _start_fit(model="SCATTERED", tolerance=0.0005, max_lobes=64, users="SINGLE")
     with window.override():
-        started = bpy.ops.velour.fit("INVOKE_DEFAULT", material="Other", tolerance=0.2, max_lobes=2)
+        started = bpy.ops.velour.fit(
+            "INVOKE_DEFAULT", material="Other", tolerance=0.2, max_lobes=2, users="SINGLE"
+        )
     assert started == {"RUNNING_MODAL"}, started
     yield 0.8
     state = bpy.context.window_manager.velour

@@ -3,7 +3,7 @@
 from ..native import Shader, TextureSlot, VelourError
 from .corner_colors import CornerColors, shader_colors
 from .measured_materials import MeasuredMaterials
-from .model_hashes import model_hashes
+from .model_hashes import hashes_of
 from .notes import ExportError, Notes
 from .placement import Tile
 from .programs import Computed, finished
@@ -190,19 +190,18 @@ class MaterialTable:
 
         Returns the name of the UV map that places them; None if nothing is placed.
         """
-        key, placed, hashes = _key(material), [], []
-        for measured in (layer.measured for layer in layers if layer.measured):
+        key, placed = _key(material), []
+        mixed = [layer.measured for layer in layers if layer.measured]
+        for measured in mixed:
             self._forget_needs(material)
             self._note_measured(material, measured, self._measured.of_layer(material, measured).info)
-            hashes += self.models[material.name_full]
             if self._uv_maps[key] != UNUSED:
                 placed.append((self._uv_maps[key].first, self._tiles.get(key), self._turns.get(key)))
-        if not hashes:
-            return None
-        self.models[material.name_full] = list(dict.fromkeys(hashes))
+        if mixed:
+            self.models[material.name_full] = hashes_of([measured.node for measured in mixed])
         if not placed:
             return None
-        if any(each != placed[0] for each in placed[1:]):
+        if len({(name, tile and tile.place, turn) for name, tile, turn in placed}) > 1:
             self._notes.add(
                 f"{_owner(material)}: its measured nodes are placed differently, but a material has one"
                 " placement; that of the first node is used for all."
@@ -276,7 +275,7 @@ class MaterialTable:
     def _note_measured(self, material, measured, info):
         """Records which coordinates a measured material needs. `info`: info of its model or measurement."""
         node, look, key = *measured, _key(material)
-        self.models[material.name_full] = model_hashes(node)
+        self.models[material.name_full] = hashes_of([node])
         tile = Tile.of(material, node, look, info)
         if tile:
             self._tiles[key] = tile

@@ -1,14 +1,27 @@
 """Hashes of the files that a measured material renders from."""
 
 from . import files
+from .notes import Notes
+from .shaders import surface_layers
 
 
-def model_hashes(node):
-    """SHA-256 of the scene model of a MeasuredNode, if used, and of its model; or of the measurement used
-    instead.
+def model_hashes(material):
+    """hashes_of() the measured nodes of a material's surface; None if it has none."""
+    layers = surface_layers(material, Notes())
+    nodes = [layer.measured.node for layer in layers if layer.measured]
+    return hashes_of(nodes) if nodes else None
+
+
+def hashes_of(nodes):
+    """SHA-256 of the scene model of each MeasuredNode, if used, and of its model; or of the measurement used
+    instead. Each once.
 
     Missing files are skipped; renders refuse them with a message.
     """
+    return list(dict.fromkeys(digest for node in nodes for digest in _of_node(node)))
+
+
+def _of_node(node):
     settings = node.velour
     if settings.use_reference:
         return _hashes(settings.measurement, computed=_measurement_hash)

@@ -43,6 +43,14 @@ class Tile(NamedTuple):
         return entered if min(entered) > 0 else self.own_metres
 
     @property
+    def place(self):
+        """Key that is equal for equal placements."""
+        settings, look = self.settings, self.look
+        sizes = (settings.repeats, settings.tile_size, settings.uv_density, settings.offset)
+        placed = look.rotation, look.scale, look.mapping, self.metres
+        return settings.mode, settings.keeps_size, *map(tuple, sizes), *placed
+
+    @property
     def shape(self):
         """Width and height scaled to a product of 1; if the size is unknown, texels are square."""
         width, height = self.metres or self.texels
