@@ -300,14 +300,18 @@ class PersistentData(BlenderTest):
                 path = self.folder / "glossy.binary"
                 shutil.copy(inputs.glossy_measurement(), path)
                 settings.measurement = bpy.data.images.load(str(path))
-            setattr(settings, name, value)
+            if name == "roughness":
+                scenes.set_look(bpy.data.materials["Paint"], roughness=value)
+            else:
+                setattr(settings, name, value)
             after, _ = self._assert_same()
             self.assertGreater(np.abs(after[0] - before[0]).max(), 0.001, name)
             before = after
 
     def test_a_material_that_is_measured_no_more(self):
         self.scene.frame_end = 1
-        settings = self._wear_paint()
+        self._wear_paint()
+        settings = scenes.velour_node(bpy.data.materials["Paint"]).texture.velour
         first, _ = self._pictures(True)
         settings.enabled = False
         plain, _ = self._assert_same()
