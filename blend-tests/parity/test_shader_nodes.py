@@ -2,8 +2,8 @@
 
 import bpy
 
-from . import stage
-from .board import COLUMNS, ROWS, BoardTest, Nodes
+from parity import stage
+from parity.board import COLUMNS, ROWS, BoardTest, Nodes
 
 
 def _items(idname, name):
