@@ -12,7 +12,7 @@ from velour.native import Btf, VelourError, export_btf_job, images
 INFO_KEYS = [
     "kind", "format", "name", "path", "description", "sha256", "bytes", "raw_bytes", "texels", "views",
     "lights", "pairs", "complete", "largest_theta", "tile_metres", "shell", "errors", "structure", "entries",
-    "details",
+    "details", "warnings", "warning_codes",
 ]  # fmt: skip
 LIGHTS = [(0, 0), (15, 0), (60, 90)]
 VIEWS = [(0, 0), (45, 180)]

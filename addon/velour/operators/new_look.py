@@ -9,7 +9,6 @@ from mathutils import Vector
 
 from ..core import presets
 from ..core.ball import ball_mesh, studio
-from ..engine.engine import VelourRenderEngine
 from ..native import VelourError
 from . import add_preset
 
@@ -65,7 +64,7 @@ class VELOUR_OT_new_look(bpy.types.Operator):
 
 def _set_up(scene):
     render = scene.render
-    render.engine = VelourRenderEngine.bl_idname
+    render.engine = "VELOUR"
     render.resolution_x = render.resolution_y = _SIDE
     render.resolution_percentage = 100
     scene.frame_start, scene.frame_end = 1, _TURN_FRAMES
