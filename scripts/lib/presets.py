@@ -166,6 +166,8 @@ def main() -> int:
     if not args.library:
         _build(models, args)
     listed = presets.listed(models)
+    if not listed:
+        return 0
     if args.docs:
         sheet = [(entry.name, encoded(images.read_picture(entry.picture))[::-1]) for entry in listed]
         charts.sheet(_PICTURE, charts.wrapped(sheet, _COLUMNS), (1.35, 1.55))
