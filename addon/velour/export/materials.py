@@ -193,7 +193,7 @@ class MaterialTable:
         if layer.relief:
             values["normal"] = self._slot(layer.relief.picture, True, material)
             values["normal_strength"] = layer.relief.strength
-            values["normal_correction"] = correction(material)
+            values["normal_correction"] = "as-it-is" if layer.relief.is_surface else correction(material)
         shader.add_layer(layer.kind, self._slots(layer, material), **values)
         for factor in layer.factors:
             slot = factor.picture and self._slot(factor.picture, False, material)
