@@ -15,6 +15,7 @@ from support import inputs, scenes
 from support.blender import BlenderTest
 
 _SIDE = 64
+_CAPTION_ROWS = 30  # three lines of the smallest text
 
 
 class BallTest(BlenderTest):
@@ -42,11 +43,17 @@ class BallTest(BlenderTest):
 
 class Compare(BallTest):
     def _tiles(self, image):
-        """[side x side x 3] each, row 0 at the bottom."""
+        """The tiles above their captions: [rows x side x 3] each, row 0 at the bottom."""
+        captions, tiles = np.split(self._pixels(image), [_CAPTION_ROWS])
+        for caption in np.split(captions, 3, axis=1):
+            self.assertGreater(caption[_CAPTION_ROWS // 3 : -_CAPTION_ROWS // 3, : _SIDE // 2].max(), 0.5)
+        return np.split(tiles, 3, axis=1)
+
+    def _pixels(self, image):
         self.assertEqual(tuple(image.size), (3 * _SIDE, _SIDE))
         pixels = np.empty(3 * _SIDE * _SIDE * 4, np.float32)
         image.pixels.foreach_get(pixels)
-        return np.split(pixels.reshape(_SIDE, 3 * _SIDE, 4)[..., :3], 3, axis=1)
+        return pixels.reshape(_SIDE, 3 * _SIDE, 4)[..., :3]
 
     def _compared(self, material, **options):
         self._said(bpy.ops.velour.compare, material=material.name, side=_SIDE, samples=64, **options)
@@ -65,7 +72,8 @@ class Compare(BallTest):
         measured, model, difference = self._tiles(image)
         np.testing.assert_allclose(difference, 4 * np.abs(model - measured), atol=1e-4)
         self.assertLess(self._off(measured, model), 0.15)  # of four lobes
-        ball = measured[_SIDE // 2 - 8 : _SIDE // 2 + 8, _SIDE // 2 - 8 : _SIDE // 2 + 8]
+        middle = _SIDE // 2 - _CAPTION_ROWS
+        ball = measured[middle - 8 : middle + 8, _SIDE // 2 - 8 : _SIDE // 2 + 8]
         self.assertGreater(ball[..., 2].mean(), 1.3 * ball[..., 0].mean())  # its base is blue
         self.assertEqual(tuple(image.preview.image_size), (256, 256))
         preview = np.array(image.preview.image_pixels_float).reshape(256, 256, 4)

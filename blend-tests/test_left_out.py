@@ -88,12 +88,6 @@ class Materials(NotesTest):
         tree.links.clear()
         self.assert_said("Material 'Bare'", "no surface shader", "black")
 
-    def test_displacement(self):
-        tree = self._tree()
-        node = tree.nodes.new("ShaderNodeDisplacement")
-        tree.links.new(node.outputs[0], tree.nodes["Material Output"].inputs["Displacement"])
-        self.assert_said("Material 'Bare'", "isplacement")
-
     def test_volume(self):
         tree = self._tree()
         node = tree.nodes.new("ShaderNodeVolumeScatter")

@@ -113,12 +113,6 @@ class Notes(NotesTest):
         node.attribute_type = "OBJECT"
         self.assert_said("Material 'Glass'", "'Color'", f"'{node.name}' reads an attribute of type 'Object'")
 
-    def test_attribute_in_the_place_of_a_normal_map(self):
-        _, normal_map = self._linked("ShaderNodeNormalMap")
-        tree = normal_map.id_data
-        tree.links.new(tree.nodes.new("ShaderNodeVertexColor").outputs[0], normal_map.inputs["Color"])
-        self.assert_said("Material 'Glass'", normal_map.name, "it is not an image")
-
     def test_many_attributes(self):
         """Five in one material, of which four are shown."""
         tree = self._material("ShaderNodeBsdfPrincipled").node_tree

@@ -107,6 +107,7 @@ class Panels(BlenderTest):
     def test_a_running_job_is_shown(self):
         """With its cross, of BTFs as of BRDFs; and Esc cancels over no other tab than those that show it."""
         context, found = self._of_a_material(), set()
+        context.object.velour.is_tile = context.collection.velour.is_tile = True
         tabs = {getattr(panel, "bl_context", "") for panel in bpy.types.Panel.__subclasses__()}
         for info in ({"texels": (8, 8)}, {}):
             with mock.patch.object(material_panel, "model_summary", lambda _image, info=info: info):

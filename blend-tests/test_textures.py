@@ -192,9 +192,9 @@ class Textures(BlenderTest):
         self.texture.projection = "BOX"
         self.assertIn("is not projected with Flat", "".join(self._notes()))
         self.texture.projection = "FLAT"
-        generated = self.tree.nodes.new("ShaderNodeTexCoord")
-        self.tree.links.new(generated.outputs["Generated"], self.texture.inputs["Vector"])
-        self.assertIn("are not UV coordinates", "".join(self._notes()))
+        camera = self.tree.nodes.new("ShaderNodeTexCoord")
+        self.tree.links.new(camera.outputs["Camera"], self.texture.inputs["Vector"])
+        self.assertIn("oordinates", "".join(self._notes()))
         self.tree.links.clear()
         self.assertNotIn("coordinates", "".join(self._notes()))
 

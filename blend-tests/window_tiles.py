@@ -79,6 +79,7 @@ def _tile_in_properties(tab):
         bpy.data.objects.remove(obj)
     with window.override():
         obj = scenes.add_plane()
+    obj.velour.is_tile = bpy.data.collections["Collection"].velour.is_tile = True
     yield from window.show_properties(tab)
     return obj
 

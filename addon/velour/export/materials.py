@@ -244,7 +244,7 @@ class MaterialTable:
         if layer.relief:
             values["normal"] = self._slot(layer.relief.picture, True, material)
             values["normal_strength"] = layer.relief.strength
-            values["normal_correction"] = correction(material)
+            values["normal_correction"] = "as-it-is" if layer.relief.is_surface else correction(material)
         if layer.measured:
             self._measured.of_layer(material, layer.measured).add_layer(shader, **values)
             shader.weigh_layer("tint", layer.measured.look.gain)

@@ -1,6 +1,6 @@
 """Render settings of a scene."""
 
-import logging
+import warnings
 
 import bpy
 from bpy.props import BoolProperty, EnumProperty, FloatProperty, IntProperty, StringProperty
@@ -20,18 +20,17 @@ def _redraw_viewports(_settings, context):
 # Numbers of samples are stored as light directions a pixel. The panels show camera rays, as other engines do.
 
 _shown_sets = 0  # above 0: a property of the panels sets a stored number
-_is_told = False
 
 
 def _told(_settings, _context):
-    """Tells scripts once which unit a stored number has."""
-    global _is_told
-    if _shown_sets or _is_told:
+    """Tells scripts which unit a stored number has. Python shows it once per line of a script."""
+    if _shown_sets:
         return
-    _is_told = True
-    logging.getLogger("velour").warning(
+    warnings.warn(
         "scene.velour.samples, viewport_samples and preview_samples count light directions a pixel;"
-        " camera_samples, viewport_camera_samples and preview_camera_samples count camera rays."
+        " camera_samples, viewport_camera_samples and preview_camera_samples count camera rays.",
+        DeprecationWarning,
+        stacklevel=2,
     )
 
 

@@ -860,8 +860,8 @@ typedef struct vlr_program_desc {
   uint32_t instruction_count; /* at most 4096 */
   uint32_t table_count;       /* at most 4194304 */
   uint32_t image_count;
-  uint32_t output_count; /* at most 16 */
-  float step; /* distance of shifted points as a share of a pixel's width; 1 */
+  uint32_t output_count;  /* at most 16 */
+  float step;             /* distance of shifted points as a share of a pixel's width; 1 */
   const float* constants; /* values of the first registers */
   const vlr_instruction* instructions;
   const float* tables;

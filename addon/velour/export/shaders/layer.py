@@ -23,6 +23,7 @@ class Relief(NamedTuple):
     picture: object
     strength: float
     uv_map: str = ""  # name of the UV map of its tangents; empty: the active render map
+    is_surface: bool = False  # it is the surface's own normal, displaced; steep ones are not corrected
 
 
 class Layer(NamedTuple):

@@ -22,7 +22,7 @@ def read_relief(plug, reader):
     fed = fed_by(plug.input("Normal"))
     if fed is None:
         displaced = reader.compiler.computed_normal()
-        return displaced and Relief(displaced, 1.0)
+        return displaced and Relief(displaced, 1.0, is_surface=True)
     if fed.node.bl_idname == "ShaderNodeNormalMap":
         if fed.node.space != "TANGENT":
             reader.note(fed, "only normal maps in tangent space are supported; ignored.")

@@ -80,6 +80,7 @@ TEST(Metals, AreOfTheirPublishedColors) {
       {"silver", {0.972f, 0.960f, 0.915f}, 0.07},  {"aluminium", {0.913f, 0.922f, 0.924f}, 0.05},
       {"nickel", {0.660f, 0.609f, 0.526f}, 0.05},  {"chromium", {0.549f, 0.556f, 0.554f}, 0.05},
       {"titanium", {0.542f, 0.497f, 0.449f}, 0.1}, {"iron", {0.562f, 0.565f, 0.578f}, 0.1},
+      {"brass", {0.910f, 0.778f, 0.423f}, 0.1},
   };
   for (const auto& metal : metals) {
     const Rgb seen = metal_reflectance(metal.name).at(1.0f);
