@@ -25,7 +25,6 @@ struct SliceLobe {
 /// so one Gram matrix of the J values and 3 J derivatives serves all channels.
 class SliceSolver {
  public:
-
   SliceSolver(Kernel kernel, const SliceSamples& samples, const Progress& progress);
 
   /// Replaces the lobes and solves for their peaks.

@@ -99,8 +99,7 @@ TEST(SliceSolver, GradientFollowsCentralDifferencesOfTheObjective) {
     double slope = 0;  // method.md 2.5: dE/dp = -2 sum_c w_c sum_i r_ic peak_jc dS_ij/dp; the peaks are optimal
     for (int c = 0; c < 3; ++c) {
       for (size_t i = 0; i < samples.count(); ++i) {
-        slope -=
-            2 * kLuminance[c] * solver.residual(c)[i] * lobes[j].peak[c] * k[i];
+        slope -= 2 * kLuminance[c] * solver.residual(c)[i] * lobes[j].peak[c] * k[i];
       }
     }
     double objective[2];
