@@ -76,7 +76,8 @@ def outlined(folder):
     _scene(material)
     pixels = np.full((4, 4, 4), 0.5, np.float32)
     pixels[:, :2, 3], pixels[:, 2:, 3] = 0, 1
-    group.put(scenes.velour_node(material), material, core.UNFITTED._replace(color_map=pixels))
+    found = core.UNFITTED._replace(color_map=pixels)
+    group.put(scenes.velour_node(material), material, found, {"texels": (4, 4)})
     assert _is_cut_out(material)
     yield 0.3
     left, right = np.split(_eevee(folder, "outlined")[4:-4], 2, axis=1)
