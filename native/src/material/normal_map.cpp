@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include "math/sphere/frame.h"
 
 namespace velour {
 namespace {
@@ -9,50 +10,65 @@ namespace {
 constexpr float kMinNormalCosine = 1e-6f;  // of the light with the surface normal; keeps f finite
 constexpr float kMinViewCosine = 1e-3f;    // of the view with the mapped normal
 
-class NormalMappedMaterial final : public Material {
+/// What remains of diffuse light about a normal whose cosine with the surface normal is `tilt`.
+float remaining(ReliefCorrection correction, float own, float mapped, float tilt) {
+  if (correction == ReliefCorrection::none) return 1;
+  return correction == ReliefCorrection::shadowed ? relief_shadowing(own, tilt)
+                                                  : terminator_softening(own, mapped, tilt);
+}
+
+class PreparedNormalMapped final : public PreparedBrdf {
  public:
-  NormalMappedMaterial(std::shared_ptr<const Material> material, const NormalMap& map, ReliefPart part)
-      : material_(std::move(material)), map_(map), part_(part) {}
+  /// `relief`: about the mapped normal, in which `material` is prepared.
+  PreparedNormalMapped(const PreparedBrdf* material, const Frame& relief, ReliefCorrection correction)
+      : material_(material), relief_(relief), correction_(correction) {}
 
-  void prepare(const Vec3& wv, const SurfaceSite& site, PreparedBrdf& point) const override {
-    const Frame seen = frame_of(part_ != ReliefPart::diffuse, wv, site);
-    Vec3 local = seen.to_local(wv);
-    if (local.z < kMinViewCosine) local = glm::normalize(Vec3(local.x, local.y, kMinViewCosine));
-    material_->prepare(local, site, point);
-    point.relief = part_ == ReliefPart::base ? frame_of(false, wv, site) : seen;
-  }
-
-  void eval(const PreparedBrdf& point, const DirectionBatch& wl, RgbBatch& f, ScalarBatch& pdf) const override {
+  void eval(const DirectionBatch& wl, RgbBatch& f, ScalarBatch& pdf) const override {
     DirectionBatch turned;
-    for (int i = 0; i < wl.count; ++i) turned.push(point.relief.to_local(wl.get(i)));
+    for (int i = 0; i < wl.count; ++i) turned.push(relief_.to_local(wl.get(i)));
     turned.pad();
-    material_->eval(point, turned, f, pdf);
+    material_->eval(turned, f, pdf);
     for (int i = 0; i < wl.count; ++i) {
-      const float share = kept(wl.z[i], turned.z[i], point.relief.z.z);
+      const float share = remaining(correction_, wl.z[i], turned.z[i], relief_.z.z);
       const bool above = wl.z[i] > 0 && turned.z[i] > 0;
       f.set(i, above ? f.get(i) * (share * turned.z[i] / std::max(wl.z[i], kMinNormalCosine)) : Rgb(0.0f));
     }
   }
 
-  void sample(const PreparedBrdf& point, std::span<const Vec2> u, DirectionBatch& wl) const override {
-    material_->sample(point, u, wl);
-    for (int i = 0; i < wl.count; ++i) wl.set(i, point.relief.to_world(wl.get(i)));
+  void sample(std::span<const Vec2> u, DirectionBatch& wl) const override {
+    material_->sample(u, wl);
+    for (int i = 0; i < wl.count; ++i) wl.set(i, relief_.to_world(wl.get(i)));
   }
 
-  float diffuse_share(const PreparedBrdf& point, const Vec3& wl, float pdf) const override {
-    return material_->diffuse_share(point, point.relief.to_local(wl), pdf);
+  float diffuse_share(const Vec3& wl, float pdf) const override {
+    return material_->diffuse_share(relief_.to_local(wl), pdf);
+  }
+
+ private:
+  const PreparedBrdf* material_;
+  Frame relief_;
+  ReliefCorrection correction_;
+};
+
+class NormalMappedMaterial final : public Material {
+ public:
+  NormalMappedMaterial(std::shared_ptr<const Material> material, const NormalMap& map, ReliefPart part)
+      : material_(std::move(material)), map_(map), part_(part) {}
+
+  const PreparedBrdf* prepare(const Vec3& wv, const SurfaceSite& site, const PrepareOptions& options,
+                              ScratchArena& arena) const override {
+    const Frame seen = frame_of(part_ != ReliefPart::diffuse, wv, site);
+    Vec3 local = seen.to_local(wv);
+    if (local.z < kMinViewCosine) local = glm::normalize(Vec3(local.x, local.y, kMinViewCosine));
+    const PreparedBrdf* const material = material_->prepare(local, site, options, arena);
+    return arena.make<PreparedNormalMapped>(material, part_ == ReliefPart::base ? frame_of(false, wv, site) : seen,
+                                            part_ == ReliefPart::lobe ? ReliefCorrection::none : map_.correction);
   }
 
   bool varies() const override { return true; }
   bool isotropic() const override { return false; }
 
  private:
-  float kept(float own, float mapped, float tilt) const {
-    if (part_ == ReliefPart::lobe || map_.correction == ReliefCorrection::none) return 1;
-    return map_.correction == ReliefCorrection::shadowed ? relief_shadowing(own, tilt)
-                                                         : terminator_softening(own, mapped, tilt);
-  }
-
   bool keeps_mirrors_above(bool is_lobe) const {
     if (map_.correction == ReliefCorrection::turned) return true;
     return map_.correction != ReliefCorrection::none && is_lobe;

@@ -17,6 +17,7 @@ void DirectLight::gather(std::span<const Receiver> receivers, bool go_on, Shadow
                          std::vector<CameraSample>& samples) {
   const Output output{shadows, samples};
   awaited_.clear();
+  arena_.reset();
   for (size_t k = 0; k < receivers.size(); ++k) {
     if (lighting_.has_extended()) views_[k] = lighting_.view(receivers[k].vertex.light_place());
     prepare(receivers[k], go_on, work_[k], views_[k]);
@@ -32,10 +33,9 @@ void DirectLight::gather(std::span<const Receiver> receivers, bool go_on, Shadow
 
 void DirectLight::prepare(const Receiver& receiver, bool go_on, Work& work, const LightView& view) {
   const Vertex& vertex = receiver.vertex;
-  work.prepared.interpolated_draws = is_dissertations(options_.strategy);
-  work.prepared.filter = lobe_filter(options_.light_paths, receiver.past);
-  vertex.surface->material->prepare(vertex.wv, vertex.site, work.prepared);
-  prepare_surface(sampling_, vertex, work.prepared);
+  const PrepareOptions options{.interpolated_draws = is_dissertations(options_.strategy),
+                               .filter = lobe_filter(options_.light_paths, receiver.past)};
+  work.prepared = PreparedSurface(sampling_, vertex, options, arena_);
   work.shares = shares_at(vertex, view, work);
   PathNumbers& numbers = *receiver.numbers;
   const auto all = numbers.all(lighting_.has_extended() ? receiver.directions : 0, receiver.full);
@@ -53,7 +53,7 @@ void DirectLight::prepare(const Receiver& receiver, bool go_on, Work& work, cons
 Shares DirectLight::shares_at(const Vertex& vertex, const LightView& view, Work& work) {
   if (options_.strategy != Strategy::product || sky_ == nullptr) return shares(options_, 0.0f);
   ProposalLobes lobes;
-  const bool proposed = vertex.surface->material->proposal_lobes(work.prepared, lobes) &&
+  const bool proposed = work.prepared.brdf().proposal_lobes(lobes) &&
                         sky_->proposals.propose(lobes, vertex.frame, products_, work.product);
   if (!proposed) return shares(options_, 0.0f);
   const float both = kProductShare * view.environment, lights = lights_part(vertex) * both;
@@ -123,7 +123,7 @@ void DirectLight::keep_world(const Vertex& vertex, const DirectionBatch& drawn, 
 void DirectLight::draw_from_surface(const Receiver& receiver, const Work& work) {
   if (work.from_surface.count == 0) return;
   const auto u = points_.points(work.surface_point, work.from_surface.count);
-  sample_surface(sampling_, receiver.vertex, work.prepared, u, drawn_);
+  work.prepared.sample(u, drawn_);
   for (int i = 0; i < drawn_.count; ++i) {
     const Vec3 wl = drawn_.get(i);
     keep_if_lit(receiver.vertex, wl, receiver.vertex.frame.to_world(wl), Technique::surface);
@@ -146,7 +146,7 @@ void DirectLight::shade(const Receiver& receiver, uint8_t place, Output output) 
   if (local_.count == 0) return;
   local_.pad();
   world_.pad();
-  vertex.surface->material->eval(work.prepared, local_, f_, material_pdf_);
+  work.prepared.brdf().eval(local_, f_, material_pdf_);
   add_terms(receiver, place);
   for (int k = 0; k < sharp_count_; ++k) {
     const int i = world_.count + k;
@@ -161,7 +161,7 @@ void DirectLight::shade(const Receiver& receiver, uint8_t place, Output output) 
 void DirectLight::add_terms(const Receiver& receiver, uint8_t place) {
   const Work& work = work_[place];
   const bool has_product = work.shares.product > 0.0f;
-  surface_pdf(sampling_, receiver.vertex, work.prepared, local_, material_pdf_, surface_pdf_);
+  work.prepared.pdf(local_, material_pdf_, surface_pdf_);
   if (has_product) eval_density(work.product, world_, product_pdf_);
   const Rgb share = receiver.throughput / static_cast<float>(receiver.directions);
   for (int i = 0; i < world_.count; ++i) {
@@ -249,8 +249,8 @@ std::optional<Continuation> DirectLight::extend(const Receiver& receiver, size_t
   const Work& work = work_[place];
   const auto continuation =
       work.goes_on_drawn ? work.continuation
-                         : sample_continuation(receiver.vertex, work.prepared, sampling_, working_space_,
-                                               receiver.throughput, receiver.numbers->point(Purpose::continuation));
+                         : sample_continuation(receiver.vertex, work.prepared, working_space_, receiver.throughput,
+                                               receiver.numbers->point(Purpose::continuation));
   if (!continuation || finite(continuation->throughput)) return continuation;
   ++nan_samples_;
   return std::nullopt;
@@ -259,9 +259,8 @@ std::optional<Continuation> DirectLight::extend(const Receiver& receiver, size_t
 PathPast DirectLight::past_after(const Receiver& receiver, size_t place, const Continuation& continuation) const {
   PathPast past{std::min(receiver.past.least_density, continuation.density), false};
   if (options_.light_paths.reflective_caustics) return past;
-  const Material& material = *receiver.vertex.surface->material;
-  past.was_diffuse =
-      receiver.numbers->label() < material.diffuse_share(work_[place].prepared, continuation.wl, continuation.density);
+  const PreparedBrdf& brdf = work_[place].prepared.brdf();
+  past.was_diffuse = receiver.numbers->label() < brdf.diffuse_share(continuation.wl, continuation.density);
   return past;
 }
 

@@ -152,7 +152,7 @@ class DirectLight {
  private:
   /// State of a vertex until its batch is done.
   struct Work {
-    PreparedBrdf prepared;
+    PreparedSurface prepared;  // in arena_
     LobeMixture product;  // world frame
     Shares shares;
     PathNumbers::Run from_product, from_surface, from_lights;
@@ -215,6 +215,7 @@ class DirectLight {
   const bool shares_rays_;     // whether a continuation ray may also serve as a shadow ray
   const EnvironmentProductSampler* sky_;
 
+  ScratchArena arena_;  // for the points of a batch, until the next gather()
   Work work_[kReceivers];
   LightView views_[kReceivers];
   // For all vertices of the batch.

@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "btf/measure/bilinear_texels.h"
+#include "image/bilinear_texels.h"
 #include "btf/measure/relief.h"
 #include "btf/model/tensor_btf.h"
 #include "image/half_image.h"

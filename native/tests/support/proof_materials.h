@@ -8,14 +8,14 @@
 
 namespace velour::test {
 
-/// The material's sampler for one view; `interpolated`: as PreparedBrdf::interpolated_draws.
+/// The material's sampler for one view; `interpolated`: PrepareOptions::interpolated_draws.
 inline Sampler material_sampler(std::shared_ptr<const Material> material, const Vec3& wv,
                                 const SurfaceSite& site = SurfaceSite::everywhere(), bool interpolated = false) {
-  auto point = std::make_shared<PreparedBrdf>();
-  point->interpolated_draws = interpolated;
-  material->prepare(wv, site, *point);
-  return {[material, point](const Vec2& u) { return material->sample_one(*point, u); },
-          [material, point](const Vec3& wl) { return static_cast<double>(eval_one(*material, *point, wl).pdf); }};
+  const auto arena = std::make_shared<ScratchArena>();
+  const PreparedBrdf* const point =
+      material->prepare(wv, site, {.interpolated_draws = interpolated}, *arena);
+  return {[material, arena, point](const Vec2& u) { return point->sample_one(u); },
+          [material, arena, point](const Vec3& wl) { return static_cast<double>(eval_one(*point, wl).pdf); }};
 }
 
 /// A highlight of albedo 1/2 about each view's mirror direction, whatever its bandwidth, over a broad lobe and a

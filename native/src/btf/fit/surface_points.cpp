@@ -1,6 +1,6 @@
 #include "btf/fit/surface_points.h"
 
-#include "btf/measure/bilinear_texels.h"
+#include "image/bilinear_texels.h"
 #include "btf/model/srbf_btf.h"
 #include "math/sphere/random.h"
 

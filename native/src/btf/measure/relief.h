@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "btf/measure/bilinear_texels.h"
+#include "image/bilinear_texels.h"
 #include "btf/measure/relief_march.h"
 #include "math/sphere/vec.h"
 

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <optional>
 
-#include "btf/measure/bilinear_texels.h"
+#include "image/bilinear_texels.h"
 #include "btf/measure/relief.h"
 #include "btf/model/tensor_btf.h"
 #include "math/sphere/direction_mesh.h"

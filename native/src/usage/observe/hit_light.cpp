@@ -18,7 +18,8 @@ HitLight HitLightEstimator::estimate(const Vertex& vertex, int bounces, uint64_t
   result_ = {};
   concentrations_.clear();
   irradiance_ = 0;
-  vertex.surface->material->prepare(vertex.wv, vertex.site, prepared_);
+  arena_.reset();
+  brdf_ = vertex.surface->material->prepare(vertex.wv, vertex.site, {}, arena_);
   if (lighting_.has_extended()) view_ = lighting_.view(vertex.light_place());
   estimate_half(vertex, bounces, key, 0);
   result_.middle = static_cast<uint32_t>(result_.wl.size());
@@ -62,7 +63,7 @@ void HitLightEstimator::draw(const Vertex& vertex, Counts counts, PathNumbers& n
   }
   const std::span<Vec2> points(u, static_cast<size_t>(counts.surface));
   numbers.points(Purpose::surface, 0, points);
-  vertex.surface->material->sample(prepared_, points, drawn);
+  brdf_->sample(points, drawn);
   for (int i = 0; i < drawn.count; ++i) {
     keep_if_received(vertex, drawn.get(i), vertex.frame.to_world(drawn.get(i)), Technique::surface, {});
   }
@@ -90,7 +91,7 @@ void HitLightEstimator::weigh(const Vertex& vertex, Counts counts) {
     lighting_.look_up({&view_, 1}, {view_of_, static_cast<size_t>(world_.count)}, world_, environment_, light_pdf_,
                       lamp_hits_);
   }
-  vertex.surface->material->eval(prepared_, local_, f_, material_pdf_);
+  brdf_->eval(local_, f_, material_pdf_);
   for (int i = 0; i < world_.count; ++i) {
     const float density =
         static_cast<float>(counts.lights) * light_pdf_.v[i] + static_cast<float>(counts.surface) * material_pdf_.v[i];

@@ -61,7 +61,8 @@ class HitLightEstimator {
   const Lighting& lighting_;
   const RenderOptions (&options_)[2];
   IndirectLight indirect_[2];
-  PreparedBrdf prepared_;
+  ScratchArena arena_;
+  const PreparedBrdf* brdf_ = nullptr;
   HitLight result_;
 
   // For one half: directions that the vertex receives light from.

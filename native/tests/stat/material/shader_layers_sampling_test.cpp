@@ -73,14 +73,14 @@ TEST(ShaderLayersSamplingControl, AnotherShareIsSeen) {
 /// The samples of a batch are those of single calls.
 TEST(ShaderLayersSampling, ABatchIsItsSamples) {
   const auto material = mixed(0.5f);
-  PreparedBrdf point;
-  material->prepare(test::view_at(45), point);
+  ScratchArena arena;
+  const PreparedBrdf* const point = material->prepare(test::view_at(45), arena);
   std::vector<Vec2> u;
   for (uint64_t i = 0; i < 64; ++i) u.push_back(RandomStream(3, 0, i).next2());
   DirectionBatch wl;
-  material->sample(point, u, wl);
+  point->sample(u, wl);
   ASSERT_EQ(wl.count, 64);
-  for (size_t i = 0; i < u.size(); ++i) EXPECT_EQ(wl.get(static_cast<int>(i)), material->sample_one(point, u[i])) << i;
+  for (size_t i = 0; i < u.size(); ++i) EXPECT_EQ(wl.get(static_cast<int>(i)), point->sample_one(u[i])) << i;
 }
 
 }  // namespace

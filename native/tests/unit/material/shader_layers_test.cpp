@@ -30,9 +30,9 @@ ShaderLayers two(float share) {
 }
 
 Rgb f_of(const Material& material, const SurfaceSite& site = {}) {
-  PreparedBrdf point;
-  material.prepare(direction(0.5f, 1), site, point);
-  return test::eval_one(material, point, direction(0.7f, 3)).f;
+  ScratchArena arena;
+  const PreparedBrdf* const point = material.prepare(direction(0.5f, 1), site, {}, arena);
+  return test::eval_one(*point, direction(0.7f, 3)).f;
 }
 
 void expect_near(const Rgb& found, const Rgb& expected, float error = 1e-5f) {
@@ -87,7 +87,7 @@ TEST(ShaderLayers, SharesMakeUpForTheProbabilityOfMeeting) {
 }
 
 TEST(ShaderLayers, NothingIsBlackAndOpenIsOpen) {
-  PreparedBrdf point;
+  ScratchArena arena;
   const auto nothing = make_layered_material({});
   EXPECT_EQ(nothing->alpha({}), 1);
   expect_near(f_of(*nothing), Rgb(0));
@@ -116,13 +116,13 @@ TEST(ShaderLayers, AWhiteMixKeepsAllLight) {
 
 /// Mean of f cos / pdf over samples.
 double sampled_albedo(const Material& material, float theta_v) {
-  PreparedBrdf point;
-  material.prepare(direction(theta_v, 0), point);
+  ScratchArena arena;
+  const PreparedBrdf* const point = material.prepare(direction(theta_v, 0), arena);
   double sum = 0;
   constexpr uint64_t kSamples = 100'000;
   for (uint64_t i = 0; i < kSamples; ++i) {
-    const Vec3 wl = material.sample_one(point, RandomStream(1, 0, i).next2());
-    const auto found = test::eval_one(material, point, wl);
+    const Vec3 wl = point->sample_one(RandomStream(1, 0, i).next2());
+    const auto found = test::eval_one(*point, wl);
     sum += static_cast<double>(found.f.g * std::max(wl.z, 0.0f) / found.pdf);
   }
   return sum / kSamples;

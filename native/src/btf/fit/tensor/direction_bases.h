@@ -5,7 +5,7 @@
 #include <vector>
 #include "base/progress.h"
 #include "btf/fit/side_views.h"
-#include "btf/measure/bilinear_texels.h"
+#include "image/bilinear_texels.h"
 #include "btf/measure/relief.h"
 #include "math/tensor/tensor_view.h"
 

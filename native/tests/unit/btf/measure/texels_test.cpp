@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "base/aligned_array.h"
-#include "btf/measure/bilinear_texels.h"
+#include "image/bilinear_texels.h"
 #include "btf/model/byte_rows.h"
 #include "btf/model/srbf_evaluator.h"
 #include "math/sphere/random.h"
