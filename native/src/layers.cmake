@@ -8,7 +8,7 @@ layer(base LIBRARIES Threads::Threads TBB::tbb ${CMAKE_DL_LIBS} PRIVATE velour_h
 layer(math/srbf BELOW base math/sphere LIBRARIES velour_highway)
 layer(math/tensor BELOW base math/sphere LIBRARIES Eigen3::Eigen TBB::tbb velour_highway BATCH 3)
 layer(math/optimize BELOW base LIBRARIES Eigen3::Eigen)
-layer(image BELOW base LIBRARIES PRIVATE glm::glm OpenEXR::OpenEXR TIFF::TIFF ZLIB::ZLIB)
+layer(image BELOW base math/sphere LIBRARIES PRIVATE glm::glm OpenEXR::OpenEXR TIFF::TIFF ZLIB::ZLIB)
 layer(votf/eval BELOW math/srbf)
 
 layer(brdf/measure BELOW image math/sphere LIBRARIES PRIVATE Eigen3::Eigen)

@@ -57,7 +57,7 @@ FILTERS = ("closest", "linear")
 LAYERS = ("principled", "diffuse", "glossy", "transparent", "emission")
 FORMULAS = ("layered", "disney")
 LOBES = ("whole", "single", "separable")
-FACTORS = ("share", "rest", "gain")
+FACTORS = ("share", "rest", "gain", "tint")
 RELIEF_CORRECTIONS = ("turned", "faded", "shadowed", "as-it-is")
 STRATEGIES = (
     *("uniform", "cosine", "table", "srbf", "light", "mis", "ggx", "mis-ggx", "product"),
@@ -147,6 +147,7 @@ STATUS_CALLS = {
     "vlr_texture_load": [c_char_p, POINTER(structs.TextureOptions), _out_handle],
     "vlr_shader_create": [_out_handle],
     "vlr_shader_add_layer": [_handle, POINTER(structs.LayerDesc)],
+    "vlr_shader_add_measured_layer": [_handle, POINTER(structs.MeasuredLayerDesc)],
     "vlr_shader_weigh_layer": [_handle, POINTER(structs.FactorDesc)],
     "vlr_scene_add_shader_material": [_handle, _handle, _number],
     "vlr_scene_add_textured_material": [
@@ -268,6 +269,7 @@ PLAIN_CALLS = {
     "vlr_principled_textures_init": (None, [POINTER(structs.PrincipledTextures)]),
     "vlr_layer_desc_init": (None, [POINTER(structs.LayerDesc)]),
     "vlr_factor_desc_init": (None, [POINTER(structs.FactorDesc)]),
+    "vlr_measured_layer_desc_init": (None, [POINTER(structs.MeasuredLayerDesc)]),
     "vlr_light_desc_init": (None, [POINTER(structs.LightDesc)]),
     "vlr_camera_desc_init": (None, [POINTER(structs.CameraDesc)]),
     "vlr_pass_options_init": (None, [POINTER(structs.PassOptions)]),

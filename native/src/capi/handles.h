@@ -65,7 +65,10 @@ struct vlr_texture {
 
 struct vlr_shader {
   velour::ShaderLayers layers;
-  bool relief = false;  // a layer has a normal map
+  bool relief = false;                              // a layer has a normal map
+  bool brushed = false;                             // a measured layer is uniform and anisotropic
+  std::shared_ptr<const velour::ShellField> shell;  // of a measured layer with a silhouette; null: none
+  bool shell_shaded = false;                        // as in SurfaceMaterial
   velour::MeshSets sets;
   velour::LayerWeight* last = nullptr;  // of the layer added last; null: no layer
 };

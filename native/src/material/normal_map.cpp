@@ -20,8 +20,8 @@ float remaining(ReliefCorrection correction, float own, float mapped, float tilt
 class PreparedNormalMapped final : public PreparedBrdf {
  public:
   /// `relief`: about the mapped normal, in which `material` is prepared.
-  PreparedNormalMapped(const PreparedBrdf* material, const Frame& relief, ReliefCorrection correction)
-      : material_(material), relief_(relief), correction_(correction) {}
+  PreparedNormalMapped(const PreparedBrdf* material, const Frame& relief, ReliefCorrection correction, bool transmits)
+      : material_(material), relief_(relief), correction_(correction), transmits_(transmits) {}
 
   void eval(const DirectionBatch& wl, RgbBatch& f, ScalarBatch& pdf) const override {
     DirectionBatch turned;
@@ -29,9 +29,10 @@ class PreparedNormalMapped final : public PreparedBrdf {
     turned.pad();
     material_->eval(turned, f, pdf);
     for (int i = 0; i < wl.count; ++i) {
-      const float share = remaining(correction_, wl.z[i], turned.z[i], relief_.z.z);
-      const bool above = wl.z[i] > 0 && turned.z[i] > 0;
-      f.set(i, above ? f.get(i) * (share * turned.z[i] / std::max(wl.z[i], kMinNormalCosine)) : Rgb(0.0f));
+      const float side = transmits_ && wl.z[i] < 0 ? -1.0f : 1.0f;
+      const float own = side * wl.z[i], mapped = side * turned.z[i];
+      const float share = remaining(correction_, own, mapped, relief_.z.z);
+      f.set(i, own > 0 && mapped > 0 ? f.get(i) * (share * mapped / std::max(own, kMinNormalCosine)) : Rgb(0.0f));
     }
   }
 
@@ -48,6 +49,7 @@ class PreparedNormalMapped final : public PreparedBrdf {
   const PreparedBrdf* material_;
   Frame relief_;
   ReliefCorrection correction_;
+  bool transmits_;
 };
 
 class NormalMappedMaterial final : public Material {
@@ -62,10 +64,13 @@ class NormalMappedMaterial final : public Material {
     if (local.z < kMinViewCosine) local = glm::normalize(Vec3(local.x, local.y, kMinViewCosine));
     const PreparedBrdf* const material = material_->prepare(local, site, options, arena);
     return arena.make<PreparedNormalMapped>(material, part_ == ReliefPart::base ? frame_of(false, wv, site) : seen,
-                                            part_ == ReliefPart::lobe ? ReliefCorrection::none : map_.correction);
+                                            part_ == ReliefPart::lobe ? ReliefCorrection::none : map_.correction,
+                                            material_->transmits());
   }
 
   bool varies() const override { return true; }
+  Vec2 texels() const override { return material_->texels(); }
+  bool transmits() const override { return material_->transmits(); }
   bool isotropic() const override { return false; }
 
  private:

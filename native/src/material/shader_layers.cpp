@@ -40,6 +40,40 @@ struct PreparedLayer {
   const PreparedBrdf* point;  // null: the layer is absent
   Rgb weight;                 // factor of its f
   float share;                // probability of sampling this layer; all sum to 1
+  const Mat3* to_working;     // conversion of its f to the working space; null: none
+  bool above_only;            // the material transmits light, but not this layer
+};
+
+/// Keeps the lobes of the largest masses.
+class StrongestLobes {
+ public:
+  explicit StrongestLobes(ProposalLobes& lobes) : lobes_(lobes) {
+    lobes_.cosine = 0;
+    lobes_.count = 0;
+  }
+
+  void add(const ProposalLobes& others, float weight) {
+    lobes_.cosine += weight * others.cosine;
+    for (int j = 0; j < others.count; ++j) {
+      GaussianLobe lobe = others.lobe[j];
+      lobe.amplitude *= weight;
+      add(lobe);
+    }
+  }
+
+ private:
+  static float mass(const GaussianLobe& lobe) { return lobe.amplitude / std::max(lobe.bandwidth, 1.0f); }
+
+  void add(const GaussianLobe& lobe) {
+    if (lobes_.count < ProposalLobes::kCapacity) {
+      lobes_.lobe[lobes_.count++] = lobe;
+      return;
+    }
+    GaussianLobe& weakest = *std::ranges::min_element(lobes_.lobe, {}, mass);
+    if (mass(weakest) < mass(lobe)) weakest = lobe;
+  }
+
+  ProposalLobes& lobes_;
 };
 
 class PreparedLayers final : public PreparedBrdf {
@@ -53,8 +87,10 @@ class PreparedLayers final : public PreparedBrdf {
     for (const PreparedLayer& layer : layers_) {
       if (layer.point == nullptr) continue;
       layer.point->eval(wl, one, one_pdf);
+      if (layer.above_only) leave_out_below(wl, one, one_pdf);
       for (int k = 0; k < wl.count; ++k) {
-        f.set(k, (first ? Rgb(0.0f) : f.get(k)) + layer.weight * one.get(k));
+        const Rgb own = layer.to_working != nullptr ? *layer.to_working * one.get(k) : one.get(k);
+        f.set(k, (first ? Rgb(0.0f) : f.get(k)) + layer.weight * own);
         pdf.v[k] = (first ? 0.0f : pdf.v[k]) + layer.share * one_pdf.v[k];
       }
       first = false;
@@ -71,7 +107,7 @@ class PreparedLayers final : public PreparedBrdf {
     for (const PreparedLayer& layer : layers_) {
       if (layer.point == nullptr) continue;
       const float end = &layer == last ? 1.0f : begin + layer.share;
-      sample_layer(*layer.point, {begin, end}, u, wl);
+      sample_layer(layer, {begin, end}, u, wl);
       begin = end;
     }
   }
@@ -80,13 +116,34 @@ class PreparedLayers final : public PreparedBrdf {
     float density = 0;
     for (const PreparedLayer& layer : layers_) {
       if (layer.point == nullptr) continue;
-      const float own = layer.point->eval_one(wl).pdf;
+      const float own = layer.above_only && wl.z < 0 ? 0.0f : layer.point->eval_one(wl).pdf;
       if (own > 0) density += layer.share * own * layer.point->diffuse_share(wl, own);
     }
     return std::min(density / pdf, 1.0f);
   }
 
+  bool proposal_lobes(ProposalLobes& lobes) const override {
+    StrongestLobes strongest(lobes);
+    bool any = false;
+    for (const PreparedLayer& layer : layers_) {
+      ProposalLobes own;
+      if (layer.point == nullptr) continue;
+      if (!layer.point->proposal_lobes(own)) return false;
+      strongest.add(own, luminance(layer.weight));
+      any = true;
+    }
+    return any;
+  }
+
  private:
+  static void leave_out_below(const DirectionBatch& wl, RgbBatch& f, ScalarBatch& pdf) {
+    for (int i = 0; i < wl.count; ++i) {
+      if (!(wl.z[i] < 0)) continue;
+      f.set(i, Rgb(0.0f));
+      pdf.v[i] = 0;
+    }
+  }
+
   static void eval_black(const DirectionBatch& wl, RgbBatch& f, ScalarBatch& pdf) {
     for (int i = 0; i < wl.count; ++i) {
       f.set(i, Rgb(0.0f));
@@ -95,7 +152,7 @@ class PreparedLayers final : public PreparedBrdf {
   }
 
   /// Samples `layer` for those `u` whose first coordinate lies in `range`.
-  static void sample_layer(const PreparedBrdf& layer, const Vec2& range, std::span<const Vec2> u, DirectionBatch& wl) {
+  static void sample_layer(const PreparedLayer& layer, const Vec2& range, std::span<const Vec2> u, DirectionBatch& wl) {
     Vec2 some[DirectionBatch::kCapacity];
     int place[DirectionBatch::kCapacity];
     size_t count = 0;
@@ -106,8 +163,11 @@ class PreparedLayers final : public PreparedBrdf {
     }
     if (count == 0) return;
     DirectionBatch drawn;
-    layer.sample({some, count}, drawn);
-    for (size_t i = 0; i < count; ++i) wl.set(place[i], drawn.get(static_cast<int>(i)));
+    layer.point->sample({some, count}, drawn);
+    for (size_t i = 0; i < count; ++i) {
+      const Vec3 w = drawn.get(static_cast<int>(i));
+      wl.set(place[i], layer.above_only && w.z < 0 ? Vec3(0.0f) : w);
+    }
   }
 
   std::span<const PreparedLayer> layers_;
@@ -116,7 +176,11 @@ class PreparedLayers final : public PreparedBrdf {
 class LayeredMaterial final : public Material {
  public:
   explicit LayeredMaterial(ShaderLayers layers) : layers_(std::move(layers)) {
-    for (const ReflectingLayer& l : layers_.reflecting) albedo_.push_back(std::max(mean_albedo(*l.material), 1e-3f));
+    for (const ReflectingLayer& l : layers_.reflecting) {
+      albedo_.push_back(std::max(mean_albedo(*l.material), 1e-3f));
+      transmits_ = transmits_ || l.material->transmits();
+      texels_ = glm::max(texels_, l.material->texels());
+    }
   }
 
   const PreparedBrdf* prepare(const Vec3& wv, const SurfaceSite& site, const PrepareOptions& options,
@@ -127,9 +191,11 @@ class LayeredMaterial final : public Material {
     for (size_t i = 0; i < albedo_.size(); ++i) {
       PreparedLayer& layer = prepared[i];
       const ReflectingLayer& from = layers_.reflecting[i];
-      layer.weight = Rgb(brighter * from.weight.at(site));
+      layer.weight = Rgb(brighter * from.weight.at(site)) * from.weight.tint(site);
       if (from.coated) layer.weight *= through_coat(*from.coated, wv.z, options.filter);
       sum += layer.share = luminance(layer.weight) * albedo_[i];
+      layer.to_working = from.rec709_colors && layers_.rec709_to_working ? &*layers_.rec709_to_working : nullptr;
+      layer.above_only = transmits_ && !from.material->transmits();
       layer.point = layer.weight != Rgb(0.0f) ? from.material->prepare(wv, site, options, arena) : nullptr;
     }
     for (size_t i = 0; i < albedo_.size() && sum > 0; ++i) prepared[i].share /= sum;
@@ -142,6 +208,9 @@ class LayeredMaterial final : public Material {
            std::ranges::any_of(layers_.reflecting,
                                [](const ReflectingLayer& l) { return l.weight.varies() || l.material->varies(); });
   }
+
+  Vec2 texels() const override { return texels_; }
+  bool transmits() const override { return transmits_; }
 
   bool opaque() const override { return layers_.transparent.empty(); }
   bool tints() const override { return !opaque(); }
@@ -190,6 +259,8 @@ class LayeredMaterial final : public Material {
 
   const ShaderLayers layers_;
   std::vector<float> albedo_;  // mean albedo of each reflecting layer; only steers sampling
+  Vec2 texels_{1.0f};          // of the finest layer along each coordinate
+  bool transmits_ = false;
 };
 
 }  // namespace
@@ -207,8 +278,15 @@ float LayerWeight::at(const SurfaceSite& site) const {
   return product;
 }
 
+Rgb LayerWeight::tint(const SurfaceSite& site) const {
+  Rgb product(1.0f);
+  for (const LayerTint& t : tints) product *= glm::max(t.at(site), Rgb(0.0f));
+  return product;
+}
+
 bool LayerWeight::varies() const {
-  return std::ranges::any_of(factors, [](const LayerFactor& f) { return f.texture.given(); });
+  const auto given = [](const auto& factor) { return factor.texture.given(); };
+  return std::ranges::any_of(factors, given) || std::ranges::any_of(tints, given);
 }
 
 std::shared_ptr<const Material> make_layered_material(ShaderLayers layers) {

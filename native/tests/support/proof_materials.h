@@ -65,29 +65,31 @@ inline std::shared_ptr<const Material> measured(const PerViewBrdf& proposal) {
   return make_measured_material(std::make_shared<SyntheticMeasurement>(), std::make_shared<PerViewBrdf>(proposal), 0);
 }
 
-/// A kind of material whose samples come from lobes.
+/// A kind of material whose samples come from lobes: a per-view model, or a measurement sampled by one.
 struct LobeMaterial {
   const char* name;
   std::vector<float> bandwidths;
-  std::shared_ptr<const Material> (*make)(float bandwidth);
+  PerViewBrdf (*model)(float bandwidth);
+  bool is_measured = false;
+
+  std::shared_ptr<const Material> make(float bandwidth) const {
+    if (is_measured) return measured(model(bandwidth));
+    return make_per_view_material(std::make_shared<PerViewBrdf>(model(bandwidth)), 0);
+  }
 };
 
+inline PerViewBrdf gaussian_highlight(float bandwidth) {
+  return highlight_model(Kernel::gaussian, bandwidth, meridian_views(), true);
+}
+
 inline const std::vector<LobeMaterial> kLobeMaterials = {
-    {"isotropic gaussian", {1e-4f, 0.1f, 10, 1e3f, 1e5f, 1e6f}, highlight_material},
+    {"isotropic gaussian", {1e-4f, 0.1f, 10, 1e3f, 1e5f, 1e6f}, gaussian_highlight},
     {"isotropic abel-poisson",
      {1e-4f, 0.5f, 0.9f, 0.999f},
-     [](float b) {
-       return make_per_view_material(
-           std::make_shared<PerViewBrdf>(highlight_model(Kernel::abel_poisson, b, meridian_views(), true)), 0);
-     }},
+     [](float b) { return highlight_model(Kernel::abel_poisson, b, meridian_views(), true); }},
     {"anisotropic gaussian",
      {1, 1e3f, 1e6f},
-     [](float b) {
-       return make_per_view_material(
-           std::make_shared<PerViewBrdf>(highlight_model(Kernel::gaussian, b, hemisphere_fibonacci(150), false)), 0);
-     }},
-    {"measured, proposal of lobes", {10, 1e5f}, [](float b) {
-       return measured(highlight_model(Kernel::gaussian, b, meridian_views(), true));
-     }}};
+     [](float b) { return highlight_model(Kernel::gaussian, b, hemisphere_fibonacci(150), false); }},
+    {"measured, proposal of lobes", {10, 1e5f}, gaussian_highlight, true}};
 
 }  // namespace velour::test

@@ -186,9 +186,9 @@ std::shared_ptr<const Material> make_tensor_btf_material(std::shared_ptr<const T
 
 // Material of a BTF with an open structure, on a surface whose rays intersect the structure's silhouette themselves.
 
-/// f of the solid part, from a BTF whose values average solid and empty parts. Texels beyond a silhouette hold light of
-/// the structure inside; it is folded back over the silhouette, so that rays that hit the structure gather exactly all
-/// of it.
+/// f of the solid part, from a BTF whose values average solid and empty parts, or from a material that contains one.
+/// Texels beyond a silhouette hold light of the structure inside; it is folded back over the silhouette, so that rays
+/// that hit the structure gather exactly all of it.
 class HoledBtfMaterial final : public Material {
  public:
   explicit HoledBtfMaterial(std::shared_ptr<const Material> btf) : btf_(std::move(btf)) {}
