@@ -8,6 +8,7 @@
 #include "brdf/eval/parametric_material.h"
 #include "btf/eval/factored_material.h"
 #include "material/glossy_material.h"
+#include "material/microfacet/ggx_sampler.h"
 #include "material/normal_map.h"
 #include "material/principled/principled_material.h"
 #include "material/rough_diffuse_material.h"
@@ -141,9 +142,9 @@ TEST_P(Allocation, HitsUseNoHeap) {
   EXPECT_EQ(allocations_at_hits(*material, GetParam().interpolated), 0u);
 }
 
-INSTANTIATE_TEST_SUITE_P(All, Allocation, ::testing::ValuesIn(kinds()), [](const auto& info) {
+INSTANTIATE_TEST_SUITE_P(All, Allocation, ::testing::ValuesIn(kinds()), [](const auto& kind) {
   std::string name;
-  for (const char c : std::string(info.param.name)) name += std::isalnum(static_cast<unsigned char>(c)) ? c : '_';
+  for (const char c : std::string(kind.param.name)) name += std::isalnum(static_cast<unsigned char>(c)) ? c : '_';
   return name;
 });
 
