@@ -169,8 +169,7 @@ class Study {
     arena_.reset();
     const PreparedBrdf* const prepared = material.prepare(vertex.wv, arena_);
     ProposalLobes lobes;
-    const bool proposed =
-        prepared->proposal_lobes(lobes) && sky_.propose(lobes, vertex.frame, scratch_, product_);
+    const bool proposed = prepared->proposal_lobes(lobes) && sky_.propose(lobes, vertex.frame, scratch_, product_);
     if (proposed) lobes_ += product_.count;
     const double both = proposed ? product_share_ : 0;
     const double lights = static_cast<double>(lights_part_[point.material]) * both;

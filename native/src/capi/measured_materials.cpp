@@ -47,8 +47,8 @@ SurfaceMaterial surface_of(const BtfMeasurement& btf, uint64_t most_bytes) {
   const auto table = read_btf_table(btf, most_bytes != 0 ? most_bytes : kUsualTableBytes);
   auto reflecting = make_measured_btf_material(table);
   if (!table->between.knows_through()) return {.material = std::move(reflecting)};
-  return {.material = std::make_shared<const ThroughMaterial>(
-              std::move(reflecting), make_measured_btf_material(table, BtfLight::other_side))};
+  return {.material = std::make_shared<const ThroughMaterial>(std::move(reflecting),
+                                                              make_measured_btf_material(table, BtfLight::other_side))};
 }
 
 }  // namespace velour::capi

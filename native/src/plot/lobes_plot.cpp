@@ -133,8 +133,8 @@ void set_radius(const PlotSeries& model, const std::vector<PlotPoint>& measured,
   axis.high = std::pow(10.0, high);
 }
 
-void add_lobes(const Model& model, const Vec3& wv, const PlotView& view,
-               const std::vector<double>& angles, Plot& plot) {
+void add_lobes(const Model& model, const Vec3& wv, const PlotView& view, const std::vector<double>& angles,
+               Plot& plot) {
   const auto lobes = std::visit([&](const auto& body) { return lobes_of(body, wv); }, model.body);
   for (const NamedLobe& lobe : lobes) {
     PlotSeries series{lobe.name, PlotRole::lobe, PlotMark::line, {}};

@@ -218,7 +218,8 @@ void DirectLight::settle(std::span<const Receiver> receivers, Output output) {
     const Receiver& receiver = receivers[terms_.receiver[i]];
     const Rgb light = weighed * terms_.reflected.get(i);
     settle_term(receivers, i,
-                {terms_.world.get(i), light, limit_of_term(receiver), far, casts_shadow, terms_.light_pdf.v[i]}, output);
+                {terms_.world.get(i), light, limit_of_term(receiver), far, casts_shadow, terms_.light_pdf.v[i]},
+                output);
   };
   for (int i = 0; i < terms_.world.count; ++i) {
     add(i, terms_.weight.v[i] * terms_.environment.get(i), std::numeric_limits<float>::infinity(), true);
@@ -275,8 +276,8 @@ void DirectLight::queue(const Receiver& receiver, const Contribution& c, Output 
 
 void DirectLight::add_incident(const Vertex& vertex, const Contribution& c, IncidentLight& incident) {
   if (zero(c.light) || !finite(c.light)) return;
-  incident.terms.push_back({vertex.frame.to_local(c.wl_world), c.light, c.density,
-                            vertex.shadow_ray(c.wl_world, c.far), c.casts_shadow});
+  incident.terms.push_back(
+      {vertex.frame.to_local(c.wl_world), c.light, c.density, vertex.shadow_ray(c.wl_world, c.far), c.casts_shadow});
 }
 
 std::optional<Continuation> DirectLight::extend(const Receiver& receiver, size_t place) {

@@ -97,7 +97,8 @@ struct IncidentLight {
   };
   std::vector<Term> terms;
   /// Along the directions sampled from the surface, with a throughput of |cos| / (their number times their density):
-  /// the surfaces that they hit, whose emission is in the terms where DirectLight::counts_emissive(), reflect more light.
+  /// the surfaces that they hit, whose emission is in the terms where DirectLight::counts_emissive(), reflect more
+  /// light.
   std::vector<Continuation> continuations;
 };
 
@@ -175,7 +176,7 @@ class DirectLight {
   /// State of a vertex until its batch is done.
   struct Work {
     PreparedSurface prepared;  // in arena_
-    LobeMixture product;  // world frame
+    LobeMixture product;       // world frame
     Shares shares;
     PathNumbers::Run from_product, from_surface, from_lights;
     int product_point, surface_point, light_point;  // index of the first of each in points_
@@ -220,8 +221,8 @@ class DirectLight {
   struct Contribution {
     Vec3 wl_world;
     Rgb light;
-    float limit;    // maximum sum of the channels
-    float far;      // distance of the light
+    float limit;  // maximum sum of the channels
+    float far;    // distance of the light
     bool casts_shadow;
     float density;  // of Lighting::sample; infinite for delta lights
   };

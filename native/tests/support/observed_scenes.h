@@ -14,10 +14,11 @@ namespace velour::test {
 
 /// Luminance of another material's f, times a factor.
 inline std::shared_ptr<const Material> scaled_gray(std::shared_ptr<const Material> material, float factor) {
-  return std::make_shared<ChangedMaterial>(
-      std::move(material), [factor](const DirectionBatch& wl, RgbBatch& f, ScalarBatch&) {
-        for (int i = 0; i < wl.count; ++i) f.set(i, Rgb(factor * luminance(f.get(i))));
-      });
+  return std::make_shared<ChangedMaterial>(std::move(material),
+                                           [factor](const DirectionBatch& wl, RgbBatch& f, ScalarBatch&) {
+                                             for (int i = 0; i < wl.count; ++i)
+                                               f.set(i, Rgb(factor * luminance(f.get(i))));
+                                           });
 }
 
 enum class ObservedLight { sky, lamps, delta_lights };

@@ -12,8 +12,7 @@ namespace velour::test {
 inline Sampler material_sampler(std::shared_ptr<const Material> material, const Vec3& wv,
                                 const SurfaceSite& site = SurfaceSite::everywhere(), bool interpolated = false) {
   const auto arena = std::make_shared<ScratchArena>();
-  const PreparedBrdf* const point =
-      material->prepare(wv, site, {.interpolated_draws = interpolated}, *arena);
+  const PreparedBrdf* const point = material->prepare(wv, site, {.interpolated_draws = interpolated}, *arena);
   return {[material, arena, point](const Vec2& u) { return point->sample_one(u); },
           [material, arena, point](const Vec3& wl) { return static_cast<double>(eval_one(*point, wl).pdf); }};
 }

@@ -15,10 +15,10 @@ namespace {
 
 /// The material with a density that is not its own.
 std::shared_ptr<const Material> with_density_times(float factor, std::shared_ptr<const Material> material) {
-  return std::make_shared<ChangedMaterial>(
-      std::move(material), [factor](const DirectionBatch& wl, RgbBatch&, ScalarBatch& pdf) {
-        for (int i = 0; i < wl.count; ++i) pdf.v[i] *= factor;
-      });
+  return std::make_shared<ChangedMaterial>(std::move(material),
+                                           [factor](const DirectionBatch& wl, RgbBatch&, ScalarBatch& pdf) {
+                                             for (int i = 0; i < wl.count; ++i) pdf.v[i] *= factor;
+                                           });
 }
 
 /// Fills a scene whose errors are those of a control.

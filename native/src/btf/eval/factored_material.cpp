@@ -142,10 +142,10 @@ class PreparedFactored final : public PreparedCosineBtf {
   }
 
   const FactoredMaterial& m_;
-  bool back_;                            // seen from below, in a BTF of two sides
-  std::array<uint32_t, 3> view_{};       // numbers of views
-  std::array<float, 3> weight_{};        // barycentric; 0 everywhere: the BTF has no view on this side
-  float* value_ = nullptr;               // of all components, or of those of each view in turn, times its weight
+  bool back_;                       // seen from below, in a BTF of two sides
+  std::array<uint32_t, 3> view_{};  // numbers of views
+  std::array<float, 3> weight_{};   // barycentric; 0 everywhere: the BTF has no view on this side
+  float* value_ = nullptr;          // of all components, or of those of each view in turn, times its weight
 };
 
 const PreparedBrdf* FactoredMaterial::prepare(const Vec3& wv, const SurfaceSite& site,

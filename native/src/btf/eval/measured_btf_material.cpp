@@ -57,8 +57,7 @@ class PreparedMeasuredBtf final : public PreparedCosineBtf {
   };
 
   Rgb value(const Vec3& wl) const override {
-    const auto lights =
-        wl.z > 0 ? material_.table().between.light(material_.turned_light(wl, back_)) : std::nullopt;
+    const auto lights = wl.z > 0 ? material_.table().between.light(material_.turned_light(wl, back_)) : std::nullopt;
     if (!lights) return Rgb(0.0f);
     Rgb sum(0.0f);
     for (const Row& row : std::span(row_.data(), count_)) {

@@ -80,8 +80,8 @@ double spread(const Material& material, bool interpolated) {
   for (int v = 0; v < kViews; ++v) {
     const float sine = std::sqrt((static_cast<float>(v) + 0.5f) / kViews);
     arena.reset();
-    const PreparedBrdf* const point = material.prepare(
-        direction(std::asin(sine), 0.4f), {}, {.interpolated_draws = interpolated}, arena);
+    const PreparedBrdf* const point =
+        material.prepare(direction(std::asin(sine), 0.4f), {}, {.interpolated_draws = interpolated}, arena);
     test::RunningMean mean;
     for (uint64_t i = 0; i < kSamples; ++i) {
       const Vec3 wl = point->sample_one(RandomStream(5, static_cast<uint64_t>(v), i).next2());

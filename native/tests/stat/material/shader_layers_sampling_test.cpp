@@ -39,8 +39,9 @@ std::shared_ptr<const Material> tilted() {
 /// transmits light, beside analytic layers.
 std::shared_ptr<const Material> measured_in_mixes(bool transmits) {
   ShaderLayers inner;
-  inner.reflecting = {{make_parametric_material(test::parametric_highlight(100, true)), by(LayerFactor::Kind::share, 0.4f)},
-                      {test::measured(test::isotropic_model()), by(LayerFactor::Kind::rest, 0.4f)}};
+  inner.reflecting = {
+      {make_parametric_material(test::parametric_highlight(100, true)), by(LayerFactor::Kind::share, 0.4f)},
+      {test::measured(test::isotropic_model()), by(LayerFactor::Kind::rest, 0.4f)}};
   inner.reflecting[0].weight.tints = {{{0.9f, 0.5f, 0.1f}}};
   ShaderLayers outer;
   outer.reflecting = {{make_layered_material(inner), by(LayerFactor::Kind::share, 0.7f)},

@@ -83,8 +83,8 @@ class SidedBtfDraws : public ::testing::Test {
     for (const float degrees : {0.0f, 45.0f, 75.0f, 89.0f}) {
       for (const bool back : {false, true}) {
         const PreparedBrdf& point = prepared(*material, degrees, {.uv = {0.3f, 0.6f}, .back = back});
-        tests.add(std::to_string(degrees) + (back ? " behind" : " front"),
-                  albedo_by_sampling(point, error).estimate(), albedo_by_quadrature(point));
+        tests.add(std::to_string(degrees) + (back ? " behind" : " front"), albedo_by_sampling(point, error).estimate(),
+                  albedo_by_quadrature(point));
       }
     }
     return tests;

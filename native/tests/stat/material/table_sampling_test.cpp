@@ -72,8 +72,7 @@ TEST(TableSamplingGain, BeatsTheCosineOnAHighlight) {
   for (uint64_t i = 0; i < 20'000; ++i) {
     const Vec2 u = RandomStream(3, 0, i).next2();
     const Vec3 a = test::sample_one(table, wv, u), b = sample_cosine_hemisphere(u);
-    by_table.add(a.z > 0 ? test::eval_one(*point, a).f.g * a.z / test::pdf_one(table, {.wl = a, .wv = wv})
-                         : 0);
+    by_table.add(a.z > 0 ? test::eval_one(*point, a).f.g * a.z / test::pdf_one(table, {.wl = a, .wv = wv}) : 0);
     by_cosine.add(test::eval_one(*point, b).f.g * kPiD);
   }
   test::ZTests tests;

@@ -188,7 +188,8 @@ TEST(ThroughGeometry, FrontAndBackAreReciprocal) {
     double sum = 0;
     for (uint32_t t = 0; t < 256; ++t) {
       const Vec2 uv = (Vec2(t % 16, t / 16) + 0.5f) / 16.0f;
-      const PreparedBrdf* const point = through->prepare({view.x, view.y, std::abs(view.z)}, {.uv = uv, .back = back}, {}, arena);
+      const PreparedBrdf* const point =
+          through->prepare({view.x, view.y, std::abs(view.z)}, {.uv = uv, .back = back}, {}, arena);
       sum += static_cast<double>(point->eval_one({light.x, light.y, std::abs(light.z)}).f.g) / 256;
     }
     return sum;

@@ -57,8 +57,7 @@ void use(const Material& material, bool interpolated, ScratchArena& arena) {
       site.beyond_outline = Vec2(i % 3 == 0 ? 0.1f : 0.0f);
       site.relief = Mat3(1.0f);
       const Vec3 wv = sample_cosine_hemisphere(random.next2());
-      const PreparedBrdf* const point =
-          material.prepare(wv, site, {.interpolated_draws = interpolated}, arena);
+      const PreparedBrdf* const point = material.prepare(wv, site, {.interpolated_draws = interpolated}, arena);
       Vec2 u[kDirections];
       for (Vec2& v : u) v = random.next2();
       DirectionBatch wl;
@@ -100,39 +99,42 @@ Shared parametric() { return make_parametric_material(test::parametric_highlight
 Shared per_view() { return test::highlight_material(100); }
 
 std::vector<Named> kinds() {
-  return {{"parametric", parametric},
-          {"parametric of narrow lobes", [] { return make_parametric_material(test::parametric_highlight(1e6f, true)); }},
-          {"per-view", per_view},
-          {"per-view, interpolated", per_view, true},
-          {"measured, per-view", [] { return test::measured(test::isotropic_model()); }},
-          {"measured, parametric",
-           [] {
-             return make_measured_material(std::make_shared<test::SyntheticMeasurement>(),
-                                           test::parametric_highlight(100, true));
-           }},
-          {"glossy", [] { return make_glossy_material({}); }},
-          {"rough diffuse", [] { return make_rough_diffuse_material({.roughness = 0.5f}); }},
-          {"principled", [] { return make_principled_material({.coat = 0.5f}); }},
-          {"ggx", [] { return make_ggx_material({.alpha = Vec2(0.3f), .f0 = Rgb(0.5f)}); }},
-          {"normal-mapped", [] { return make_normal_mapped(make_glossy_material({}), {}, ReliefPart::lobe); }},
-          {"mixed",
-           [] {
-             ShaderLayers inner;
-             inner.reflecting = {{per_view(), {{{.value = 0.5f}}}}, {make_glossy_material({}), {{{.value = 0.5f}}}}};
-             ShaderLayers outer;
-             outer.reflecting = {{make_layered_material(inner), {}}, {parametric(), {}}};
-             return make_layered_material(outer);
-           }},
-          {"uncompressed BTF",
-           [] { return make_measured_btf_material(read_btf_table(test::striped_btf({6, 4, Vec2(0.01f)}, true))); }},
-          {"factored BTF",
-           [] {
-             return make_factored_material(
-                 std::make_shared<const FactoredBtf>(test::example_factored(true, Companding::root, true)));
-           }},
-          {"SRBF BTF with transmission", sided<test::SrbfKind>},
-          {"tensor BTF with transmission", sided<test::TensorKind>},
-          {"BTF with holes", [] { return std::make_shared<const HoledBtfMaterial>(sided<test::SrbfKind>()); }}};
+  return {
+      {"parametric", parametric},
+      {"parametric of narrow lobes", [] { return make_parametric_material(test::parametric_highlight(1e6f, true)); }},
+      {"per-view", per_view},
+      {"per-view, interpolated", per_view, true},
+      {"measured, per-view", [] { return test::measured(test::isotropic_model()); }},
+      {"measured, parametric",
+       [] {
+         return make_measured_material(std::make_shared<test::SyntheticMeasurement>(),
+                                       test::parametric_highlight(100, true));
+       }},
+      {"glossy", [] { return make_glossy_material({}); }},
+      {"rough diffuse", [] { return make_rough_diffuse_material({.roughness = 0.5f}); }},
+      {"principled", [] { return make_principled_material({.coat = 0.5f}); }},
+      {"ggx", [] { return make_ggx_material({.alpha = Vec2(0.3f), .f0 = Rgb(0.5f)}); }},
+      {"normal-mapped", [] { return make_normal_mapped(make_glossy_material({}), {}, ReliefPart::lobe); }},
+      {"mixed",
+       [] {
+         ShaderLayers inner;
+         inner.reflecting = {{per_view(), {{{.value = 0.5f}}}}, {make_glossy_material({}), {{{.value = 0.5f}}}}};
+         ShaderLayers outer;
+         outer.reflecting = {{make_layered_material(inner), {}}, {parametric(), {}}};
+         return make_layered_material(outer);
+       }},
+      {"uncompressed BTF",
+       [] {
+         return make_measured_btf_material(read_btf_table(test::striped_btf({6, 4, Vec2(0.01f)}, true)));
+       }},
+      {"factored BTF",
+       [] {
+         return make_factored_material(
+             std::make_shared<const FactoredBtf>(test::example_factored(true, Companding::root, true)));
+       }},
+      {"SRBF BTF with transmission", sided<test::SrbfKind>},
+      {"tensor BTF with transmission", sided<test::TensorKind>},
+      {"BTF with holes", [] { return std::make_shared<const HoledBtfMaterial>(sided<test::SrbfKind>()); }}};
 }
 
 class Allocation : public ::testing::TestWithParam<Named> {};

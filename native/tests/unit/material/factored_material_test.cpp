@@ -16,9 +16,7 @@ namespace {
 struct Evaluator {
   explicit Evaluator(const FactoredBtf& btf)
       : material(make_factored_material(std::make_shared<const FactoredBtf>(btf))) {}
-  Rgb operator()(const SurfaceSite& site, const Vec3& wv, const Vec3& wl) {
-    return prepared(site, wv).eval_one(wl).f;
-  }
+  Rgb operator()(const SurfaceSite& site, const Vec3& wv, const Vec3& wl) { return prepared(site, wv).eval_one(wl).f; }
   const PreparedBrdf& prepared(const SurfaceSite& site, const Vec3& wv) {
     arena.reset();
     return *material->prepare(wv, site, {}, arena);

@@ -36,9 +36,7 @@ PrincipledParameters principled_parameters(PrincipledFormula formula) {
           .formula = formula};
 }
 
-std::shared_ptr<const Material> glossy_layer() {
-  return make_glossy_material({.color = Rgb(0.5f), .roughness = 0.2f});
-}
+std::shared_ptr<const Material> glossy_layer() { return make_glossy_material({.color = Rgb(0.5f), .roughness = 0.2f}); }
 std::shared_ptr<const Material> matte_layer() { return make_rough_diffuse_material({.color = Rgb(0.8f)}); }
 
 /// Half of a mirror's roughness, half diffuse.
@@ -74,7 +72,9 @@ TEST(LobeFilter, LeavesDiffuseLightAlone) {
   EXPECT_EQ(f_of(*make_glossy_material({}), filter), Rgb(0.0f));
   // Cycles takes no light from the base for lobes that are left out, but metal is none of the base.
   const Rgb base = Rgb(0.6f, 0.4f, 0.2f) * (0.7f / kPi);
-  EXPECT_LT(glm::distance(f_of(*make_principled_material(principled_parameters(PrincipledFormula::layered)), filter), base), 1e-6f);
+  EXPECT_LT(
+      glm::distance(f_of(*make_principled_material(principled_parameters(PrincipledFormula::layered)), filter), base),
+      1e-6f);
   const Rgb layers = f_of(*mixed(), filter);
   EXPECT_LT(glm::distance(layers, Rgb(0.4f / kPi)), 1e-6f);
   const auto matte = make_rough_diffuse_material({.color = Rgb(0.8f), .roughness = 0.5f});

@@ -13,9 +13,7 @@ constexpr uint32_t kWidth = 6, kHeight = 4;
 
 struct Evaluator {
   explicit Evaluator(const BtfMeasurement& btf) : material(make_measured_btf_material(read_btf_table(btf))) {}
-  Rgb operator()(const SurfaceSite& site, const Vec3& wv, const Vec3& wl) {
-    return prepared(site, wv).eval_one(wl).f;
-  }
+  Rgb operator()(const SurfaceSite& site, const Vec3& wv, const Vec3& wl) { return prepared(site, wv).eval_one(wl).f; }
   const PreparedBrdf& prepared(const SurfaceSite& site, const Vec3& wv) {
     arena.reset();
     return *material->prepare(wv, site, {}, arena);

@@ -239,8 +239,7 @@ TEST(InterpolatedViews, AtAViewAreItsOwnDensity) {
     ScratchArena arena;
     for (size_t i = 0; i < brdf.views.size(); i += 7) {
       arena.reset();
-      const PreparedBrdf* const point =
-          material->prepare(brdf.views[i], {}, {.interpolated_draws = true}, arena);
+      const PreparedBrdf* const point = material->prepare(brdf.views[i], {}, {.interpolated_draws = true}, arena);
       for (const Vec3& wl : hemisphere_fibonacci(40)) {
         const double expected = slice_density(brdf, i, wl);
         EXPECT_NEAR(static_cast<double>(eval_one(*point, wl).pdf), expected, 1e-3 * (expected + 0.01));

@@ -206,9 +206,7 @@ TEST(RoughDiffuseMaterial, FollowsItsFormula) {
 
 using Btf = test::SrbfKind;
 
-std::shared_ptr<const Material> cloth() {
-  return test::through_material<Btf>(test::with_through(Btf::example(true)));
-}
+std::shared_ptr<const Material> cloth() { return test::through_material<Btf>(test::with_through(Btf::example(true))); }
 
 Rgb f_at(const Material& material, const SurfaceSite& site, const Vec3& wv, const Vec3& wl) {
   ScratchArena arena;

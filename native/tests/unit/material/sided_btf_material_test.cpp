@@ -13,9 +13,7 @@ namespace {
 
 struct Evaluator {
   explicit Evaluator(std::shared_ptr<const Material> m) : material(std::move(m)) {}
-  Rgb operator()(const SurfaceSite& site, const Vec3& wv, const Vec3& wl) {
-    return prepared(site, wv).eval_one(wl).f;
-  }
+  Rgb operator()(const SurfaceSite& site, const Vec3& wv, const Vec3& wl) { return prepared(site, wv).eval_one(wl).f; }
   const PreparedBrdf& prepared(const SurfaceSite& site, const Vec3& wv) {
     arena.reset();
     return *material->prepare(wv, site, {}, arena);

@@ -77,7 +77,8 @@ TEST(ThroughMaterial, ASideThatIsLeftOutIsBlack) {
   const auto material = test::through_material<test::SrbfKind>(btf);
   ScratchArena arena;
   for (const bool back : {false, true}) {
-    const PreparedBrdf* const point = material->prepare(direction(0.7f, 1), {.uv = {0.3f, 0.6f}, .back = back}, {}, arena);
+    const PreparedBrdf* const point =
+        material->prepare(direction(0.7f, 1), {.uv = {0.3f, 0.6f}, .back = back}, {}, arena);
     EXPECT_EQ(point->eval_one(Vec3(0.6f, 0, -0.8f)).f.g > 0, !back);
     EXPECT_GT(point->eval_one(Vec3(0.6f, 0, 0.8f)).f.g, 0);
   }

@@ -18,7 +18,8 @@ using Shared = std::shared_ptr<const Material>;
 /// A sphere under an uneven sky.
 std::vector<float> picture(Shared material) {
   Scene scene;
-  scene.add_instance(scene.add_mesh(test::sphere(24)), {}, {scene.add_material({std::move(material), Rgb(0.0f), false})});
+  scene.add_instance(scene.add_mesh(test::sphere(24)), {},
+                     {scene.add_material({std::move(material), Rgb(0.0f), false})});
   std::vector<float> rgb(3 * 32 * 16);
   RandomStream random(3, 3, 3);
   for (float& v : rgb) v = 2 * std::pow(random.next(), 4.0f);
