@@ -21,7 +21,7 @@ void DirectLight::gather(std::span<const Receiver> receivers, bool go_on, Shadow
 void DirectLight::gather_incident(const Vertex& vertex, PathNumbers& numbers, int directions, bool go_on,
                                   IncidentLight& incident) {
   incident.terms.clear();
-  incident.continuations.clear();
+  incident.paths.clear();
   const Receiver receiver{vertex, &numbers, Rgb(1.0f), 0, directions, directions};
   gather({&receiver, 1}, go_on, Output{nullptr, nullptr, &incident});
 }
@@ -200,7 +200,7 @@ void DirectLight::add_continuations(const Vertex& vertex, const Work& work, Inci
   for (int i = 0; i < world_.count; ++i) {
     if (technique_[i] != Technique::surface) continue;
     const auto along = continuation_along(vertex, local_.get(i), world_.get(i), share, surface_pdf_.v[i]);
-    if (along && finite(along->throughput)) incident.continuations.push_back(*along);
+    if (along && finite(along->throughput)) incident.paths.push_back({static_cast<uint32_t>(i), *along});
   }
 }
 
@@ -250,7 +250,7 @@ void DirectLight::settle_emissive(std::span<const Receiver> receivers, Output ou
 
 void DirectLight::settle_term(std::span<const Receiver> receivers, int term, const Contribution& c, Output output) {
   const size_t place = terms_.receiver[term];
-  if (output.is_incident()) return add_incident(receivers[place].vertex, c, *output.incident);
+  if (output.is_incident()) return add_incident(receivers[place].vertex, term, c, *output.incident);
   if (work_[place].shared_term != term) return queue(receivers[place], c, output);
   if (waits(receivers[place], c, output)) awaited_.push_back({place, c.light, c.limit, c.far});
 }
@@ -274,10 +274,10 @@ void DirectLight::queue(const Receiver& receiver, const Contribution& c, Output 
   output.shadows->add(receiver.vertex.shadow_ray(c.wl_world, c.far), c.light, receiver.sample, c.limit);
 }
 
-void DirectLight::add_incident(const Vertex& vertex, const Contribution& c, IncidentLight& incident) {
+void DirectLight::add_incident(const Vertex& vertex, int term, const Contribution& c, IncidentLight& incident) {
   if (zero(c.light) || !finite(c.light)) return;
-  incident.terms.push_back(
-      {vertex.frame.to_local(c.wl_world), c.light, c.density, vertex.shadow_ray(c.wl_world, c.far), c.casts_shadow});
+  incident.terms.push_back({static_cast<uint32_t>(term), vertex.frame.to_local(c.wl_world), c.light, c.density,
+                            vertex.shadow_ray(c.wl_world, c.far), c.casts_shadow});
 }
 
 std::optional<Continuation> DirectLight::extend(const Receiver& receiver, size_t place) {

@@ -89,17 +89,21 @@ struct AwaitedLight {
 /// Light that arrives at a vertex, direction by direction: the terms of DirectLight without f.
 struct IncidentLight {
   struct Term {
-    Vec3 wl;        // local
-    Rgb light;      // radiance |cos| / (n d), as if nothing were in the way
-    float density;  // of Lighting::sample in that direction
+    uint32_t direction;  // several terms may have the same one
+    Vec3 wl;             // local
+    Rgb light;           // radiance |cos| / (n d), as if nothing were in the way
+    float density;       // of Lighting::sample in that direction
     Ray shadow_ray;
     bool casts_shadow;
   };
   std::vector<Term> terms;
-  /// Along the directions sampled from the surface, with a throughput of |cos| / (their number times their density):
-  /// the surfaces that they hit, whose emission is in the terms where DirectLight::counts_emissive(), reflect more
-  /// light.
-  std::vector<Continuation> continuations;
+  /// Along a direction sampled from the surface, with a throughput of |cos| / (their number times the density): the
+  /// surface that it hits reflects more light. Its emission is in the terms where DirectLight::counts_emissive().
+  struct Path {
+    uint32_t direction;
+    Continuation along;
+  };
+  std::vector<Path> paths;
 };
 
 /// One per thread: owns the scratch memory of the vertices being processed. They are processed together, as many as fit
@@ -143,9 +147,9 @@ class DirectLight {
   void gather(std::span<const Receiver> receivers, bool go_on, ShadowQueue& shadows,
               std::vector<CameraSample>& samples);
 
-  /// Replaces `incident` by terms of up to `directions` (at most 64) directions at one vertex, and by continuations if
-  /// the path may `go_on`. The same estimator as gather(), except that delta lights are left to find_sharp_light().
-  /// Without lights that directions can hit, all are continuations.
+  /// Replaces `incident` by terms of up to `directions` (at most 64) directions at one vertex, and by paths if they may
+  /// `go_on`. The same estimator as gather(), except that delta lights are left to find_sharp_light().
+  /// Without lights that directions can hit, all are sampled from the surface.
   void gather_incident(const Vertex& vertex, PathNumbers& numbers, int directions, bool go_on, IncidentLight& incident);
 
   /// Light of the last gather() that depends on rays of extend().
@@ -236,7 +240,7 @@ class DirectLight {
     return receiver.limit * (is_mixed(options_.strategy) ? 2.0f : 1.0f) / static_cast<float>(receiver.directions);
   }
   Rgb reflectance(const Vertex& vertex, int direction) const;
-  void add_incident(const Vertex& vertex, const Contribution& contribution, IncidentLight& incident);
+  void add_incident(const Vertex& vertex, int term, const Contribution& contribution, IncidentLight& incident);
 
   const std::optional<Mat3>& working_space_;
   const std::vector<SurfaceMaterial>& materials_;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 
 #include "render/shadow_queue.h"
@@ -23,8 +24,10 @@ HitLight HitLightRecorder::record(const Vertex& vertex, int bounces, uint64_t ke
 void HitLightRecorder::record_half(const Vertex& vertex, int bounces, uint64_t key, int half) {
   PathNumbers numbers(options_[half], key, 0);
   direct_[half].gather_incident(vertex, numbers, kObservedDirections, bounces > 0, incident_);
+  std::ranges::fill(light_, Rgb(0.0f));
   add_unoccluded_terms();
   if (bounces > 0) add_surfaces(vertex.cone, bounces, key, half);
+  for (size_t i = 0; i < std::size(light_); ++i) add_term(wl_[i], light_[i]);
   add_sharp(vertex, numbers);
 }
 
@@ -36,15 +39,16 @@ void HitLightRecorder::add_unoccluded_terms() {
   visible_.occluded(rays_, blocked_.data(), visible_.dims() ? passed_.data() : nullptr);
   for (size_t i = 0; i < rays_.size(); ++i) {
     const IncidentLight::Term& term = incident_.terms[i];
-    if (!term.casts_shadow) add_term(term.wl, term.light, term.density);
-    if (term.casts_shadow && !blocked_[i]) add_term(term.wl, passed_[i] * term.light, term.density);
+    if (term.casts_shadow && blocked_[i]) continue;
+    const Rgb light = term.casts_shadow ? passed_[i] * term.light : term.light;
+    add(term.direction, term.wl, light);
+    note_density(term.density, light);
   }
 }
 
 void HitLightRecorder::add_surfaces(const RayCone& cone, int bounces, uint64_t key, int half) {
-  const std::vector<Continuation>& continuations = incident_.continuations;
   rays_.clear();
-  for (const Continuation& c : continuations) rays_.push_back(c.ray);
+  for (const IncidentLight::Path& path : incident_.paths) rays_.push_back(path.along.ray);
   hits_.resize(rays_.size());
   passed_.assign(rays_.size(), Rgb(1.0f));
   visible_.intersect(rays_, hits_.data(), hidden::kFromBounces, visible_.dims() ? passed_.data() : nullptr);
@@ -60,8 +64,8 @@ void HitLightRecorder::add_surfaces(const RayCone& cone, int bounces, uint64_t k
   }
   indirect.resolve(bounces);
   for (size_t k = 0; k < met_.size(); ++k) {
-    const Continuation& c = continuations[met_[k]];
-    add_term(c.wl, c.throughput * passed_[met_[k]] * indirect.samples()[k].radiance, 0.0f);
+    const auto& [direction, along] = incident_.paths[met_[k]];
+    add(direction, along.wl, along.throughput * passed_[met_[k]] * indirect.samples()[k].radiance);
   }
 }
 
@@ -72,18 +76,28 @@ void HitLightRecorder::add_sharp(const Vertex& vertex, PathNumbers& numbers) {
     const SharpLight& s = sharp[i];
     Rgb passed(1.0f);
     if (s.lamp->casts_shadow() && visible_.occluded(vertex.shadow_ray(s.wl_world, s.distance), &passed)) continue;
-    add_term(s.wl, std::abs(s.wl.z) * passed * s.irradiance, std::numeric_limits<float>::infinity());
+    const Rgb light = std::abs(s.wl.z) * passed * s.irradiance;
+    note_density(std::numeric_limits<float>::infinity(), light);
+    add_term(s.wl, light);
   }
 }
 
-/// Drops terms that are not finite, as the renderer does.
-void HitLightRecorder::add_term(const Vec3& wl, const Rgb& light, float density) {
+void HitLightRecorder::add(uint32_t direction, const Vec3& wl, const Rgb& light) {
+  if (!std::isfinite(light.r + light.g + light.b)) return;
+  wl_[direction] = wl;
+  light_[direction] += light;
+}
+
+void HitLightRecorder::add_term(const Vec3& wl, const Rgb& light) {
   if (light == Rgb(0.0f) || !std::isfinite(light.r + light.g + light.b)) return;
   result_.wl.push_back(wl);
   result_.light.push_back(light);
+  irradiance_ += static_cast<double>(luminance(light));
+}
+
+void HitLightRecorder::note_density(float density, const Rgb& light) {
   const auto brought = static_cast<double>(luminance(light));
-  irradiance_ += brought;
-  if (density > 0.0f && brought > 0.0) concentrations_.push_back({density, brought});
+  if (brought > 0.0 && std::isfinite(brought)) concentrations_.push_back({density, brought});
 }
 
 float HitLightRecorder::light_density() {

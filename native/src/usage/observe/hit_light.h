@@ -37,8 +37,11 @@ class HitLightRecorder {
   /// Light that surfaces reflect.
   void add_surfaces(const RayCone& cone, int bounces, uint64_t key, int half);
   void add_sharp(const Vertex& vertex, PathNumbers& numbers);
-  /// `density`: of Lighting::sample; 0 for light that surfaces reflect.
-  void add_term(const Vec3& wl, const Rgb& light, float density);
+  /// To the sum of a direction; drops light that is not finite, as the renderer does.
+  void add(uint32_t direction, const Vec3& wl, const Rgb& light);
+  void add_term(const Vec3& wl, const Rgb& light);
+  /// Records the luminance of light from lights, environment and emissive meshes with its density (Lighting::sample).
+  void note_density(float density, const Rgb& light);
   float light_density();
 
   const VisibleRays visible_;
@@ -54,7 +57,9 @@ class HitLightRecorder {
   std::vector<Hit> hits_;
   std::vector<uint8_t> blocked_;
   std::vector<Rgb> passed_;  // transmittance of the rays
-  std::vector<size_t> met_;  // continuations that hit a surface
+  std::vector<size_t> met_;  // paths that hit a surface
+  Vec3 wl_[DirectionBatch::kCapacity];
+  Rgb light_[DirectionBatch::kCapacity];  // by direction
 
   // For both halves.
   struct Concentration {
