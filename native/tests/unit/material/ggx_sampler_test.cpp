@@ -83,7 +83,7 @@ TEST(GgxSampler, ReachesBothEndsOfTheRandomNumbers) {
       GgxPoint point;
       sampler.prepare(wv, point);
       for (const Vec2& u : {Vec2(0, 0), Vec2(0.5f), Vec2(1 - 0x1p-24f), Vec2(1 - 0x1p-24f, 0)}) {
-        const Vec3 wl = point->sample(u);
+        const Vec3 wl = sampler.sample(point, u);
         EXPECT_NEAR(glm::length(wl), 1, 1e-5f);
         if (wl.z > 0) {
           EXPECT_GT(pdf_one(sampler, point, wl), 0);

@@ -4,6 +4,7 @@
 
 #include "material/glossy_material.h"
 #include "material/principled/principled_material.h"
+#include "math/sphere/frame.h"
 #include "math/sphere/random.h"
 #include "math/sphere/warp.h"
 #include "support/materials.h"

@@ -200,8 +200,8 @@ TEST(Placement, HasNoSeams) {
     Hit hit;
     scene.rays().intersect(ray, hit);
     const Vertex vertex(scene, scene.surface(hit), ray, hit, {}, nullptr);
-    vertex.surface->material->prepare(vertex.wv, vertex.site, {}, arena);
-    return vertex.surface->point->eval_one(vertex.frame.to_local(wl)).f;
+    arena.reset();
+    return vertex.surface->material->prepare(vertex.wv, vertex.site, {}, arena)->eval_one(vertex.frame.to_local(wl)).f;
   };
   const Mat2 to_square = 2.0f * glm::inverse(map.map);  // of a step in tiles
   const Vec2 middle = map.point(Vec2(0.5f)), corner(std::round(middle.x), std::floor(middle.y));
