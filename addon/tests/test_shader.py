@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from velour.native import Scene, Shader, Texture, TextureSlot, VelourError, render_job
+from velour.native import Model, Scene, Shader, Texture, TextureSlot, VelourError, render_job
 
 SIDE = 8
 
@@ -64,6 +64,34 @@ def test_panes_have_colors_by_images():
     np.testing.assert_allclose(pixels[..., :3], colors, atol=1e-5)
 
 
+def test_half_emission_mixed_into_a_model_gives_the_mean_of_both_pictures(model_file):
+    with Model.load(model_file) as model, Shader.new() as alone, Shader.new() as mixed:
+        alone.add_measured_layer(model)
+        mixed.add_measured_layer(model)
+        mixed.weigh_layer("rest", 0.5)
+        mixed.add_layer("emission", base_color=(0, 1, 3))
+        mixed.weigh_layer("share", 0.5)
+        reflected, both = _rendered(alone)[..., :3], _rendered(mixed)[..., :3]
+    assert reflected.mean() > 0.01
+    np.testing.assert_allclose(both, 0.5 * (reflected + (0, 1, 3)), rtol=1e-4, atol=1e-5)
+
+
+def test_tints_are_colors_or_images(model_file):
+    colors = np.random.default_rng(1).uniform(0.1, 0.9, (SIDE, SIDE, 3)).astype(np.float32)
+    with (
+        Model.load(model_file) as model,
+        Shader.new() as plain,
+        Shader.new() as tinted,
+        Texture.from_pixels(colors, filter="closest") as texture,
+    ):
+        plain.add_measured_layer(model)
+        tinted.add_measured_layer(model)
+        tinted.weigh_layer("tint", texture=texture)
+        tinted.weigh_layer("tint", (1, 0.5, 0))
+        expected = _rendered(plain)[..., :3] * colors * (1, 0.5, 0)
+        np.testing.assert_allclose(_rendered(tinted)[..., :3], expected, rtol=1e-4, atol=1e-5)
+
+
 def test_wrong_calls_are_refused_with_a_sentence():
     with Shader.new() as shader:
         with pytest.raises(VelourError, match="add a layer before"):
@@ -73,6 +101,8 @@ def test_wrong_calls_are_refused_with_a_sentence():
         shader.add_layer("glossy", roughness=0.2)
         with pytest.raises(VelourError, match="not finite"):
             shader.weigh_layer("gain", float("nan"))
+        with pytest.raises(VelourError, match="needs one of"):
+            shader.add_measured_layer()
         color = Texture.from_pixels(np.ones((2, 2, 3), np.float32))
         with pytest.raises(VelourError, match=r"vlr_factor_desc\.texture requires a texture of numbers"):
             shader.weigh_layer("share", texture=color)

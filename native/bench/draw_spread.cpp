@@ -22,19 +22,19 @@ struct Spread {
 };
 
 /// `measurement` null: f is the material's.
-Spread spread(const Measurement* measurement, const Material& material, const PreparedBrdf& point, const Vec3& wv) {
+Spread spread(const Measurement* measurement, const PreparedBrdf& point, const Vec3& wv) {
   double sum = 0, sum_sq = 0;
   int below = 0;
   for (uint64_t i = 0; i < kSamples; ++i) {
     DirectionBatch wl;
-    wl.push(material.sample_one(point, RandomStream(7, 0, i).next2()));
+    wl.push(point.sample_one(RandomStream(7, 0, i).next2()));
     wl.pad();
     const Vec3 w = wl.get(0);
     below += w.z <= 0;
     if (w.z <= 0) continue;
     RgbBatch own;
     ScalarBatch pdf;
-    material.eval(point, wl, own, pdf);
+    point.eval(wl, own, pdf);
     Rgb f = own.get(0);
     uint8_t valid = 1;
     if (measurement != nullptr) measurement->eval(wv, {&w, 1}, {&f, 1}, {&valid, 1});
@@ -54,10 +54,10 @@ void report(const char* name, const Measurement* measurement, const Material& ma
               measurement != nullptr ? "measurement" : "model");
   for (const float degrees : kAngles) {
     const Vec3 wv = direction(radians_from(degrees), 0.3f);
-    PreparedBrdf point;
-    point.interpolated_draws = draws == Draws::interpolated;
-    material.prepare(wv, point);
-    const Spread s = spread(measurement, material, point, wv);
+    ScratchArena arena;
+    const PrepareOptions options{.interpolated_draws = draws == Draws::interpolated};
+    const PreparedBrdf* const point = material.prepare(wv, SurfaceSite::everywhere(), options, arena);
+    const Spread s = spread(measurement, *point, wv);
     std::printf(", \"%g\": [%.3f, %.3f]", static_cast<double>(degrees), s.variance, s.below);
   }
   std::printf("}\n");

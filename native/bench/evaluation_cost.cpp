@@ -22,6 +22,9 @@
 #include <vector>
 
 #include "base/simd.h"
+#include "brdf/eval/parametric_table.h"
+#include "brdf/eval/parametric_values.h"
+#include "brdf/eval/table_sampler.h"
 #include "brdf/fit/peer.h"
 #include "math/sphere/random.h"
 #include "model/model_file.h"
@@ -75,32 +78,41 @@ double nanoseconds(const Work& work) {
 /// The calls that a renderer makes, and nothing behind them.
 class FloorMaterial final : public Material {
  public:
-  void prepare(const Vec3& wv, const SurfaceSite& /*site*/, PreparedBrdf& point) const override { point.wv = wv; }
-  void eval(const PreparedBrdf&, const DirectionBatch&, RgbBatch& f, ScalarBatch& pdf) const override {
-    used(f);
-    used(pdf);
+  const PreparedBrdf* prepare(const Vec3& /*wv*/, const SurfaceSite& /*site*/, const PrepareOptions& /*options*/,
+                              ScratchArena& arena) const override {
+    return arena.make<Prepared>();
   }
-  void sample(const PreparedBrdf&, std::span<const Vec2> u, DirectionBatch& wl) const override {
-    wl.fill(u, [](const Vec2&) { return Vec3(0, 0, 1); });
-  }
-  Reflection eval_one(const PreparedBrdf&, const Vec3&) const override { return {}; }
-  Vec3 sample_one(const PreparedBrdf&, const Vec2&) const override { return {0, 0, 1}; }
   bool isotropic() const override { return true; }
+
+ private:
+  class Prepared final : public PreparedBrdf {
+    void eval(const DirectionBatch&, RgbBatch& f, ScalarBatch& pdf) const override {
+      used(f);
+      used(pdf);
+    }
+    void sample(std::span<const Vec2> u, DirectionBatch& wl) const override {
+      wl.fill(u, [](const Vec2&) { return Vec3(0, 0, 1); });
+    }
+    Reflection eval_one(const Vec3&) const override { return {}; }
+    Vec3 sample_one(const Vec2&) const override { return {0, 0, 1}; }
+  };
 };
 
 nlohmann::ordered_json cost_of(const Material& material) {
   const Pairs pairs;
-  auto point = std::make_unique<PreparedBrdf>();
+  ScratchArena arena;
+  const PreparedBrdf* point = nullptr;
   DirectionBatch wl;
   RgbBatch f;
   ScalarBatch pdf;
   const auto prepare = [&](size_t i) {
-    material.prepare(pairs.wv[i], *point);
+    arena.reset();
+    point = material.prepare(pairs.wv[i], arena);
     used(*point);
   };
   const auto eval = [&] {
     wl.pad();
-    material.eval(*point, wl, f, pdf);
+    point->eval(wl, f, pdf);
     used(f);
     used(pdf);
   };
@@ -111,12 +123,12 @@ nlohmann::ordered_json cost_of(const Material& material) {
     eval();
   };
   const auto eval_one = [&](const Vec3& direction) {
-    const auto reflection = material.eval_one(*point, direction);
+    const auto reflection = point->eval_one(direction);
     used(reflection);
   };
   const auto sample_of = [&](size_t i, size_t directions) {
     prepare(i);
-    material.sample(*point, std::span(pairs.u).subspan(std::min(i, kPairs - directions), directions), wl);
+    point->sample(std::span(pairs.u).subspan(std::min(i, kPairs - directions), directions), wl);
     eval();
   };
   return {{"prepare", nanoseconds(prepare)},
@@ -127,29 +139,40 @@ nlohmann::ordered_json cost_of(const Material& material) {
           {"f_16", nanoseconds([&](size_t i) { f_of(i, kMany); }) / kMany},
           {"sample_pdf", nanoseconds([&](size_t i) {
              prepare(i);
-             eval_one(material.sample_one(*point, pairs.u[i]));
+             eval_one(point->sample_one(pairs.u[i]));
            })},
           {"sample_pdf_16", nanoseconds([&](size_t i) { sample_of(i, kMany); }) / kMany}};
 }
 
 /// What leaving out lobes that cannot matter at a view saves.
-nlohmann::ordered_json idle_lobes_of(const Material& material) {
+nlohmann::ordered_json idle_lobes_of(const ParametricBrdf& brdf, const Material& material) {
   const Pairs pairs;
-  auto point = std::make_unique<PreparedBrdf>();
+  const ParametricValues values(brdf);
+  const ParametricTable table(values, ParametricNodes(values));
+  const auto tables = material.tables();
+  WarpedMixture mixture;
+  TablePoint point;
+  const auto evaluate = [&](const Vec3& wv) {
+    if (table.covers(wv)) return table.evaluate(wv, mixture);
+    values.evaluate(wv, ViewPlace(wv), mixture);
+  };
   double listed = 0;
   for (const Vec3& wv : pairs.wv) {
-    material.prepare(wv, *point);
-    listed += point->warped.listed_count;
+    evaluate(wv);
+    listed += mixture.listed_count;
   }
   DirectionBatch wl;
   RgbBatch f;
   ScalarBatch pdf;
   const auto all = nanoseconds([&](size_t i) {
-    material.prepare(pairs.wv[i], *point);
-    point->warped.list_all();
+    evaluate(pairs.wv[i]);
+    mixture.list_all();
+    if (tables) tables->prepare(pairs.wv[i], point);
     wl.count = 0;
     for (size_t k = 0; k < kMany; ++k) wl.push(pairs.wl[(i + k) % kPairs]);
-    material.eval(*point, wl, f, pdf);
+    wl.pad();
+    eval_warped(mixture, wl, f);
+    if (tables) TableSampler::pdf(point, wl, pdf);
     used(f);
     used(pdf);
   });
@@ -175,7 +198,7 @@ nlohmann::ordered_json report(const std::string& file, const std::string& peer) 
     const auto model = std::make_shared<const Model>(load_model(file));
     const auto material = make_material(model, 0);
     auto json = cost_of(*material);
-    if (std::holds_alternative<ParametricBrdf>(model->body)) json.update(idle_lobes_of(*material));
+    if (const auto* brdf = std::get_if<ParametricBrdf>(&model->body)) json.update(idle_lobes_of(*brdf, *material));
     return json;
   }
   const auto measurement = load_measurement(file);

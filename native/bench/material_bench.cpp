@@ -64,12 +64,12 @@ const std::vector<Vec3>& views() {
 
 void prepare_material(benchmark::State& state) {
   const auto material = make(state.range(0));
-  PreparedBrdf point;
+  ScratchArena arena;
   SurfaceSite site{.footprint = Mat2(1.0f / 256)};  // of two texels
   size_t i = 0;
   for (auto _ : state) {
     site.uv = Vec2(views()[++i % 1024]);
-    material->prepare(views()[i % 1024], site, point);
+    const PreparedBrdf* const point = material->prepare(views()[i % 1024], site, {}, arena);
     benchmark::DoNotOptimize(point);
   }
   label(state);
@@ -78,10 +78,10 @@ void prepare_material(benchmark::State& state) {
 void prepare_neighbors(benchmark::State& state) {
   const int lobes = static_cast<int>(state.range(0));
   const auto material = make_per_view_material(std::make_shared<PerViewBrdf>(make_brdf(false, lobes)), 4);
-  PreparedBrdf point;
+  ScratchArena arena;
   size_t i = 0;
   for (auto _ : state) {
-    material->prepare(views()[++i % 1024], point);
+    const PreparedBrdf* const point = material->prepare(views()[++i % 1024], arena);
     benchmark::DoNotOptimize(point);
   }
   state.counters["ns_per_lobe"] =
@@ -93,14 +93,14 @@ BENCHMARK(prepare_material)->Arg(kMeridian)->Arg(kHemisphere)->Arg(kPrincipled)-
 
 void eval_material_16(benchmark::State& state) {
   const auto material = make(state.range(0));
-  PreparedBrdf point;
-  material->prepare(direction(0.7f, 1), point);
+  ScratchArena arena;
+  const PreparedBrdf* const point = material->prepare(direction(0.7f, 1), arena);
   DirectionBatch wl;
   for (const Vec3& w : hemisphere_fibonacci(16)) wl.push(w);
   RgbBatch f;
   ScalarBatch pdf;
   for (auto _ : state) {
-    material->eval(point, wl, f, pdf);
+    point->eval(wl, f, pdf);
     benchmark::DoNotOptimize(f);
     benchmark::DoNotOptimize(pdf);
   }
@@ -110,10 +110,10 @@ BENCHMARK(eval_material_16)->Arg(kMeridian)->Arg(kHemisphere)->Arg(kPrincipled)-
 
 void sample_material(benchmark::State& state) {
   const auto material = make(state.range(0));
-  PreparedBrdf point;
-  material->prepare(direction(0.7f, 1), point);
+  ScratchArena arena;
+  const PreparedBrdf* const point = material->prepare(direction(0.7f, 1), arena);
   RandomStream random(1, 2, 3);
-  for (auto _ : state) benchmark::DoNotOptimize(material->sample_one(point, random.next2()));
+  for (auto _ : state) benchmark::DoNotOptimize(point->sample_one(random.next2()));
   label(state);
 }
 BENCHMARK(sample_material)->Arg(kMeridian)->Arg(kHemisphere)->Arg(kPrincipled);

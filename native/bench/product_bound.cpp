@@ -80,7 +80,7 @@ class Tabulation {
     std::vector<LampHit> none;
     const std::vector<Vec3> position(static_cast<size_t>(world_.count), vertex_.position);
     uint8_t blocked[DirectionBatch::kCapacity];
-    vertex_.surface->material->eval(prepared_, local_, f, surface);
+    prepared_.eval(local_, f, surface);
     lighting_.environment().look_up(world_, radiance, lights);
     if (product_ != nullptr) eval_density(*product_, world_, product);
     scene_.rays().occluded(rays_, blocked);
@@ -166,14 +166,14 @@ class Study {
     Vertex vertex(point, -ray.direction);
     vertex.surface = &scene_.materials()[point.material];
     const Material& material = *vertex.surface->material;
-    material.prepare(vertex.wv, prepared_);
+    arena_.reset();
+    const PreparedBrdf* const prepared = material.prepare(vertex.wv, arena_);
     ProposalLobes lobes;
-    const bool proposed =
-        material.proposal_lobes(prepared_, lobes) && sky_.propose(lobes, vertex.frame, scratch_, product_);
+    const bool proposed = prepared->proposal_lobes(lobes) && sky_.propose(lobes, vertex.frame, scratch_, product_);
     if (proposed) lobes_ += product_.count;
     const double both = proposed ? product_share_ : 0;
     const double lights = static_cast<double>(lights_part_[point.material]) * both;
-    add(Tabulation(scene_, lighting_, vertex, prepared_, proposed ? &product_ : nullptr).take(), both - lights, lights);
+    add(Tabulation(scene_, lighting_, vertex, *prepared, proposed ? &product_ : nullptr).take(), both - lights, lights);
   }
 
   void add(const std::vector<Place>& places, double product, double instead) {
@@ -209,7 +209,7 @@ class Study {
   RandomStream random_;
   const EnvironmentProposals sky_;
   const std::vector<float> lights_part_;
-  PreparedBrdf prepared_;
+  ScratchArena arena_;
   LobeProducts scratch_;
   LobeMixture product_;
   double lobes_ = 0;

@@ -61,7 +61,7 @@ class Directions {
     ScalarBatch surface, lights;
     std::vector<LampHit> none;
     const uint8_t of_view[DirectionBatch::kCapacity] = {};
-    vertex.surface->material->eval(point_, local_, f, surface);
+    point_->eval(local_, f, surface);
     lighting_.look_up({&view, 1}, of_view, world_, radiance, lights, none);
     for (int i = 0; i < world_.count; ++i) {
       const auto reflected = static_cast<double>(luminance(f.get(i) * radiance.get(i)) * local_.z[i]);
@@ -77,8 +77,9 @@ class Directions {
                rest = std::span<const Vec2>(u_).last(half.size());
     const std::vector<uint8_t> of_view(rest.size(), 0);
     local_.count = world_.count = 0;
-    vertex.surface->material->prepare(vertex.wv, point_);
-    vertex.surface->material->sample(point_, half, drawn_);
+    arena_.reset();
+    point_ = vertex.surface->material->prepare(vertex.wv, arena_);
+    point_->sample(half, drawn_);
     for (int i = 0; i < drawn_.count; ++i) keep(vertex, drawn_.get(i), vertex.frame.to_world(drawn_.get(i)));
     lighting_.sample({&view, 1}, of_view, rest, drawn_);
     for (int i = 0; i < drawn_.count; ++i) keep(vertex, vertex.frame.to_local(drawn_.get(i)), drawn_.get(i));
@@ -97,7 +98,8 @@ class Directions {
   const Scene& scene_;
   const Lighting& lighting_;
   std::vector<Vec2> u_;
-  PreparedBrdf point_;
+  ScratchArena arena_;
+  const PreparedBrdf* point_ = nullptr;  // at the last vertex
   DirectionBatch drawn_, local_, world_;
 };
 

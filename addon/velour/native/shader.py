@@ -2,13 +2,19 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from ctypes import byref, pointer
+from typing import TYPE_CHECKING
 
 from . import structs, table
 from .arrays import small
-from .errors import refuse
 from .handle import Handle, choice, set_fields
 from .texture import IDENTITY, Texture, TextureSlot
+
+if TYPE_CHECKING:
+    from .btf import Btf
+    from .measurement import Measurement
+    from .model import Model
 
 _COLORS = {"base_color": 3, "emission": 3, "specular_tint": 3, "coat_tint": 3}
 _CHOICES = {"formula": table.FORMULAS, "lobe": table.LOBES, "coat_lobe": table.LOBES}
@@ -46,31 +52,71 @@ class Shader(Handle):
         surface, pictures = described(self._lib, textures or {}, values)
         desc.kind = choice("kind", kind, table.LAYERS)
         desc.surface, desc.textures = pointer(surface), pointer(pictures)
-        if normal is not None:
-            desc.normal, desc.normal_map = normal.texture.pointer, small("uv_map", normal.uv_map, 6)
-            desc.normal_strength, desc.normal_set = normal_strength, normal.uv_set
-            desc.normal_correction = choice("normal_correction", normal_correction, table.RELIEF_CORRECTIONS)
+        _set_normal(desc, normal, normal_strength, normal_correction)
         desc.interreflection = interreflection
         self._lib.vlr_shader_add_layer(self.pointer, byref(desc))
 
-    # SHIM until the library has measured layers; its wrapper replaces this method.
-    def add_measured_layer(self, model=None, measurement=None, btf=None, **options) -> None:
-        raise refuse("This build of Velour's library cannot mix measured materials with other shaders.")
+    def add_measured_layer(
+        self,
+        model: Model | None = None,
+        measurement: Measurement | None = None,
+        btf: Btf | None = None,
+        neighbors: int = 0,
+        most_bytes: int = 0,
+        uv_map=IDENTITY,
+        normal: TextureSlot | None = None,
+        normal_strength: float = 1.0,
+        normal_correction: str = "turned",
+    ) -> None:
+        """Adds a model, a raw measurement (sampled by `model` if given) or a BTF as a layer with weight 1.
+
+        uv_map: from the surface's texture coordinates to those of the layer; it also turns an anisotropic
+        BRDF. A model with a silhouette (VOTF) must not be moved, and gives it to the material, which can have
+        only one. neighbors, most_bytes: as for Scene.add_model_material and Scene.add_btf_material. normal,
+        normal_strength, normal_correction: as for add_layer.
+        """
+        desc = structs.MeasuredLayerDesc()
+        self._lib.vlr_measured_layer_desc_init(byref(desc))
+        desc.model = model.pointer if model else None
+        desc.measurement = measurement.pointer if measurement else None
+        desc.btf = btf.pointer if btf else None
+        desc.neighbors, desc.most_bytes = neighbors, most_bytes
+        desc.map = small("uv_map", uv_map, 6)
+        _set_normal(desc, normal, normal_strength, normal_correction)
+        self._lib.vlr_shader_add_measured_layer(self.pointer, byref(desc))
 
     def weigh_layer(
-        self, kind: str, value: float = 1.0, texture: Texture | None = None, uv_map=IDENTITY, uv_set=0
+        self,
+        kind: str,
+        value: float | Sequence[float] = 1.0,
+        texture: Texture | None = None,
+        uv_map=IDENTITY,
+        uv_set=0,
     ) -> None:
         """Multiplies the weight of the last layer: by `share` of a mix, its `rest` (1 - share), or a `gain`.
 
-        A texture of numbers replaces the value.
+        `tint`: a color [3] in the working space that multiplies the layer's light. A texture of numbers, or
+        of colors for a tint, replaces the value.
         """
         desc = structs.FactorDesc()
         self._lib.vlr_factor_desc_init(byref(desc))
-        desc.kind, desc.value = choice("kind", kind, table.FACTORS), value
+        desc.kind = choice("kind", kind, table.FACTORS)
+        if kind == "tint":
+            desc.color = small("value", value if isinstance(value, Sequence) else (value,) * 3, 3)
+        else:
+            desc.value = value
         if texture is not None:
             desc.texture, desc.map = texture.pointer, small("uv_map", uv_map, 6)
             desc.set = uv_set
         self._lib.vlr_shader_weigh_layer(self.pointer, byref(desc))
+
+
+def _set_normal(desc, normal: TextureSlot | None, strength: float, correction: str) -> None:
+    if normal is None:
+        return
+    desc.normal, desc.normal_map = normal.texture.pointer, small("uv_map", normal.uv_map, 6)
+    desc.normal_strength, desc.normal_set = strength, normal.uv_set
+    desc.normal_correction = choice("normal_correction", correction, table.RELIEF_CORRECTIONS)
 
 
 def fill_principled(desc: structs.PrincipledDesc, values: dict) -> None:

@@ -294,6 +294,24 @@ class FactorDesc(Struct):
         ("set", c_uint32),
         ("texture", c_void_p),
         ("map", c_float * 6),
+        ("color", c_float * 3),
+    ]
+
+
+class MeasuredLayerDesc(Struct):
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("neighbors", c_uint32),
+        ("model", c_void_p),
+        ("measurement", c_void_p),
+        ("btf", c_void_p),
+        ("most_bytes", c_uint64),
+        ("map", c_float * 6),
+        ("normal", c_void_p),
+        ("normal_map", c_float * 6),
+        ("normal_strength", c_float),
+        ("normal_set", c_uint32),
+        ("normal_correction", c_int32),
     ]
 
 
@@ -461,6 +479,7 @@ STRUCTS = {
     "vlr_principled_textures": PrincipledTextures,
     "vlr_layer_desc": LayerDesc,
     "vlr_factor_desc": FactorDesc,
+    "vlr_measured_layer_desc": MeasuredLayerDesc,
     "vlr_light_desc": LightDesc,
     "vlr_camera_desc": CameraDesc,
     "vlr_instance_label": InstanceLabel,

@@ -57,7 +57,7 @@ FILTERS = ("closest", "linear")
 LAYERS = ("principled", "diffuse", "glossy", "transparent", "emission")
 FORMULAS = ("layered", "disney")
 LOBES = ("whole", "single", "separable")
-FACTORS = ("share", "rest", "gain")
+FACTORS = ("share", "rest", "gain", "tint")
 RELIEF_CORRECTIONS = ("turned", "faded", "shadowed", "as-it-is")
 OPERATIONS = (
     "source",
@@ -306,6 +306,7 @@ STATUS_CALLS = {
     "vlr_texture_of_program": [_handle, c_uint32, _out_handle],
     "vlr_shader_create": [_out_handle],
     "vlr_shader_add_layer": [_handle, POINTER(structs.LayerDesc)],
+    "vlr_shader_add_measured_layer": [_handle, POINTER(structs.MeasuredLayerDesc)],
     "vlr_shader_weigh_layer": [_handle, POINTER(structs.FactorDesc)],
     "vlr_scene_add_shader_material": [_handle, _handle, _number],
     "vlr_scene_add_textured_material": [
@@ -430,6 +431,7 @@ PLAIN_CALLS = {
     "vlr_principled_textures_init": (None, [POINTER(structs.PrincipledTextures)]),
     "vlr_layer_desc_init": (None, [POINTER(structs.LayerDesc)]),
     "vlr_factor_desc_init": (None, [POINTER(structs.FactorDesc)]),
+    "vlr_measured_layer_desc_init": (None, [POINTER(structs.MeasuredLayerDesc)]),
     "vlr_light_desc_init": (None, [POINTER(structs.LightDesc)]),
     "vlr_camera_desc_init": (None, [POINTER(structs.CameraDesc)]),
     "vlr_pass_options_init": (None, [POINTER(structs.PassOptions)]),

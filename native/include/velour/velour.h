@@ -889,7 +889,12 @@ enum {
 };
 /* The weight of a layer is the product of its factors. For a mix, SHARE is its factor and REST 1 minus that, both
  * within [0, 1]; GAIN is any non-negative number. */
-enum { VLR_FACTOR_SHARE = 0, VLR_FACTOR_REST = 1, VLR_FACTOR_GAIN = 2 };
+enum {
+  VLR_FACTOR_SHARE = 0,
+  VLR_FACTOR_REST = 1,
+  VLR_FACTOR_GAIN = 2,
+  VLR_FACTOR_TINT = 3 /* a color that multiplies the layer's light; what it absorbs does not pass to other layers */
+};
 
 /* Correction of steep mapped normals, which would show impossible reflections. */
 enum {
@@ -920,19 +925,43 @@ typedef struct vlr_factor_desc {
   int32_t kind;               /* VLR_FACTOR_* */
   float value;                /* 1 */
   uint32_t set;               /* as those of vlr_principled_textures */
-  const vlr_texture* texture; /* numbers, instead of value; NULL: none */
+  const vlr_texture* texture; /* instead of value: numbers; instead of color: colors; NULL: none */
   float map[6];               /* as those of vlr_principled_textures */
+  float color[3];             /* VLR_FACTOR_TINT: working space; 1, 1, 1 */
 } vlr_factor_desc;
 VLR_API void vlr_factor_desc_init(vlr_factor_desc* desc);
+/* A layer of measured reflectance: exactly one of a model, a raw measurement and a BTF. Their colors are Rec. 709. */
+typedef struct vlr_measured_layer_desc {
+  uint32_t struct_size;
+  uint32_t neighbors;                 /* as those of vlr_scene_add_model_material */
+  const vlr_model* model;             /* of a BRDF or a BTF; with a measurement: sampled from, NULL: made here */
+  const vlr_measurement* measurement; /* reference mode */
+  const vlr_btf* btf;                 /* reference mode */
+  uint64_t most_bytes;                /* of a BTF: as those of vlr_scene_add_btf_material */
+  /* From the surface's texture coordinates (set 0, as placed by the instance) to the layer's, as those of
+   * vlr_principled_textures: places a BTF, and turns it or an anisotropic BRDF with it. The identity for models with a
+   * silhouette (VOTF) */
+  float map[6];
+  const vlr_texture* normal; /* as those of vlr_layer_desc, down to the end */
+  float normal_map[6];
+  float normal_strength;
+  uint32_t normal_set;
+  int32_t normal_correction;
+} vlr_measured_layer_desc;
+VLR_API void vlr_measured_layer_desc_init(vlr_measured_layer_desc* desc);
 
 /* Creates a shader: the sum of its layers. A mix consists of layers whose weights add up to 1. */
 VLR_API vlr_status vlr_shader_create(vlr_shader** out);
 VLR_API void vlr_shader_free(vlr_shader* shader);
 /* Adds a layer with a weight of 1. */
 VLR_API vlr_status vlr_shader_add_layer(vlr_shader* shader, const vlr_layer_desc* desc);
+/* The same for a measured layer. A silhouette (VOTF) of its model becomes that of the material, which can have only
+ * one. Models, measurements and BTFs may be freed afterwards. */
+VLR_API vlr_status vlr_shader_add_measured_layer(vlr_shader* shader, const vlr_measured_layer_desc* desc);
 /* Multiplies the weight of the layer added last. */
 VLR_API vlr_status vlr_shader_weigh_layer(vlr_shader* shader, const vlr_factor_desc* desc);
-/* Adds a material of the layers so far; the shader may be freed or extended afterwards. */
+/* Adds a material of the layers so far; the shader may be freed or extended afterwards. Measured layers are converted
+ * to the working space that the scene has now. */
 VLR_API vlr_status vlr_scene_add_shader_material(vlr_scene* scene, const vlr_shader* shader, uint32_t* material);
 
 /* ---- tiles: procedural mesostructure ------------------------------------------------------------------------- */

@@ -71,7 +71,10 @@ struct vlr_program {
 
 struct vlr_shader {
   velour::ShaderLayers layers;
-  bool relief = false;  // a layer has a normal map
+  bool relief = false;                              // a layer has a normal map
+  bool brushed = false;                             // a measured layer is uniform and anisotropic
+  std::shared_ptr<const velour::ShellField> shell;  // of a measured layer with a silhouette; null: none
+  bool shell_shaded = false;                        // as in SurfaceMaterial
   velour::MeshSets sets;
   velour::MeshSets opacity;  // sets of slots that opacity depends on
   velour::LayerWeight* last = nullptr;  // of the layer added last; null: no layer

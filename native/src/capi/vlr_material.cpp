@@ -1,53 +1,12 @@
 // Materials of a scene and their settings.
-#include "brdf/fit/per_view/per_view_fit.h"
-#include "btf/eval/measured_btf_material.h"
-#include "btf/eval/sided_btf_material.h"
 #include "capi/conversions.h"
 #include "capi/guard.h"
 #include "capi/handles.h"
+#include "capi/measured_materials.h"
 #include "material/principled/principled_point.h"
-#include "material/through_material.h"
-#include "model/model_material.h"
 
 using namespace velour;
 using namespace velour::capi;
-
-namespace {
-
-/// Lobes to sample from for a raw measurement. Their fit affects the speed but not the image, so a coarse fit of all
-/// data suffices.
-std::shared_ptr<const Model> coarse_proposal(const Measurement& measurement) {
-  FitOptions options;
-  options.max_lobes = 8;
-  options.tolerance = 0.05;
-  options.all_data = true;
-  Progress unwatched;
-  return std::make_shared<const Model>(fit_per_view(measurement, options, unwatched));
-}
-
-SurfaceMaterial brushed_if_anisotropic(SurfaceMaterial surface) {
-  surface.brushed = !surface.material->isotropic() && !surface.material->varies();
-  return surface;
-}
-
-SurfaceMaterial surface_of(std::shared_ptr<const Model> model, uint32_t neighbors) {
-  SurfaceMaterial surface{.material = make_material(model, static_cast<int>(neighbors))};
-  if (!model->shell) return brushed_if_anisotropic(std::move(surface));
-  surface.shell = std::make_shared<const ShellField>(model->shell->volume);
-  surface.shell_shaded = !is_btf(*model);
-  if (surface.holed()) surface.material = std::make_shared<const HoledBtfMaterial>(surface.material);
-  return surface;
-}
-
-/// Material of the BTF itself, including transmitted light if the BTF has it.
-std::shared_ptr<const Material> make_lit_from_both(const std::shared_ptr<const BtfTable>& table) {
-  auto reflecting = make_measured_btf_material(table);
-  if (!table->between.knows_through()) return reflecting;
-  return std::make_shared<const ThroughMaterial>(std::move(reflecting),
-                                                 make_measured_btf_material(table, BtfLight::other_side));
-}
-
-}  // namespace
 
 vlr_status vlr_scene_add_model_material(vlr_scene* scene, const vlr_model* model, uint32_t neighbors,
                                         uint32_t* material) {
@@ -74,10 +33,8 @@ vlr_status vlr_scene_add_measurement_material(vlr_scene* scene, const vlr_measur
     require(scene, "scene");
     require(measurement, "measurement");
     require(material, "material");
-    const auto measured = kept(measurement->measurement);
-    const auto model = proposal ? kept(proposal->model) : coarse_proposal(*measured);
     *material = scene->scene->add_material(
-        brushed_if_anisotropic({.material = make_measured_material(measured, model, static_cast<int>(neighbors))}));
+        surface_of(kept(measurement->measurement), proposal ? kept(proposal->model) : nullptr, neighbors));
   });
 }
 
@@ -86,8 +43,7 @@ vlr_status vlr_scene_add_btf_material(vlr_scene* scene, const vlr_btf* btf, uint
     require(scene, "scene");
     require(btf, "btf");
     require(material, "material");
-    auto table = read_btf_table(*kept(btf->btf), most_bytes != 0 ? most_bytes : kUsualTableBytes);
-    *material = scene->scene->add_material({.material = make_lit_from_both(std::move(table))});
+    *material = scene->scene->add_material(surface_of(*kept(btf->btf), most_bytes));
   });
 }
 

@@ -102,12 +102,12 @@ vlr_status vlr_model_eval(const vlr_model* model, const float* wv, uint64_t coun
     require(wl, "wl");
     require(f, "f");
     const auto material = make_material(kept(model->model), 0);
-    const auto point = std::make_unique<PreparedBrdf>();
-    material->prepare(checked_view(wv), *point);
+    ScratchArena arena;
+    const PreparedBrdf* const point = material->prepare(checked_view(wv), arena);
     RgbBatch value;
     ScalarBatch density;
     for_each_batch(count, wl, [&](uint64_t first, const DirectionBatch& batch) {
-      material->eval(*point, batch, value, density);
+      point->eval(batch, value, density);
       for (int i = 0; i < batch.count; ++i) {
         const uint64_t at = first + static_cast<uint64_t>(i);
         const Rgb c = value.get(i);
@@ -129,10 +129,10 @@ vlr_status vlr_model_sample(const vlr_model* model, const float* wv, uint64_t co
     require(wl, "wl");
     require(pdf, "pdf");
     const auto material = make_material(kept(model->model), 0);
-    const auto point = std::make_unique<PreparedBrdf>();
-    material->prepare(checked_view(wv), *point);
+    ScratchArena arena;
+    const PreparedBrdf* const point = material->prepare(checked_view(wv), arena);
     for (uint64_t i = 0; i < count; ++i) {
-      const Vec3 w = material->sample_one(*point, {u[2 * i], u[2 * i + 1]});
+      const Vec3 w = point->sample_one({u[2 * i], u[2 * i + 1]});
       wl[3 * i] = w.x;
       wl[3 * i + 1] = w.y;
       wl[3 * i + 2] = w.z;
@@ -140,7 +140,7 @@ vlr_status vlr_model_sample(const vlr_model* model, const float* wv, uint64_t co
     RgbBatch value;
     ScalarBatch density;
     for_each_batch(count, wl, [&](uint64_t first, const DirectionBatch& batch) {
-      material->eval(*point, batch, value, density);
+      point->eval(batch, value, density);
       for (int i = 0; i < batch.count; ++i) pdf[first + static_cast<uint64_t>(i)] = density.v[i];
     });
   });

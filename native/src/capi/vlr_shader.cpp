@@ -2,8 +2,10 @@
 #include <cmath>
 
 #include "capi/conversions.h"
+#include "capi/measured_materials.h"
 #include "material/glossy_material.h"
 #include "material/normal_map.h"
+#include "material/placed_material.h"
 #include "material/program/program.h"
 #include "material/rough_diffuse_material.h"
 
@@ -14,19 +16,25 @@ namespace {
 
 Rgb base_color(const vlr_principled_desc& d) { return {d.base_color[0], d.base_color[1], d.base_color[2]}; }
 
-TextureSlot<Rgb> normal_slot(const vlr_layer_desc& layer) {
-  return color_slot(layer.normal, layer.normal_map, layer.normal_set, "vlr_layer_desc.normal");
+const char* normal_field(const vlr_layer_desc& /*layer*/) { return "vlr_layer_desc.normal"; }
+const char* normal_field(const vlr_measured_layer_desc& /*layer*/) { return "vlr_measured_layer_desc.normal"; }
+
+template <typename Layer>
+TextureSlot<Rgb> normal_slot(const Layer& layer) {
+  return color_slot(layer.normal, layer.normal_map, layer.normal_set, normal_field(layer));
 }
 
 /// Throws Error(invalid_argument) if the layer's normal is an output of a program that is not a normal.
-void require_normal(const vlr_layer_desc& layer) {
+template <typename Layer>
+void require_normal(const Layer& layer) {
   if (layer.normal == nullptr || !layer.normal->program) return;
   if (layer.normal->program->outputs()[layer.normal->output].is_normal) return;
-  refuse("vlr_layer_desc.normal is output " + std::to_string(layer.normal->output) +
+  refuse(normal_field(layer) + std::string(" is output ") + std::to_string(layer.normal->output) +
          " of a program, which is not a normal (VLR_VALUE_NORMAL).");
 }
 
-std::shared_ptr<const Material> with_normals(std::shared_ptr<const Material> material, const vlr_layer_desc& layer,
+template <typename Layer>
+std::shared_ptr<const Material> with_normals(std::shared_ptr<const Material> material, const Layer& layer,
                                              ReliefPart part) {
   if (layer.normal == nullptr) return material;
   return make_normal_mapped(std::move(material),
@@ -73,6 +81,12 @@ PrincipledTextures textures_of(const vlr_layer_desc& layer) {
   return converted_textures(read_options(layer.textures, vlr_principled_textures_init, "vlr_principled_textures"));
 }
 
+Rgb finite_color(const float* color, const char* field) {
+  const Rgb given(color[0], color[1], color[2]);
+  if (std::isfinite(given.r + given.g + given.b)) return given;
+  throw Error(Status::invalid_argument, std::string(field) + " is not finite.");
+}
+
 LayerWeight& add_layer(vlr_shader& shader, const vlr_layer_desc& layer) {
   ShaderLayers& layers = shader.layers;
   const auto desc = read_options(layer.surface, vlr_principled_desc_init, "vlr_principled_desc");
@@ -89,6 +103,53 @@ LayerWeight& add_layer(vlr_shader& shader, const vlr_layer_desc& layer) {
   return layers.reflecting.back().weight;
 }
 
+SurfaceMaterial measured_surface(const vlr_measured_layer_desc& layer) {
+  const int given = (layer.measurement != nullptr) + (layer.btf != nullptr);
+  if (given > 1 || (given == 0 && layer.model == nullptr) || (layer.btf != nullptr && layer.model != nullptr)) {
+    throw Error(Status::invalid_argument,
+                "A measured layer needs one of vlr_measured_layer_desc.model, .measurement (with or without a model to "
+                "sample from) and .btf.");
+  }
+  if (layer.btf != nullptr) return surface_of(*kept(layer.btf->btf), layer.most_bytes);
+  auto model = layer.model != nullptr ? kept(layer.model->model) : nullptr;
+  if (layer.measurement != nullptr) {
+    return surface_of(kept(layer.measurement->measurement), std::move(model), layer.neighbors);
+  }
+  return surface_of(model, layer.neighbors);
+}
+
+/// Rays meet a silhouette before they meet any layer, so it belongs to the surface.
+void add_silhouette(vlr_shader& shader, const SurfaceMaterial& measured, const TextureMap& map) {
+  if (shader.shell) {
+    throw Error(Status::unsupported,
+                "A material can have only one silhouette (VOTF), but two of the mixed models have one. Remove the VOTF "
+                "of one model.");
+  }
+  if (map.map != Mat2(1.0f) || map.shift != Vec2(0.0f)) {
+    throw Error(Status::unsupported,
+                "vlr_measured_layer_desc.map moves a model with a silhouette (VOTF), which lies on the surface's own "
+                "texture coordinates. Place the instance's texture instead.");
+  }
+  shader.shell = measured.shell;
+  shader.shell_shaded = measured.shell_shaded;
+}
+
+LayerWeight& add_measured(vlr_shader& shader, const vlr_measured_layer_desc& layer) {
+  const TextureMap map = map_from(layer.map);
+  if (!map.invertible()) {
+    throw Error(Status::invalid_argument,
+                "vlr_measured_layer_desc.map contains a number that is not finite, or scales the texture to zero.");
+  }
+  SurfaceMaterial measured = measured_surface(layer);
+  if (measured.shell) add_silhouette(shader, measured, map);
+  shader.brushed |= measured.brushed;
+  shader.relief |= layer.normal != nullptr && !layer.normal->program;
+  shader.sets.add(normal_slot(layer));
+  auto material = with_normals(make_placed(std::move(measured.material), map), layer, ReliefPart::lobe);
+  shader.layers.reflecting.push_back({.material = std::move(material), .rec709_colors = true});
+  return shader.layers.reflecting.back().weight;
+}
+
 }  // namespace
 
 void vlr_layer_desc_init(vlr_layer_desc* desc) {
@@ -97,10 +158,18 @@ void vlr_layer_desc_init(vlr_layer_desc* desc) {
   desc->normal_map[0] = desc->normal_map[4] = desc->normal_strength = 1.0f;
 }
 
+void vlr_measured_layer_desc_init(vlr_measured_layer_desc* desc) {
+  *desc = {};
+  desc->struct_size = sizeof(vlr_measured_layer_desc);
+  desc->map[0] = desc->map[4] = 1.0f;
+  desc->normal_map[0] = desc->normal_map[4] = desc->normal_strength = 1.0f;
+}
+
 void vlr_factor_desc_init(vlr_factor_desc* desc) {
   *desc = {};
   desc->struct_size = sizeof(vlr_factor_desc);
   desc->value = desc->map[0] = desc->map[4] = 1.0f;
+  desc->color[0] = desc->color[1] = desc->color[2] = 1.0f;
 }
 
 vlr_status vlr_shader_create(vlr_shader** out) {
@@ -124,15 +193,32 @@ vlr_status vlr_shader_add_layer(vlr_shader* shader, const vlr_layer_desc* desc) 
   });
 }
 
+vlr_status vlr_shader_add_measured_layer(vlr_shader* shader, const vlr_measured_layer_desc* desc) {
+  return guard([&] {
+    require(shader, "shader");
+    const auto layer = read_options(desc, vlr_measured_layer_desc_init, "vlr_measured_layer_desc");
+    require_choice(layer.normal_correction, VLR_RELIEF_AS_IT_IS, "vlr_measured_layer_desc.normal_correction");
+    require_normal(layer);
+    shader->last = &add_measured(*shader, layer);
+  });
+}
+
 vlr_status vlr_shader_weigh_layer(vlr_shader* shader, const vlr_factor_desc* desc) {
   return guard([&] {
     require(shader, "shader");
     const auto factor = read_options(desc, vlr_factor_desc_init, "vlr_factor_desc");
-    require_choice(factor.kind, VLR_FACTOR_GAIN, "vlr_factor_desc.kind");
+    require_choice(factor.kind, VLR_FACTOR_TINT, "vlr_factor_desc.kind");
     if (!std::isfinite(factor.value)) throw Error(Status::invalid_argument, "vlr_factor_desc.value is not finite.");
     if (shader->last == nullptr) {
       throw Error(Status::invalid_state,
                   "The shader has no layer that the factor could weight; add a layer before its factors.");
+    }
+    if (factor.kind == VLR_FACTOR_TINT) {
+      const auto colors = color_slot(factor.texture, factor.map, factor.set, "vlr_factor_desc.texture");
+      shader->last->tints.push_back({finite_color(factor.color, "vlr_factor_desc.color"), colors});
+      shader->sets.add(colors);
+      shader->opacity.add(colors);
+      return;
     }
     const auto texture = number_slot(factor.texture, factor.map, factor.set, "vlr_factor_desc.texture");
     shader->sets.add(texture);
@@ -146,8 +232,14 @@ vlr_status vlr_scene_add_shader_material(vlr_scene* scene, const vlr_shader* sha
     require(scene, "scene");
     require(shader, "shader");
     require(material, "material");
-    SurfaceMaterial surface{
-        .material = make_layered_material(shader->layers), .rec709_colors = false, .relief = shader->relief};
+    ShaderLayers layers = shader->layers;
+    layers.rec709_to_working = scene->scene->rec709_to_working();
+    SurfaceMaterial surface{.material = make_layered_material(std::move(layers)),
+                            .rec709_colors = false,
+                            .relief = shader->relief,
+                            .brushed = shader->brushed,
+                            .shell = shader->shell,
+                            .shell_shaded = shader->shell_shaded};
     use_sets(surface, shader->sets, shader->opacity.outputs);
     *material = scene->scene->add_material(std::move(surface));
   });

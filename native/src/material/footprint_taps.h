@@ -3,7 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include "btf/measure/bilinear_texels.h"
+#include "image/bilinear_texels.h"
 #include "material/surface_site.h"
 #include "math/sphere/vec.h"
 

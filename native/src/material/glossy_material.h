@@ -4,6 +4,7 @@
 #include <memory>
 
 #include "material/material.h"
+#include "material/microfacet/ggx.h"
 #include "material/texture_slot.h"
 
 namespace velour {

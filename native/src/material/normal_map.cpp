@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include "math/sphere/frame.h"
 
 namespace velour {
 namespace {
@@ -9,50 +10,70 @@ namespace {
 constexpr float kMinNormalCosine = 1e-6f;  // of the light with the surface normal; keeps f finite
 constexpr float kMinViewCosine = 1e-3f;    // of the view with the mapped normal
 
+/// What remains of diffuse light about a normal whose cosine with the surface normal is `tilt`.
+float remaining(ReliefCorrection correction, float own, float mapped, float tilt) {
+  if (correction == ReliefCorrection::none) return 1;
+  return correction == ReliefCorrection::shadowed ? relief_shadowing(own, tilt)
+                                                  : terminator_softening(own, mapped, tilt);
+}
+
+class PreparedNormalMapped final : public PreparedBrdf {
+ public:
+  /// `relief`: about the mapped normal, in which `material` is prepared.
+  PreparedNormalMapped(const PreparedBrdf* material, const Frame& relief, ReliefCorrection correction, bool transmits)
+      : material_(material), relief_(relief), correction_(correction), transmits_(transmits) {}
+
+  void eval(const DirectionBatch& wl, RgbBatch& f, ScalarBatch& pdf) const override {
+    DirectionBatch turned;
+    for (int i = 0; i < wl.count; ++i) turned.push(relief_.to_local(wl.get(i)));
+    turned.pad();
+    material_->eval(turned, f, pdf);
+    for (int i = 0; i < wl.count; ++i) {
+      const float side = transmits_ && wl.z[i] < 0 ? -1.0f : 1.0f;
+      const float own = side * wl.z[i], mapped = side * turned.z[i];
+      const float share = remaining(correction_, own, mapped, relief_.z.z);
+      f.set(i, own > 0 && mapped > 0 ? f.get(i) * (share * mapped / std::max(own, kMinNormalCosine)) : Rgb(0.0f));
+    }
+  }
+
+  void sample(std::span<const Vec2> u, DirectionBatch& wl) const override {
+    material_->sample(u, wl);
+    for (int i = 0; i < wl.count; ++i) wl.set(i, relief_.to_world(wl.get(i)));
+  }
+
+  float diffuse_share(const Vec3& wl, float pdf) const override {
+    return material_->diffuse_share(relief_.to_local(wl), pdf);
+  }
+
+ private:
+  const PreparedBrdf* material_;
+  Frame relief_;
+  ReliefCorrection correction_;
+  bool transmits_;
+};
+
 class NormalMappedMaterial final : public Material {
  public:
   NormalMappedMaterial(std::shared_ptr<const Material> material, const NormalMap& map, ReliefPart part)
       : material_(std::move(material)), map_(map), part_(part) {}
 
-  void prepare(const Vec3& wv, const SurfaceSite& site, PreparedBrdf& point) const override {
+  const PreparedBrdf* prepare(const Vec3& wv, const SurfaceSite& site, const PrepareOptions& options,
+                              ScratchArena& arena) const override {
     const Frame seen = frame_of(part_ != ReliefPart::diffuse, wv, site);
     Vec3 local = seen.to_local(wv);
     if (local.z < kMinViewCosine) local = glm::normalize(Vec3(local.x, local.y, kMinViewCosine));
-    material_->prepare(local, site, point);
-    point.relief = part_ == ReliefPart::base ? frame_of(false, wv, site) : seen;
-  }
-
-  void eval(const PreparedBrdf& point, const DirectionBatch& wl, RgbBatch& f, ScalarBatch& pdf) const override {
-    DirectionBatch turned;
-    for (int i = 0; i < wl.count; ++i) turned.push(point.relief.to_local(wl.get(i)));
-    turned.pad();
-    material_->eval(point, turned, f, pdf);
-    for (int i = 0; i < wl.count; ++i) {
-      const float share = kept(wl.z[i], turned.z[i], point.relief.z.z);
-      const bool above = wl.z[i] > 0 && turned.z[i] > 0;
-      f.set(i, above ? f.get(i) * (share * turned.z[i] / std::max(wl.z[i], kMinNormalCosine)) : Rgb(0.0f));
-    }
-  }
-
-  void sample(const PreparedBrdf& point, std::span<const Vec2> u, DirectionBatch& wl) const override {
-    material_->sample(point, u, wl);
-    for (int i = 0; i < wl.count; ++i) wl.set(i, point.relief.to_world(wl.get(i)));
-  }
-
-  float diffuse_share(const PreparedBrdf& point, const Vec3& wl, float pdf) const override {
-    return material_->diffuse_share(point, point.relief.to_local(wl), pdf);
+    const PreparedBrdf* const material = material_->prepare(local, site, options, arena);
+    return arena.make<PreparedNormalMapped>(material, part_ == ReliefPart::base ? frame_of(false, wv, site) : seen,
+                                            part_ == ReliefPart::lobe ? ReliefCorrection::none : map_.correction,
+                                            material_->transmits());
   }
 
   bool varies() const override { return true; }
+  Vec2 texels() const override { return material_->texels(); }
+  bool transmits() const override { return material_->transmits(); }
   bool isotropic() const override { return false; }
 
  private:
-  float kept(float own, float mapped, float tilt) const {
-    if (part_ == ReliefPart::lobe || map_.correction == ReliefCorrection::none) return 1;
-    return map_.correction == ReliefCorrection::shadowed ? relief_shadowing(own, tilt)
-                                                         : terminator_softening(own, mapped, tilt);
-  }
-
   bool keeps_mirrors_above(bool is_lobe) const {
     if (map_.correction == ReliefCorrection::turned) return true;
     return map_.correction != ReliefCorrection::none && is_lobe;

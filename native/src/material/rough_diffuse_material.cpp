@@ -19,59 +19,60 @@ float uneven_albedo(float cosine) {
 }
 constexpr float kMeanUnevenAlbedo = (2 * kPi - 5.6f) / 3;  // cosine-weighted
 
-class RoughDiffuseMaterial final : public Material {
-  enum Parameter { kRed, kGreen, kBlue, kEven, kUneven, kManyRed, kManyGreen, kManyBlue };
-
+class PreparedRoughDiffuse final : public PreparedBrdf {
  public:
-  explicit RoughDiffuseMaterial(const RoughDiffuseParameters& p) : p_(p) {}
-
-  void prepare(const Vec3& wv, const SurfaceSite& site, PreparedBrdf& point) const override {
-    const Rgb color = glm::clamp(p_.color_texture.at(site, p_.color), Rgb(0.0f), Rgb(1.0f));
-    const float roughness = std::clamp(p_.roughness_texture.at(site, p_.roughness), 0.0f, 1.0f);
-    point.wv = wv;
-    for (int c = 0; c < 3; ++c) point.parameter[kRed + c] = color[c];
-    point.parameter[kEven] = 1 / (kPi + kWhole * roughness);
-    point.parameter[kUneven] = roughness * point.parameter[kEven];
-    const Rgb many = p_.interreflection && roughness > 0 ? interreflected(point, color) : Rgb(0.0f);
-    for (int c = 0; c < 3; ++c) point.parameter[kManyRed + c] = many[c];
+  PreparedRoughDiffuse(const RoughDiffuseParameters& p, const Vec3& wv, const SurfaceSite& site)
+      : wv_(wv), color_(glm::clamp(p.color_texture.at(site, p.color), Rgb(0.0f), Rgb(1.0f))) {
+    const float roughness = std::clamp(p.roughness_texture.at(site, p.roughness), 0.0f, 1.0f);
+    even_ = 1 / (kPi + kWhole * roughness);
+    uneven_ = roughness * even_;
+    many_ = p.interreflection && roughness > 0 ? interreflected() : Rgb(0.0f);
   }
 
-  void eval(const PreparedBrdf& point, const DirectionBatch& wl, RgbBatch& f, ScalarBatch& pdf) const override {
-    const Rgb color(point.parameter[kRed], point.parameter[kGreen], point.parameter[kBlue]);
-    const Rgb many(point.parameter[kManyRed], point.parameter[kManyGreen], point.parameter[kManyBlue]);
-    const bool any = many != Rgb(0.0f);
-    const Vec3& wv = point.wv;
+  void eval(const DirectionBatch& wl, RgbBatch& f, ScalarBatch& pdf) const override {
+    const bool any = many_ != Rgb(0.0f);
     for (int i = 0; i < wl.count; ++i) {
       const Vec3 l = wl.get(i);
-      float s = wv.x * l.x + wv.y * l.y;
-      if (s > 0) s /= std::max(wv.z, l.z);
-      Rgb value = color * (point.parameter[kEven] + point.parameter[kUneven] * s);
-      if (any) value += many * one_minus_albedo(point, uneven_albedo(l.z));
+      float s = wv_.x * l.x + wv_.y * l.y;
+      if (s > 0) s /= std::max(wv_.z, l.z);
+      Rgb value = color_ * (even_ + uneven_ * s);
+      if (any) value += many_ * one_minus_albedo(uneven_albedo(l.z));
       f.set(i, l.z > 0 ? value : Rgb(0.0f));
       pdf.v[i] = std::max(l.z, 0.0f) / kPi;
     }
   }
 
-  void sample(const PreparedBrdf& /*point*/, std::span<const Vec2> u, DirectionBatch& wl) const override {
-    wl.fill(u, sample_cosine_hemisphere);
+  void sample(std::span<const Vec2> u, DirectionBatch& wl) const override { wl.fill(u, sample_cosine_hemisphere); }
+
+ private:
+  /// 1 - E of a white surface. A pi + B (pi/2 - 2/3) is 1, so a nearly smooth surface causes no cancellation.
+  float one_minus_albedo(float uneven) const { return uneven_ * (kWhole - uneven); }
+
+  /// Factor of the interreflection lobe that does not depend on the light.
+  Rgb interreflected() const {
+    const float lost = one_minus_albedo(kMeanUnevenAlbedo);                                // 1 - m
+    const float of_mean = (kWhole - uneven_albedo(wv_.z)) / (kWhole - kMeanUnevenAlbedo);  // (1 - E) / (1 - m)
+    return color_ * color_ * color_ * ((1 - lost) * of_mean / kPi) / (1.0f - color_ * lost);
+  }
+
+  Vec3 wv_;
+  Rgb color_, many_;
+  float even_, uneven_;  // A and B of the header
+};
+
+class RoughDiffuseMaterial final : public Material {
+ public:
+  explicit RoughDiffuseMaterial(const RoughDiffuseParameters& p) : p_(p) {}
+
+  const PreparedBrdf* prepare(const Vec3& wv, const SurfaceSite& site, const PrepareOptions& /*options*/,
+                              ScratchArena& arena) const override {
+    return arena.make<PreparedRoughDiffuse>(p_, wv, site);
   }
 
   bool varies() const override { return p_.color_texture.given() || p_.roughness_texture.given(); }
   bool isotropic() const override { return true; }
 
  private:
-  /// 1 - E of a white surface. A pi + B (pi/2 - 2/3) is 1, so a nearly smooth surface causes no cancellation.
-  static float one_minus_albedo(const PreparedBrdf& point, float uneven) {
-    return point.parameter[kUneven] * (kWhole - uneven);
-  }
-
-  /// Factor of the interreflection lobe that does not depend on the light.
-  static Rgb interreflected(const PreparedBrdf& point, const Rgb& color) {
-    const float lost = one_minus_albedo(point, kMeanUnevenAlbedo);                              // 1 - m
-    const float of_mean = (kWhole - uneven_albedo(point.wv.z)) / (kWhole - kMeanUnevenAlbedo);  // (1 - E) / (1 - m)
-    return color * color * color * ((1 - lost) * of_mean / kPi) / (1.0f - color * lost);
-  }
-
   const RoughDiffuseParameters p_;
 };
 

@@ -14,19 +14,20 @@ float brightest(const Rgb& c) { return std::max({c.r, c.g, c.b, 0.0f}); }
 
 /// Mean albedo (luminance) over random views of the whole surface, estimated with the material's own samples.
 float mean_albedo(const Material& material) {
-  const auto point = std::make_unique<PreparedBrdf>();
+  ScratchArena arena;
   double sum = 0;
   for (uint32_t i = 0; i < kAlbedoViews; ++i) {
     RandomStream random(1, i, 0);
-    material.prepare(sample_cosine_hemisphere(random.next2()), *point);
+    arena.reset();
+    const PreparedBrdf* const point = material.prepare(sample_cosine_hemisphere(random.next2()), arena);
     Vec2 u[kAlbedoDraws];
     for (Vec2& point_of_square : u) point_of_square = random.next2();
     DirectionBatch wl;
-    material.sample(*point, u, wl);
+    point->sample(u, wl);
     wl.pad();
     RgbBatch f;
     ScalarBatch pdf;
-    material.eval(*point, wl, f, pdf);
+    point->eval(wl, f, pdf);
     for (int k = 0; k < wl.count; ++k) {
       if (pdf.v[k] > 0) sum += static_cast<double>(luminance(f.get(k)) * std::abs(wl.z[k]) / pdf.v[k]);
     }
@@ -34,42 +35,62 @@ float mean_albedo(const Material& material) {
   return static_cast<float>(sum / (kAlbedoViews * kAlbedoDraws));
 }
 
-class LayeredMaterial final : public Material {
+/// A reflecting layer at a point.
+struct PreparedLayer {
+  const PreparedBrdf* point;  // null: the layer is absent
+  Rgb weight;                 // factor of its f
+  float share;                // probability of sampling this layer; all sum to 1
+  const Mat3* to_working;     // conversion of its f to the working space; null: none
+  bool above_only;            // the material transmits light, but not this layer
+};
+
+/// Keeps the lobes of the largest masses.
+class StrongestLobes {
  public:
-  explicit LayeredMaterial(ShaderLayers layers) : layers_(std::move(layers)) {
-    for (const ReflectingLayer& l : layers_.reflecting) albedo_.push_back(std::max(mean_albedo(*l.material), 1e-3f));
+  explicit StrongestLobes(ProposalLobes& lobes) : lobes_(lobes) {
+    lobes_.cosine = 0;
+    lobes_.count = 0;
   }
 
-  void prepare(const Vec3& wv, const SurfaceSite& site, PreparedBrdf& point) const override {
-    point.wv = wv;
-    if (point.layers.size() < albedo_.size()) point.layers.resize(albedo_.size());
-    const float brighter = 1 / there(site);
-    float sum = 0;
-    for (size_t i = 0; i < albedo_.size(); ++i) {
-      PreparedLayer& layer = point.layers[i];
-      const ReflectingLayer& from = layers_.reflecting[i];
-      layer.weight = Rgb(brighter * from.weight.at(site));
-      if (from.coated) layer.weight *= through_coat(*from.coated, wv.z, point.filter);
-      sum += layer.share = luminance(layer.weight) * albedo_[i];
-      if (!layer.is_there()) continue;
-      if (!layer.point) layer.point = std::make_unique<PreparedBrdf>();
-      layer.point->interpolated_draws = point.interpolated_draws;
-      layer.point->filter = point.filter;
-      from.material->prepare(wv, site, *layer.point);
+  void add(const ProposalLobes& others, float weight) {
+    lobes_.cosine += weight * others.cosine;
+    for (int j = 0; j < others.count; ++j) {
+      GaussianLobe lobe = others.lobe[j];
+      lobe.amplitude *= weight;
+      add(lobe);
     }
-    for (size_t i = 0; i < albedo_.size() && sum > 0; ++i) point.layers[i].share /= sum;
   }
 
-  void eval(const PreparedBrdf& point, const DirectionBatch& wl, RgbBatch& f, ScalarBatch& pdf) const override {
+ private:
+  static float mass(const GaussianLobe& lobe) { return lobe.amplitude / std::max(lobe.bandwidth, 1.0f); }
+
+  void add(const GaussianLobe& lobe) {
+    if (lobes_.count < ProposalLobes::kCapacity) {
+      lobes_.lobe[lobes_.count++] = lobe;
+      return;
+    }
+    GaussianLobe& weakest = *std::ranges::min_element(lobes_.lobe, {}, mass);
+    if (mass(weakest) < mass(lobe)) weakest = lobe;
+  }
+
+  ProposalLobes& lobes_;
+};
+
+class PreparedLayers final : public PreparedBrdf {
+ public:
+  explicit PreparedLayers(std::span<const PreparedLayer> layers) : layers_(layers) {}
+
+  void eval(const DirectionBatch& wl, RgbBatch& f, ScalarBatch& pdf) const override {
     RgbBatch one;
     ScalarBatch one_pdf;
     bool first = true;
-    for (size_t i = 0; i < albedo_.size(); ++i) {
-      const PreparedLayer& layer = point.layers[i];
-      if (!layer.is_there()) continue;
-      layers_.reflecting[i].material->eval(*layer.point, wl, one, one_pdf);
+    for (const PreparedLayer& layer : layers_) {
+      if (layer.point == nullptr) continue;
+      layer.point->eval(wl, one, one_pdf);
+      if (layer.above_only) leave_out_below(wl, one, one_pdf);
       for (int k = 0; k < wl.count; ++k) {
-        f.set(k, (first ? Rgb(0.0f) : f.get(k)) + layer.weight * one.get(k));
+        const Rgb own = layer.to_working != nullptr ? *layer.to_working * one.get(k) : one.get(k);
+        f.set(k, (first ? Rgb(0.0f) : f.get(k)) + layer.weight * own);
         pdf.v[k] = (first ? 0.0f : pdf.v[k]) + layer.share * one_pdf.v[k];
       }
       first = false;
@@ -77,33 +98,108 @@ class LayeredMaterial final : public Material {
     if (first) eval_black(wl, f, pdf);
   }
 
-  void sample(const PreparedBrdf& point, std::span<const Vec2> u, DirectionBatch& wl) const override {
+  void sample(std::span<const Vec2> u, DirectionBatch& wl) const override {
     wl.count = static_cast<int>(u.size());
-    bool drawn = false;
+    const PreparedLayer* last = nullptr;
+    for (const PreparedLayer& layer : layers_) last = layer.point != nullptr ? &layer : last;
+    if (last == nullptr) return wl.fill(u, sample_cosine_hemisphere);
     float begin = 0;
-    for (size_t i = 0; i < albedo_.size(); ++i) {
-      if (!point.layers[i].is_there()) continue;
-      const bool last = std::none_of(point.layers.begin() + static_cast<ptrdiff_t>(i) + 1,
-                                     point.layers.begin() + static_cast<ptrdiff_t>(albedo_.size()),
-                                     [](const PreparedLayer& l) { return l.is_there(); });
-      const float end = last ? 1.0f : begin + point.layers[i].share;
-      sample_layer(point, i, {begin, end}, u, wl);
+    for (const PreparedLayer& layer : layers_) {
+      if (layer.point == nullptr) continue;
+      const float end = &layer == last ? 1.0f : begin + layer.share;
+      sample_layer(layer, {begin, end}, u, wl);
       begin = end;
-      drawn = true;
     }
-    if (!drawn) wl.fill(u, sample_cosine_hemisphere);
   }
 
-  float diffuse_share(const PreparedBrdf& point, const Vec3& wl, float pdf) const override {
+  float diffuse_share(const Vec3& wl, float pdf) const override {
     float density = 0;
-    for (size_t i = 0; i < albedo_.size(); ++i) {
-      const PreparedLayer& layer = point.layers[i];
-      if (!layer.is_there()) continue;
-      const Material& material = *layers_.reflecting[i].material;
-      const float own = material.eval_one(*layer.point, wl).pdf;
-      if (own > 0) density += layer.share * own * material.diffuse_share(*layer.point, wl, own);
+    for (const PreparedLayer& layer : layers_) {
+      if (layer.point == nullptr) continue;
+      const float own = layer.above_only && wl.z < 0 ? 0.0f : layer.point->eval_one(wl).pdf;
+      if (own > 0) density += layer.share * own * layer.point->diffuse_share(wl, own);
     }
     return std::min(density / pdf, 1.0f);
+  }
+
+  bool proposal_lobes(ProposalLobes& lobes) const override {
+    StrongestLobes strongest(lobes);
+    bool any = false;
+    for (const PreparedLayer& layer : layers_) {
+      ProposalLobes own;
+      if (layer.point == nullptr) continue;
+      if (!layer.point->proposal_lobes(own)) return false;
+      strongest.add(own, luminance(layer.weight));
+      any = true;
+    }
+    return any;
+  }
+
+ private:
+  static void leave_out_below(const DirectionBatch& wl, RgbBatch& f, ScalarBatch& pdf) {
+    for (int i = 0; i < wl.count; ++i) {
+      if (!(wl.z[i] < 0)) continue;
+      f.set(i, Rgb(0.0f));
+      pdf.v[i] = 0;
+    }
+  }
+
+  static void eval_black(const DirectionBatch& wl, RgbBatch& f, ScalarBatch& pdf) {
+    for (int i = 0; i < wl.count; ++i) {
+      f.set(i, Rgb(0.0f));
+      pdf.v[i] = std::max(wl.z[i], 0.0f) / kPi;
+    }
+  }
+
+  /// Samples `layer` for those `u` whose first coordinate lies in `range`.
+  static void sample_layer(const PreparedLayer& layer, const Vec2& range, std::span<const Vec2> u, DirectionBatch& wl) {
+    Vec2 some[DirectionBatch::kCapacity];
+    int place[DirectionBatch::kCapacity];
+    size_t count = 0;
+    for (size_t i = 0; i < u.size(); ++i) {
+      if (u[i].x < range.x || u[i].x >= range.y) continue;
+      place[count] = static_cast<int>(i);
+      some[count++] = {std::min((u[i].x - range.x) / (range.y - range.x), 1 - 0x1p-24f), u[i].y};
+    }
+    if (count == 0) return;
+    DirectionBatch drawn;
+    layer.point->sample({some, count}, drawn);
+    for (size_t i = 0; i < count; ++i) {
+      const Vec3 w = drawn.get(static_cast<int>(i));
+      wl.set(place[i], layer.above_only && w.z < 0 ? Vec3(0.0f) : w);
+    }
+  }
+
+  std::span<const PreparedLayer> layers_;
+};
+
+class LayeredMaterial final : public Material {
+ public:
+  explicit LayeredMaterial(ShaderLayers layers) : layers_(std::move(layers)) {
+    for (const ReflectingLayer& l : layers_.reflecting) {
+      albedo_.push_back(std::max(mean_albedo(*l.material), 1e-3f));
+      transmits_ = transmits_ || l.material->transmits();
+      texels_ = glm::max(texels_, l.material->texels());
+    }
+  }
+
+  const PreparedBrdf* prepare(const Vec3& wv, const SurfaceSite& site, const PrepareOptions& options,
+                              ScratchArena& arena) const override {
+    const std::span<PreparedLayer> prepared = arena.make_array<PreparedLayer>(albedo_.size());
+    const float brighter = 1 / there(site);
+    float sum = 0;
+    for (size_t i = 0; i < albedo_.size(); ++i) {
+      PreparedLayer& layer = prepared[i];
+      const ReflectingLayer& from = layers_.reflecting[i];
+      layer.weight = Rgb(brighter * from.weight.at(site)) * from.weight.tint(site);
+      if (from.coated) layer.weight *= through_coat(*from.coated, wv.z, options.filter);
+      sum += layer.share = luminance(layer.weight) * albedo_[i];
+      layer.to_working = from.rec709_colors && layers_.rec709_to_working ? &*layers_.rec709_to_working : nullptr;
+      layer.above_only = transmits_ && !from.material->transmits();
+      layer.point = layer.weight != Rgb(0.0f) ? from.material->prepare(wv, site, options, arena) : nullptr;
+    }
+    for (size_t i = 0; i < albedo_.size() && sum > 0; ++i) prepared[i].share /= sum;
+    return arena.make<PreparedLayers>(prepared);
   }
 
   bool varies() const override {
@@ -112,6 +208,9 @@ class LayeredMaterial final : public Material {
            std::ranges::any_of(layers_.reflecting,
                                [](const ReflectingLayer& l) { return l.weight.varies() || l.material->varies(); });
   }
+
+  Vec2 texels() const override { return texels_; }
+  bool transmits() const override { return transmits_; }
 
   bool opaque() const override { return layers_.transparent.empty(); }
   bool tints() const override { return !opaque(); }
@@ -158,32 +257,10 @@ class LayeredMaterial final : public Material {
     return a > 0 ? a : 1.0f;
   }
 
-  static void eval_black(const DirectionBatch& wl, RgbBatch& f, ScalarBatch& pdf) {
-    for (int i = 0; i < wl.count; ++i) {
-      f.set(i, Rgb(0.0f));
-      pdf.v[i] = std::max(wl.z[i], 0.0f) / kPi;
-    }
-  }
-
-  /// Samples the layer for those `u` whose first coordinate lies in `range`.
-  void sample_layer(const PreparedBrdf& point, size_t layer, const Vec2& range, std::span<const Vec2> u,
-                    DirectionBatch& wl) const {
-    Vec2 some[DirectionBatch::kCapacity];
-    int place[DirectionBatch::kCapacity];
-    size_t count = 0;
-    for (size_t i = 0; i < u.size(); ++i) {
-      if (u[i].x < range.x || u[i].x >= range.y) continue;
-      place[count] = static_cast<int>(i);
-      some[count++] = {std::min((u[i].x - range.x) / (range.y - range.x), 1 - 0x1p-24f), u[i].y};
-    }
-    if (count == 0) return;
-    DirectionBatch drawn;
-    layers_.reflecting[layer].material->sample(*point.layers[layer].point, {some, count}, drawn);
-    for (size_t i = 0; i < count; ++i) wl.set(place[i], drawn.get(static_cast<int>(i)));
-  }
-
   const ShaderLayers layers_;
   std::vector<float> albedo_;  // mean albedo of each reflecting layer; only steers sampling
+  Vec2 texels_{1.0f};          // of the finest layer along each coordinate
+  bool transmits_ = false;
 };
 
 }  // namespace
@@ -201,8 +278,15 @@ float LayerWeight::at(const SurfaceSite& site) const {
   return product;
 }
 
+Rgb LayerWeight::tint(const SurfaceSite& site) const {
+  Rgb product(1.0f);
+  for (const LayerTint& t : tints) product *= glm::max(t.at(site), Rgb(0.0f));
+  return product;
+}
+
 bool LayerWeight::varies() const {
-  return std::ranges::any_of(factors, [](const LayerFactor& f) { return f.texture.given(); });
+  const auto given = [](const auto& factor) { return factor.texture.given(); };
+  return std::ranges::any_of(factors, given) || std::ranges::any_of(tints, given);
 }
 
 std::shared_ptr<const Material> make_layered_material(ShaderLayers layers) {

@@ -22,21 +22,33 @@ struct LayerFactor {
   float at(const SurfaceSite& site) const;
 };
 
-/// Product of the factors; 1 if empty.
+/// A color, in the working space.
+struct LayerTint {
+  Rgb color{1.0f};
+  TextureSlot<Rgb> texture{};  // replaces `color`
+
+  Rgb at(const SurfaceSite& site) const { return texture.at(site, color); }
+};
+
+/// How much of a layer there is, and what colors its light.
 struct LayerWeight {
   std::vector<LayerFactor> factors{};
+  std::vector<LayerTint> tints{};
 
-  float at(const SurfaceSite& site) const;
+  float at(const SurfaceSite& site) const;  // product of the factors; 1 if there are none
+  Rgb tint(const SurfaceSite& site) const;  // product of the tints; they let no light through
   bool varies() const;
 };
 
-/// A reflecting layer. The alpha and emission of its material are ignored.
+/// A reflecting layer: any material, measured ones and further mixes included. The alpha and emission of its material
+/// are ignored.
 struct ReflectingLayer {
   std::shared_ptr<const Material> material;
   LayerWeight weight{};
   /// Parameters of a coat above the layer. The coat dims it about the surface normal, regardless of a normal map on the
   /// material.
   std::optional<PrincipledParameters> coated{};
+  bool rec709_colors = false;  // f is Rec. 709 (measured) and is converted to the working space; false: already there
 };
 
 /// A transparent layer with a color, or an emissive layer with a radiance.
@@ -45,7 +57,7 @@ struct ColorLayer {
   TextureSlot<Rgb> texture{};
   LayerWeight weight{};
 
-  Rgb at(const SurfaceSite& site) const { return weight.at(site) * texture.at(site, color); }
+  Rgb at(const SurfaceSite& site) const { return weight.at(site) * texture.at(site, color) * weight.tint(site); }
   bool varies() const { return texture.given() || weight.varies(); }
 };
 
@@ -53,13 +65,16 @@ struct ColorLayer {
 struct ShaderLayers {
   std::vector<ReflectingLayer> reflecting{};
   std::vector<ColorLayer> transparent{}, emissive{};
+  std::optional<Mat3> rec709_to_working{};  // none: the working space is Rec. 709
 };
 
-/// f is the weighted sum of the layers' f. Samples come from one layer, with a probability proportional to its weight
-/// times its mean albedo; value, density and sample describe the whole material. Let T be the brightest channel of the
+/// f is the sum of the layers' f, weighted and tinted. Samples come from one layer, with a probability proportional to
+/// its weight times its mean albedo; value, density and sample describe the whole material. It transmits light if a
+/// layer does; samples of the others then have no direction below the horizon. Let T be the brightest channel of the
 /// transmitted color and W the sum of the other weights. A ray meets the surface with probability W / (W + T); f and
 /// emission are brightened accordingly, and passing light is scaled to the color and mean that the layers give it. In a
-/// mix with white, W + T is 1 and passing light is unchanged. There are no proposal lobes: `product` acts as `mis`.
+/// mix with white, W + T is 1 and passing light is unchanged. There are proposal lobes where all layers have some, as
+/// measured ones do; otherwise `product` acts as `mis`.
 std::shared_ptr<const Material> make_layered_material(ShaderLayers layers);
 
 }  // namespace velour

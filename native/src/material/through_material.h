@@ -16,11 +16,8 @@ class ThroughMaterial final : public Material {
   ThroughMaterial(std::shared_ptr<const Material> reflected, std::shared_ptr<const Material> through);
   static constexpr float kMinShare = 0.1f;
 
-  void prepare(const Vec3& wv, const SurfaceSite& site, PreparedBrdf& point) const override;
-  void eval(const PreparedBrdf& point, const DirectionBatch& wl, RgbBatch& f, ScalarBatch& pdf) const override;
-  Reflection eval_one(const PreparedBrdf& point, const Vec3& wl) const override;
-  void sample(const PreparedBrdf& point, std::span<const Vec2> u, DirectionBatch& wl) const override;
-  float diffuse_share(const PreparedBrdf& point, const Vec3& wl, float pdf) const override;
+  const PreparedBrdf* prepare(const Vec3& wv, const SurfaceSite& site, const PrepareOptions& options,
+                              ScratchArena& arena) const override;
 
   bool transmits() const override { return true; }
   bool varies() const override { return true; }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include "brdf/eval/per_view_lobes.h"
 #include "brdf/fit/error/evaluate.h"
 #include "model/model_material.h"
 #include "plot/axes.h"
@@ -43,14 +44,15 @@ struct NamedLobe {
 };
 
 /// Lobes as mixed by the material for the view: those of neighboring views with their weights.
-std::vector<NamedLobe> lobes_of(const PerViewBrdf& /*brdf*/, const Material* material, const Vec3& wv) {
-  const auto point = std::make_shared<PreparedBrdf>();
-  material->prepare(wv, *point);
-  const LobeMixture& m = point->lobes;
+std::vector<NamedLobe> lobes_of(const PerViewBrdf& brdf, const Vec3& wv) {
+  const auto mixed = std::make_shared<LobeMixture>();
+  const PerViewLobes of_views(brdf, 0);
+  of_views.gather(of_views.place(wv), *mixed);
+  const LobeMixture& m = *mixed;
   std::vector<NamedLobe> lobes;
   for (int j = 0; j < m.count; ++j) {
-    lobes.push_back({"lobe " + std::to_string(j + 1), [point, j](const Vec3d& wl) {
-                       const LobeMixture& mixture = point->lobes;
+    lobes.push_back({"lobe " + std::to_string(j + 1), [mixed, j](const Vec3d& wl) {
+                       const LobeMixture& mixture = *mixed;
                        const Vec3d center(mixture.x[j], mixture.y[j], mixture.z[j]);
                        return luminance(Rgb(mixture.r[j], mixture.g[j], mixture.b[j])) *
                               kernel_value(mixture.kernel, mixture.bandwidth[j], one_minus_dot(wl, center));
@@ -66,7 +68,7 @@ double f_of(const WarpedLobe& lobe, const Vec3d& wl, const Vec3d& wv) {
   return luminance_of(lobe.coefficient) * warped_kernel(lobe, wl, wv);
 }
 
-std::vector<NamedLobe> lobes_of(const ParametricBrdf& brdf, const Material* /*material*/, const Vec3& view) {
+std::vector<NamedLobe> lobes_of(const ParametricBrdf& brdf, const Vec3& view) {
   const Vec3d wv(view);
   const auto lobes_here = std::make_shared<std::vector<WarpedLobe>>(lobes_at(brdf, wv));
   std::vector<NamedLobe> lobes;
@@ -81,7 +83,7 @@ std::vector<NamedLobe> lobes_of(const ParametricBrdf& brdf, const Material* /*ma
 }
 
 template <typename Body>
-std::vector<NamedLobe> lobes_of(const Body& /*a BTF's*/, const Material* /*material*/, const Vec3& /*wv*/) {
+std::vector<NamedLobe> lobes_of(const Body& /*a BTF's*/, const Vec3& /*wv*/) {
   return {};
 }
 
@@ -131,9 +133,9 @@ void set_radius(const PlotSeries& model, const std::vector<PlotPoint>& measured,
   axis.high = std::pow(10.0, high);
 }
 
-void add_lobes(const Model& model, const Material* material, const Vec3& wv, const PlotView& view,
-               const std::vector<double>& angles, Plot& plot) {
-  const auto lobes = std::visit([&](const auto& body) { return lobes_of(body, material, wv); }, model.body);
+void add_lobes(const Model& model, const Vec3& wv, const PlotView& view, const std::vector<double>& angles,
+               Plot& plot) {
+  const auto lobes = std::visit([&](const auto& body) { return lobes_of(body, wv); }, model.body);
   for (const NamedLobe& lobe : lobes) {
     PlotSeries series{lobe.name, PlotRole::lobe, PlotMark::line, {}};
     for (const double angle : angles) {
@@ -156,7 +158,7 @@ Plot lobes_plot(const std::shared_ptr<const Model>& model, const Measurement* me
   plot.y = {"f_cos_per_sr", "f cos \u03b8, 1/sr"};
   PlotSeries total{"model", PlotRole::model, PlotMark::line, model_points(*model, material.get(), wv, view, angles)};
   plot.legend.push_back({"model", PlotRole::model, PlotMark::line});
-  add_lobes(*model, material.get(), wv, view, angles, plot);
+  add_lobes(*model, wv, view, angles, plot);
   PlotSeries measured{"measured", PlotRole::measured, PlotMark::dots, {}};
   if (measurement) measured.points = measured_points(*measurement, view);
   set_radius(total, measured.points, plot.y);

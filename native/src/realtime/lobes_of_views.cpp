@@ -111,10 +111,9 @@ PrincipledParameters base_of(PrincipledParameters p) {
   return p;
 }
 
-Vec3d value(const PrincipledMaterial& material, const Vec3d& wl, const Vec3d& wv) {
-  PreparedBrdf point;
-  material.prepare(Vec3(wv), SurfaceSite::everywhere(), point);
-  return Vec3d(material.eval_one(point, Vec3(wl)).f);
+Vec3d value(const Material& material, const Vec3d& wl, const Vec3d& wv) {
+  ScratchArena arena;
+  return Vec3d(material.prepare(Vec3(wv), arena)->eval_one(Vec3(wl)).f);
 }
 
 Vec3 view_at(double cosine) { return Vec3(Vec3d(std::sqrt(std::max(1 - cosine * cosine, 0.0)), 0, cosine)); }

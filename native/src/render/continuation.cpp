@@ -12,18 +12,18 @@ std::optional<Continuation> continuation_along(const Vertex& vertex, const Vec3&
                       wl, pdf};
 }
 
-std::optional<Continuation> sample_continuation(const Vertex& vertex, const PreparedBrdf& prepared,
-                                                SurfaceSampling sampling, const std::optional<Mat3>& rec709_to_working,
-                                                const Rgb& throughput, const Vec2& u) {
+std::optional<Continuation> sample_continuation(const Vertex& vertex, const PreparedSurface& prepared,
+                                                const std::optional<Mat3>& rec709_to_working, const Rgb& throughput,
+                                                const Vec2& u) {
   DirectionBatch wl;
-  sample_surface(sampling, vertex, prepared, {&u, 1}, wl);
+  prepared.sample({&u, 1}, wl);
   wl.pad();
   const Vec3 wl_world = vertex.frame.to_world(wl.get(0));
   if (!vertex.receives(wl.get(0), wl_world)) return std::nullopt;
   RgbBatch f;
   ScalarBatch material_pdf, pdf;
-  vertex.surface->material->eval(prepared, wl, f, material_pdf);
-  surface_pdf(sampling, vertex, prepared, wl, material_pdf, pdf);
+  prepared.brdf().eval(wl, f, material_pdf);
+  prepared.pdf(wl, material_pdf, pdf);
   const Rgb reflected = throughput * in_working_space(rec709_to_working, vertex, f.get(0));
   return continuation_along(vertex, wl.get(0), wl_world, reflected, pdf.v[0]);
 }

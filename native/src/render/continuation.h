@@ -32,10 +32,10 @@ std::optional<Continuation> continuation_along(const Vertex& vertex, const Vec3&
                                                const Rgb& reflected, float pdf);
 
 /// Continuation sampled from the surface with `u`, with throughput `throughput` f cos / pdf, which need not be finite.
-/// Empty if it would go below the surface or carry nothing. `prepared`: material at the vertex.
-std::optional<Continuation> sample_continuation(const Vertex& vertex, const PreparedBrdf& prepared,
-                                                SurfaceSampling sampling, const std::optional<Mat3>& rec709_to_working,
-                                                const Rgb& throughput, const Vec2& u);
+/// Empty if it would go below the surface or carry nothing. `prepared`: surface at the vertex.
+std::optional<Continuation> sample_continuation(const Vertex& vertex, const PreparedSurface& prepared,
+                                                const std::optional<Mat3>& rec709_to_working, const Rgb& throughput,
+                                                const Vec2& u);
 
 // Independent samples from a stream of items, each with probability proportional to its weight.
 

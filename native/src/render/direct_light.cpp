@@ -15,11 +15,23 @@ bool finite(const Rgb& c) { return std::isfinite(c.r + c.g + c.b); }
 
 void DirectLight::gather(std::span<const Receiver> receivers, bool go_on, ShadowQueue& shadows,
                          std::vector<CameraSample>& samples) {
-  const Output output{shadows, samples};
+  gather(receivers, go_on, Output{&shadows, &samples, nullptr});
+}
+
+void DirectLight::gather_incident(const Vertex& vertex, PathNumbers& numbers, int directions, bool go_on,
+                                  IncidentLight& incident) {
+  incident.terms.clear();
+  incident.paths.clear();
+  const Receiver receiver{vertex, &numbers, Rgb(1.0f), 0, directions, directions};
+  gather({&receiver, 1}, go_on, Output{nullptr, nullptr, &incident});
+}
+
+void DirectLight::gather(std::span<const Receiver> receivers, bool go_on, Output output) {
   awaited_.clear();
+  arena_.reset();
   for (size_t k = 0; k < receivers.size(); ++k) {
     if (lighting_.has_extended()) views_[k] = lighting_.view(receivers[k].vertex.light_place());
-    prepare(receivers[k], go_on, work_[k], views_[k]);
+    prepare(receivers[k], go_on, output, work_[k], views_[k]);
   }
   make_points(receivers);
   draw_towards_lights(receivers);
@@ -30,22 +42,23 @@ void DirectLight::gather(std::span<const Receiver> receivers, bool go_on, Shadow
   if (!lighting_.emissive().empty()) settle_emissive(receivers, output);
 }
 
-void DirectLight::prepare(const Receiver& receiver, bool go_on, Work& work, const LightView& view) {
+void DirectLight::prepare(const Receiver& receiver, bool go_on, Output output, Work& work, const LightView& view) {
   const Vertex& vertex = receiver.vertex;
-  work.prepared.interpolated_draws = is_dissertations(options_.strategy);
-  work.prepared.filter = lobe_filter(options_.light_paths, receiver.past);
-  vertex.surface->material->prepare(vertex.wv, vertex.site, work.prepared);
-  prepare_surface(sampling_, vertex, work.prepared);
-  work.shares = shares_at(vertex, view, work);
+  const PrepareOptions options{.interpolated_draws = is_dissertations(options_.strategy),
+                               .filter = lobe_filter(options_.light_paths, receiver.past)};
+  work.prepared = PreparedSurface(sampling_, vertex, options, arena_);
+  work.goes_on_along_all = go_on && output.is_incident();
+  const bool lit = lighting_.has_extended(), explores = !lit && work.goes_on_along_all;
+  work.shares = explores ? Shares{0.0f, 1.0f, 0.0f} : shares_at(vertex, view, work);
   PathNumbers& numbers = *receiver.numbers;
-  const auto all = numbers.all(lighting_.has_extended() ? receiver.directions : 0, receiver.full);
+  const auto all = numbers.all(lit || explores ? receiver.directions : 0, receiver.full);
   const auto [rest, product] = numbers.deal(all, work.shares.product, Purpose::product_side);
   const auto [surface, lights] = numbers.deal(rest, work.shares.lights / (1.0f - work.shares.product), Purpose::side);
   work.from_product = product;
   work.from_surface = surface;
   work.from_lights = lights;
   // One of several directions would be every n-th point of their sequence; such points are not even.
-  work.goes_on_drawn = go_on && surface.count == 1;
+  work.goes_on_drawn = go_on && surface.count == 1 && !output.is_incident();
   work.continuation.reset();
   work.shared_term = -1;
 }
@@ -53,7 +66,7 @@ void DirectLight::prepare(const Receiver& receiver, bool go_on, Work& work, cons
 Shares DirectLight::shares_at(const Vertex& vertex, const LightView& view, Work& work) {
   if (options_.strategy != Strategy::product || sky_ == nullptr) return shares(options_, 0.0f);
   ProposalLobes lobes;
-  const bool proposed = vertex.surface->material->proposal_lobes(work.prepared, lobes) &&
+  const bool proposed = work.prepared.brdf().proposal_lobes(lobes) &&
                         sky_->proposals.propose(lobes, vertex.frame, products_, work.product);
   if (!proposed) return shares(options_, 0.0f);
   const float both = kProductShare * view.environment, lights = lights_part(vertex) * both;
@@ -123,7 +136,7 @@ void DirectLight::keep_world(const Vertex& vertex, const DirectionBatch& drawn, 
 void DirectLight::draw_from_surface(const Receiver& receiver, const Work& work) {
   if (work.from_surface.count == 0) return;
   const auto u = points_.points(work.surface_point, work.from_surface.count);
-  sample_surface(sampling_, receiver.vertex, work.prepared, u, drawn_);
+  work.prepared.sample(u, drawn_);
   for (int i = 0; i < drawn_.count; ++i) {
     const Vec3 wl = drawn_.get(i);
     keep_if_lit(receiver.vertex, wl, receiver.vertex.frame.to_world(wl), Technique::surface);
@@ -142,32 +155,36 @@ void DirectLight::shade(const Receiver& receiver, uint8_t place, Output output) 
   keep_world(vertex, towards_products_, work.product_direction, work.from_product.count, Technique::product);
   draw_from_surface(receiver, work);
   keep_world(vertex, towards_lights_, work.light_point, work.from_lights.count, Technique::lights);
-  draw_sharp(receiver);
+  sharp_count_ = 0;
+  if (!output.is_incident()) draw_sharp(receiver);
   if (local_.count == 0) return;
   local_.pad();
   world_.pad();
-  vertex.surface->material->eval(work.prepared, local_, f_, material_pdf_);
-  add_terms(receiver, place);
+  work.prepared.brdf().eval(local_, f_, material_pdf_);
+  work.prepared.pdf(local_, material_pdf_, surface_pdf_);
+  if (lighting_.has_extended()) add_terms(receiver, place, output);
+  if (work.goes_on_along_all) add_continuations(vertex, work, *output.incident);
   for (int k = 0; k < sharp_count_; ++k) {
     const int i = world_.count + k;
     const Rgb reflected = receiver.throughput * reflectance(vertex, i) * std::abs(local_.z[i]);
     const SharpLight& sharp = sharp_[k];
     queue(receiver,
-          {sharp.wl_world, reflected * sharp.irradiance, receiver.limit, sharp.distance, sharp.lamp->casts_shadow()},
+          {sharp.wl_world, reflected * sharp.irradiance, receiver.limit, sharp.distance, sharp.lamp->casts_shadow(),
+           std::numeric_limits<float>::infinity()},
           output);
   }
 }
 
-void DirectLight::add_terms(const Receiver& receiver, uint8_t place) {
+void DirectLight::add_terms(const Receiver& receiver, uint8_t place, Output output) {
   const Work& work = work_[place];
   const bool has_product = work.shares.product > 0.0f;
-  surface_pdf(sampling_, receiver.vertex, work.prepared, local_, material_pdf_, surface_pdf_);
   if (has_product) eval_density(work.product, world_, product_pdf_);
   const Rgb share = receiver.throughput / static_cast<float>(receiver.directions);
   for (int i = 0; i < world_.count; ++i) {
     const int to = terms_.world.count;
     terms_.world.push(world_.get(i));
-    terms_.reflected.set(to, share * reflectance(receiver.vertex, i) * std::abs(local_.z[i]));
+    const Rgb f = output.is_incident() ? Rgb(1.0f) : reflectance(receiver.vertex, i);
+    terms_.reflected.set(to, share * f * std::abs(local_.z[i]));
     terms_.product.v[to] = has_product ? work.shares.product * product_pdf_.v[i] : 0.0f;
     terms_.surface.v[to] = work.shares.surface * surface_pdf_.v[i];
     terms_.light_share.v[to] = work.shares.lights;
@@ -175,6 +192,15 @@ void DirectLight::add_terms(const Receiver& receiver, uint8_t place) {
     terms_.receiver[to] = place;
     terms_.aim[to] = aim_[i];
     if (work.goes_on_drawn && technique_[i] == Technique::surface) go_on_along(receiver, i, to, work_[place]);
+  }
+}
+
+void DirectLight::add_continuations(const Vertex& vertex, const Work& work, IncidentLight& incident) {
+  const Rgb share(1.0f / static_cast<float>(work.from_surface.count));
+  for (int i = 0; i < world_.count; ++i) {
+    if (technique_[i] != Technique::surface) continue;
+    const auto along = continuation_along(vertex, local_.get(i), world_.get(i), share, surface_pdf_.v[i]);
+    if (along && finite(along->throughput)) incident.paths.push_back({static_cast<uint32_t>(i), *along});
   }
 }
 
@@ -191,7 +217,9 @@ void DirectLight::settle(std::span<const Receiver> receivers, Output output) {
   const auto add = [&](int i, const Rgb& weighed, float far, bool casts_shadow) {
     const Receiver& receiver = receivers[terms_.receiver[i]];
     const Rgb light = weighed * terms_.reflected.get(i);
-    settle_term(receivers, i, {terms_.world.get(i), light, limit_of_term(receiver), far, casts_shadow}, output);
+    settle_term(receivers, i,
+                {terms_.world.get(i), light, limit_of_term(receiver), far, casts_shadow, terms_.light_pdf.v[i]},
+                output);
   };
   for (int i = 0; i < terms_.world.count; ++i) {
     add(i, terms_.weight.v[i] * terms_.environment.get(i), std::numeric_limits<float>::infinity(), true);
@@ -215,13 +243,14 @@ void DirectLight::settle_emissive(std::span<const Receiver> receivers, Output ou
     const Receiver& receiver = receivers[terms_.receiver[g.direction]];
     const auto [radiance, far] = lighting_.emissive().light(rays[g.direction], g.hit, receiver.vertex.cone);
     const Rgb light = g.weight * radiance * terms_.reflected.get(g.direction);
-    settle_term(receivers, g.direction, {terms_.world.get(g.direction), light, limit_of_term(receiver), far, true},
-                output);
+    settle_term(receivers, g.direction,
+                {terms_.world.get(g.direction), light, limit_of_term(receiver), far, true, g.pdf}, output);
   }
 }
 
 void DirectLight::settle_term(std::span<const Receiver> receivers, int term, const Contribution& c, Output output) {
   const size_t place = terms_.receiver[term];
+  if (output.is_incident()) return add_incident(receivers[place].vertex, term, c, *output.incident);
   if (work_[place].shared_term != term) return queue(receivers[place], c, output);
   if (waits(receivers[place], c, output)) awaited_.push_back({place, c.light, c.limit, c.far});
 }
@@ -236,21 +265,27 @@ bool DirectLight::waits(const Receiver& receiver, const Contribution& c, Output 
     ++nan_samples_;
     return false;
   }
-  if (!c.casts_shadow) output.samples[receiver.sample].radiance += clamped(c.light, c.limit);
+  if (!c.casts_shadow) (*output.samples)[receiver.sample].radiance += clamped(c.light, c.limit);
   return c.casts_shadow;
 }
 
 void DirectLight::queue(const Receiver& receiver, const Contribution& c, Output output) {
   if (!waits(receiver, c, output)) return;
-  output.shadows.add(receiver.vertex.shadow_ray(c.wl_world, c.far), c.light, receiver.sample, c.limit);
+  output.shadows->add(receiver.vertex.shadow_ray(c.wl_world, c.far), c.light, receiver.sample, c.limit);
+}
+
+void DirectLight::add_incident(const Vertex& vertex, int term, const Contribution& c, IncidentLight& incident) {
+  if (zero(c.light) || !finite(c.light)) return;
+  incident.terms.push_back({static_cast<uint32_t>(term), vertex.frame.to_local(c.wl_world), c.light, c.density,
+                            vertex.shadow_ray(c.wl_world, c.far), c.casts_shadow});
 }
 
 std::optional<Continuation> DirectLight::extend(const Receiver& receiver, size_t place) {
   const Work& work = work_[place];
   const auto continuation =
       work.goes_on_drawn ? work.continuation
-                         : sample_continuation(receiver.vertex, work.prepared, sampling_, working_space_,
-                                               receiver.throughput, receiver.numbers->point(Purpose::continuation));
+                         : sample_continuation(receiver.vertex, work.prepared, working_space_, receiver.throughput,
+                                               receiver.numbers->point(Purpose::continuation));
   if (!continuation || finite(continuation->throughput)) return continuation;
   ++nan_samples_;
   return std::nullopt;
@@ -259,14 +294,13 @@ std::optional<Continuation> DirectLight::extend(const Receiver& receiver, size_t
 PathPast DirectLight::past_after(const Receiver& receiver, size_t place, const Continuation& continuation) const {
   PathPast past{std::min(receiver.past.least_density, continuation.density), false};
   if (options_.light_paths.reflective_caustics) return past;
-  const Material& material = *receiver.vertex.surface->material;
-  past.was_diffuse =
-      receiver.numbers->label() < material.diffuse_share(work_[place].prepared, continuation.wl, continuation.density);
+  const PreparedBrdf& brdf = work_[place].prepared.brdf();
+  past.was_diffuse = receiver.numbers->label() < brdf.diffuse_share(continuation.wl, continuation.density);
   return past;
 }
 
-float LightTerms::weighed(Heuristic heuristic, int direction, float light_pdf) const {
-  const float q[3] = {product.v[direction], surface.v[direction], light_share.v[direction] * light_pdf};
+float LightTerms::weighed(Heuristic heuristic, int direction, float pdf) const {
+  const float q[3] = {product.v[direction], surface.v[direction], light_share.v[direction] * pdf};
   const float density = effective_density(heuristic, q, technique[direction]);
   // A density of 0 results from rounding alone. NaN passes, to be counted.
   return density == 0.0f ? 0.0f : 1.0f / density;
@@ -276,7 +310,6 @@ void LightTerms::look_up(const Lighting& lighting, std::span<const LightView> vi
   const int count = world.count;
   if (count == 0) return;
   world.pad();
-  ScalarBatch light_pdf;
   lighting.look_up(views, {receiver, static_cast<size_t>(count)}, world, environment, light_pdf, lamp_hits);
   for (int i = 0; i < count; ++i) weight.v[i] = aim[i] != 0 ? 0.0f : weighed(heuristic, i, light_pdf.v[i]);
   for (const LampHit& hit : lamp_hits) {
@@ -290,8 +323,8 @@ void LightTerms::look_up_emissive(const Lighting& lighting, std::span<const Ligh
   find_emissive(lighting.emissive(), aims, rays);
   for (EmissiveTerm& g : emissive) {
     const int i = g.direction;
-    const float pdf = light_share.v[i] > 0.0f ? lighting.emissive_pdf(views[receiver[i]], world.get(i), g.hit) : 0.0f;
-    g.weight = weighed(kLampHeuristic, i, pdf);
+    g.pdf = light_share.v[i] > 0.0f ? lighting.emissive_pdf(views[receiver[i]], world.get(i), g.hit) : 0.0f;
+    g.weight = weighed(kLampHeuristic, i, g.pdf);
   }
 }
 
@@ -301,7 +334,7 @@ void LightTerms::find_emissive(const EmissiveMeshes& surfaces, std::span<const H
   size_t count = 0;
   for (int i = 0; i < world.count; ++i) {
     if (aim[i] != 0) {
-      emissive.push_back({i, aims[aim[i] - size_t{1}], 0.0f});
+      emissive.push_back({i, aims[aim[i] - size_t{1}], 0.0f, 0.0f});
     } else if (technique[i] != Technique::lights) {
       number[count] = i;
       searching[count++] = rays[static_cast<size_t>(i)];
@@ -309,7 +342,7 @@ void LightTerms::find_emissive(const EmissiveMeshes& surfaces, std::span<const H
   }
   found_.clear();
   surfaces.meet({searching, count}, found_);
-  for (const EmissiveHit& f : found_) emissive.push_back({number[f.ray], f.hit, 0.0f});
+  for (const EmissiveHit& f : found_) emissive.push_back({number[f.ray], f.hit, 0.0f, 0.0f});
 }
 
 }  // namespace velour

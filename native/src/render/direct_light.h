@@ -38,11 +38,13 @@ struct alignas(64) LightTerms {
   // Results of look_up().
   RgbBatch environment;             // radiance
   ScalarBatch weight, lamp_weight;  // 1 / d: for the environment, and for lights where one is hit
+  ScalarBatch light_pdf;            // of Lighting::sample, without directions aimed at emissive meshes
   std::vector<LampHit> lamp_hits;
   struct EmissiveTerm {
     int direction;
     Hit hit;
     float weight;  // 1 / d
+    float pdf;     // of Lighting::sample aiming there; 0 unless lights are sampled
   };
   std::vector<EmissiveTerm> emissive;
 
@@ -58,8 +60,8 @@ struct alignas(64) LightTerms {
                         std::span<const Ray> rays);
 
  private:
-  /// 1 / d, with the density of the technique that samples the light.
-  float weighed(Heuristic heuristic, int direction, float light_pdf) const;
+  /// 1 / d; `pdf`: of the technique that samples the light.
+  float weighed(Heuristic heuristic, int direction, float pdf) const;
   void find_emissive(const EmissiveMeshes& surfaces, std::span<const Hit> aims, std::span<const Ray> rays);
   std::vector<EmissiveHit> found_;
 };
@@ -82,6 +84,26 @@ struct AwaitedLight {
   Rgb light;
   float limit;  // maximum sum of its channels
   float far;
+};
+
+/// Light that arrives at a vertex, direction by direction: the terms of DirectLight without f.
+struct IncidentLight {
+  struct Term {
+    uint32_t direction;  // several terms may have the same one
+    Vec3 wl;             // local
+    Rgb light;           // radiance |cos| / (n d), as if nothing were in the way
+    float density;       // of Lighting::sample in that direction
+    Ray shadow_ray;
+    bool casts_shadow;
+  };
+  std::vector<Term> terms;
+  /// Along a direction sampled from the surface, with a throughput of |cos| / (their number times the density): the
+  /// surface that it hits reflects more light. Its emission is in the terms where DirectLight::counts_emissive().
+  struct Path {
+    uint32_t direction;
+    Continuation along;
+  };
+  std::vector<Path> paths;
 };
 
 /// One per thread: owns the scratch memory of the vertices being processed. They are processed together, as many as fit
@@ -125,6 +147,11 @@ class DirectLight {
   void gather(std::span<const Receiver> receivers, bool go_on, ShadowQueue& shadows,
               std::vector<CameraSample>& samples);
 
+  /// Replaces `incident` by terms of up to `directions` (at most 64) directions at one vertex, and by paths if they may
+  /// `go_on`. The same estimator as gather(), except that delta lights are left to find_sharp_light().
+  /// Without lights that directions can hit, all are sampled from the surface.
+  void gather_incident(const Vertex& vertex, PathNumbers& numbers, int directions, bool go_on, IncidentLight& incident);
+
   /// Light of the last gather() that depends on rays of extend().
   std::span<const AwaitedLight> awaited() const { return awaited_; }
 
@@ -152,22 +179,27 @@ class DirectLight {
  private:
   /// State of a vertex until its batch is done.
   struct Work {
-    PreparedBrdf prepared;
-    LobeMixture product;  // world frame
+    PreparedSurface prepared;  // in arena_
+    LobeMixture product;       // world frame
     Shares shares;
     PathNumbers::Run from_product, from_surface, from_lights;
     int product_point, surface_point, light_point;  // index of the first of each in points_
     int product_direction;                          // index of the first in towards_products_
     bool goes_on_drawn;                             // continues along its only surface-sampled direction
+    bool goes_on_along_all;                         // along all of them, for incident light
     std::optional<Continuation> continuation;       // the ray along it
     int shared_term;                                // index of the term waiting for `continuation`; -1: none
   };
+  /// Either shadow rays for camera samples, or incident light.
   struct Output {
-    ShadowQueue& shadows;
-    std::vector<CameraSample>& samples;
+    ShadowQueue* shadows;
+    std::vector<CameraSample>* samples;
+    IncidentLight* incident;
+    bool is_incident() const { return incident != nullptr; }
   };
 
-  void prepare(const Receiver& receiver, bool go_on, Work& work, const LightView& view);
+  void prepare(const Receiver& receiver, bool go_on, Output output, Work& work, const LightView& view);
+  void gather(std::span<const Receiver> receivers, bool go_on, Output output);
   /// Requests the points of all vertices; those for the lights come first, contiguously.
   void make_points(std::span<const Receiver> receivers);
   /// Computes the products of the vertex, if it has any.
@@ -183,7 +215,9 @@ class DirectLight {
   void keep_world(const Vertex& vertex, const DirectionBatch& drawn, int first, int count, Technique technique);
   /// Samples and reflects at one vertex.
   void shade(const Receiver& receiver, uint8_t place, Output output);
-  void add_terms(const Receiver& receiver, uint8_t place);
+  void add_terms(const Receiver& receiver, uint8_t place, Output output);
+  /// Adds continuations along the directions of the vertex that were sampled from the surface.
+  void add_continuations(const Vertex& vertex, const Work& work, IncidentLight& incident);
   /// Continues the path along direction `i` of the vertex, which is term `term`.
   void go_on_along(const Receiver& receiver, int i, int term, Work& work);
   void settle(std::span<const Receiver> receivers, Output output);
@@ -194,8 +228,9 @@ class DirectLight {
     float limit;  // maximum sum of the channels
     float far;    // distance of the light
     bool casts_shadow;
+    float density;  // of Lighting::sample; infinite for delta lights
   };
-  /// Queues the contribution of term `term`, or makes it wait for the ray of its path.
+  /// Queues the contribution of term `term`, makes it wait for the ray of its path, or adds it to the incident light.
   void settle_term(std::span<const Receiver> receivers, int term, const Contribution& contribution, Output output);
   /// Whether the contribution is nonzero and needs a shadow ray. Light that casts no shadow is added at once.
   bool waits(const Receiver& receiver, const Contribution& contribution, Output output);
@@ -205,6 +240,7 @@ class DirectLight {
     return receiver.limit * (is_mixed(options_.strategy) ? 2.0f : 1.0f) / static_cast<float>(receiver.directions);
   }
   Rgb reflectance(const Vertex& vertex, int direction) const;
+  void add_incident(const Vertex& vertex, int term, const Contribution& contribution, IncidentLight& incident);
 
   const std::optional<Mat3>& working_space_;
   const std::vector<SurfaceMaterial>& materials_;
@@ -215,6 +251,7 @@ class DirectLight {
   const bool shares_rays_;     // whether a continuation ray may also serve as a shadow ray
   const EnvironmentProductSampler* sky_;
 
+  ScratchArena arena_;  // for the points of a batch, until the next gather()
   Work work_[kReceivers];
   LightView views_[kReceivers];
   // For all vertices of the batch.

@@ -1,7 +1,5 @@
 #include "render/direction_sampling.h"
 
-#include "brdf/eval/table_sampler.h"
-#include "material/microfacet/ggx_sampler.h"
 #include "math/sphere/frame.h"
 #include "math/sphere/warp.h"
 
@@ -29,34 +27,39 @@ SurfaceSampling surface_sampling(Strategy strategy) {
   return SurfaceSampling::material;
 }
 
-void prepare_surface(SurfaceSampling sampling, const Vertex& vertex, PreparedBrdf& prepared) {
-  if (sampling == SurfaceSampling::ggx) vertex.ggx->prepare(vertex.wv, prepared.ggx);
-  if (sampling == SurfaceSampling::table) vertex.table->prepare(vertex.wv, prepared.table);
-}
-
 namespace {
 
 constexpr float kBeyond = 0.5f;  // share of samples on the far side, for one-sided densities of transmissive materials
 
-void sample_one_side(SurfaceSampling sampling, const Vertex& vertex, const PreparedBrdf& prepared,
-                     std::span<const Vec2> u, DirectionBatch& wl) {
-  switch (sampling) {
+}  // namespace
+
+PreparedSurface::PreparedSurface(SurfaceSampling sampling, const Vertex& vertex, const PrepareOptions& options,
+                                 ScratchArena& arena)
+    : brdf_(vertex.surface->material->prepare(vertex.wv, vertex.site, options, arena)),
+      sampling_(sampling),
+      transmits_(vertex.transmits),
+      ggx_(vertex.ggx) {
+  if (sampling == SurfaceSampling::ggx) ggx_->prepare(vertex.wv, ggx_point_);
+  if (sampling == SurfaceSampling::table) vertex.table->prepare(vertex.wv, table_);
+}
+
+void PreparedSurface::sample_one_side(std::span<const Vec2> u, DirectionBatch& wl) const {
+  switch (sampling_) {
     case SurfaceSampling::uniform:
       return wl.fill(u, sample_uniform_hemisphere);
     case SurfaceSampling::cosine:
       return wl.fill(u, sample_cosine_hemisphere);
     case SurfaceSampling::table:
-      return TableSampler::sample(prepared.table, u, wl);
+      return TableSampler::sample(table_, u, wl);
     case SurfaceSampling::ggx:
-      return wl.fill(u, [&](const Vec2& v) { return vertex.ggx->sample(prepared.ggx, v); });
+      return wl.fill(u, [&](const Vec2& v) { return ggx_->sample(ggx_point_, v); });
     case SurfaceSampling::material:
-      return vertex.surface->material->sample(prepared, u, wl);
+      return brdf_->sample(u, wl);
   }
 }
 
-void pdf_of_one_side(SurfaceSampling sampling, const Vertex& vertex, const PreparedBrdf& prepared,
-                     const DirectionBatch& wl, const ScalarBatch& material_pdf, ScalarBatch& pdf) {
-  switch (sampling) {
+void PreparedSurface::pdf_of_one_side(const DirectionBatch& wl, const ScalarBatch& brdf_pdf, ScalarBatch& pdf) const {
+  switch (sampling_) {
     case SurfaceSampling::uniform:
       for (int i = 0; i < wl.count; ++i) pdf.v[i] = pdf_uniform_hemisphere(wl.get(i));
       return;
@@ -64,36 +67,29 @@ void pdf_of_one_side(SurfaceSampling sampling, const Vertex& vertex, const Prepa
       for (int i = 0; i < wl.count; ++i) pdf.v[i] = pdf_cosine_hemisphere(wl.get(i));
       return;
     case SurfaceSampling::table:
-      return TableSampler::pdf(prepared.table, wl, pdf);
+      return TableSampler::pdf(table_, wl, pdf);
     case SurfaceSampling::ggx:
-      vertex.ggx->pdf(prepared.ggx, wl, pdf);
+      ggx_->pdf(ggx_point_, wl, pdf);
       return;
     case SurfaceSampling::material:
-      pdf = material_pdf;
+      pdf = brdf_pdf;
       return;
   }
 }
 
-}  // namespace
-
-void sample_surface(SurfaceSampling sampling, const Vertex& vertex, const PreparedBrdf& prepared,
-                    std::span<const Vec2> u, DirectionBatch& wl) {
-  if (!vertex.transmits || sampling == SurfaceSampling::material) {
-    return sample_one_side(sampling, vertex, prepared, u, wl);
-  }
-  sample_sides(u, kBeyond, wl, [&](bool, std::span<const Vec2> some, DirectionBatch& drawn) {
-    sample_one_side(sampling, vertex, prepared, some, drawn);
-  });
+void PreparedSurface::sample(std::span<const Vec2> u, DirectionBatch& wl) const {
+  if (!shares_sides()) return sample_one_side(u, wl);
+  sample_sides(u, kBeyond, wl,
+               [&](bool, std::span<const Vec2> some, DirectionBatch& drawn) { sample_one_side(some, drawn); });
 }
 
-void surface_pdf(SurfaceSampling sampling, const Vertex& vertex, const PreparedBrdf& prepared, const DirectionBatch& wl,
-                 const ScalarBatch& material_pdf, ScalarBatch& pdf) {
-  pdf_of_one_side(sampling, vertex, prepared, wl, material_pdf, pdf);
-  if (!vertex.transmits || sampling == SurfaceSampling::material) return;
+void PreparedSurface::pdf(const DirectionBatch& wl, const ScalarBatch& brdf_pdf, ScalarBatch& pdf) const {
+  pdf_of_one_side(wl, brdf_pdf, pdf);
+  if (!shares_sides()) return;
   DirectionBatch beyond = wl;
   for (int i = 0; i < wl.count; ++i) beyond.z[i] = -wl.z[i];
   ScalarBatch other;
-  pdf_of_one_side(sampling, vertex, prepared, beyond, material_pdf, other);
+  pdf_of_one_side(beyond, brdf_pdf, other);
   for (int i = 0; i < wl.count; ++i) pdf.v[i] = (1 - kBeyond) * pdf.v[i] + kBeyond * other.v[i];
 }
 

@@ -1,7 +1,9 @@
 // Directions sampled from the surface at a vertex, and their density.
 #pragma once
 
+#include "brdf/eval/table_sampler.h"
 #include "material/material.h"
+#include "material/microfacet/ggx_sampler.h"
 #include "render/options.h"
 #include "render/vertex.h"
 
@@ -14,16 +16,33 @@ enum class SurfaceSampling { uniform, cosine, table, ggx, material };
 /// by other surfaces comes from directions that light sampling would never choose.
 SurfaceSampling surface_sampling(Strategy strategy);
 
-/// Prepares what `sampling` derives from the view, once per vertex; Material::prepare has its own data.
-void prepare_surface(SurfaceSampling sampling, const Vertex& vertex, PreparedBrdf& prepared);
+/// The surface at a vertex, prepared for sampling directions; in the arena given, and as long as that is not reset.
+class PreparedSurface {
+ public:
+  PreparedSurface() = default;
+  PreparedSurface(SurfaceSampling sampling, const Vertex& vertex, const PrepareOptions& options, ScratchArena& arena);
 
-/// Local directions, one for each of up to 64 `u`; they may lie below the horizon. The batch is not padded.
-void sample_surface(SurfaceSampling sampling, const Vertex& vertex, const PreparedBrdf& prepared,
-                    std::span<const Vec2> u, DirectionBatch& wl);
+  const PreparedBrdf& brdf() const { return *brdf_; }
 
-/// Density per solid angle of sample_surface at each direction of `wl`. `material_pdf`: result of Material::eval.
-void surface_pdf(SurfaceSampling sampling, const Vertex& vertex, const PreparedBrdf& prepared, const DirectionBatch& wl,
-                 const ScalarBatch& material_pdf, ScalarBatch& pdf);
+  /// Local directions, one for each of up to 64 `u`; they may lie below the horizon. The batch is not padded.
+  void sample(std::span<const Vec2> u, DirectionBatch& wl) const;
+
+  /// Density per solid angle of sample() at each direction of `wl`. `brdf_pdf`: result of PreparedBrdf::eval.
+  void pdf(const DirectionBatch& wl, const ScalarBatch& brdf_pdf, ScalarBatch& pdf) const;
+
+ private:
+  void sample_one_side(std::span<const Vec2> u, DirectionBatch& wl) const;
+  void pdf_of_one_side(const DirectionBatch& wl, const ScalarBatch& brdf_pdf, ScalarBatch& pdf) const;
+  /// Whether a density of one side serves both.
+  bool shares_sides() const { return transmits_ && sampling_ != SurfaceSampling::material; }
+
+  const PreparedBrdf* brdf_ = nullptr;
+  SurfaceSampling sampling_ = SurfaceSampling::material;
+  bool transmits_ = false;
+  const GgxSampler* ggx_ = nullptr;
+  GgxPoint ggx_point_;
+  TablePoint table_;
+};
 
 // Combination of directions from several sampling techniques into one estimate.
 

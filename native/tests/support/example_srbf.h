@@ -3,9 +3,9 @@
 
 #include <cmath>
 
-#include "btf/measure/bilinear_texels.h"
 #include "btf/measure/relief.h"
 #include "btf/model/srbf_btf.h"
+#include "image/bilinear_texels.h"
 #include "image/half_image.h"
 
 namespace velour::test {

@@ -3,9 +3,9 @@
 
 #include <cmath>
 
-#include "btf/measure/bilinear_texels.h"
 #include "btf/measure/relief.h"
 #include "btf/model/tensor_btf.h"
+#include "image/bilinear_texels.h"
 #include "image/half_image.h"
 #include "math/sphere/direction_mesh.h"
 #include "math/sphere/random.h"

@@ -52,20 +52,20 @@ struct Evaluated {
   float pdf;
 };
 
-inline Evaluated eval_one(const Material& material, const PreparedBrdf& point, const Vec3& wl) {
+inline Evaluated eval_one(const PreparedBrdf& point, const Vec3& wl) {
   DirectionBatch batch;
   batch.push(wl);
   batch.pad();
   RgbBatch f;
   ScalarBatch pdf;
-  material.eval(point, batch, f, pdf);
+  point.eval(batch, f, pdf);
   return {f.get(0), pdf.v[0]};
 }
 
 inline Evaluated eval_one(const Material& material, const DirectionPair& w) {
-  PreparedBrdf point;
-  material.prepare(w.wv, point);
-  return eval_one(material, point, w.wl);
+  ScratchArena arena;
+  const PreparedBrdf* const point = material.prepare(w.wv, arena);
+  return eval_one(*point, w.wl);
 }
 
 inline float pdf_one(const TableSampler& table, const DirectionPair& w) {

@@ -4,6 +4,7 @@
 
 #include "material/through_material.h"
 #include "math/sphere/random.h"
+#include "support/changed_material.h"
 #include "support/proof_materials.h"
 #include "support/renders.h"
 #include "usage/observation.h"
@@ -12,28 +13,13 @@
 namespace velour::test {
 
 /// Luminance of another material's f, times a factor.
-class ScaledGray final : public Material {
- public:
-  ScaledGray(std::shared_ptr<const Material> material, float factor)
-      : material_(std::move(material)), factor_(factor) {}
-  void prepare(const Vec3& wv, const SurfaceSite& site, PreparedBrdf& point) const override {
-    material_->prepare(wv, site, point);
-  }
-  void eval(const PreparedBrdf& point, const DirectionBatch& wl, RgbBatch& f, ScalarBatch& pdf) const override {
-    material_->eval(point, wl, f, pdf);
-    for (int i = 0; i < wl.count; ++i) f.set(i, Rgb(factor_ * luminance(f.get(i))));
-  }
-  void sample(const PreparedBrdf& point, std::span<const Vec2> u, DirectionBatch& wl) const override {
-    material_->sample(point, u, wl);
-  }
-  bool varies() const override { return material_->varies(); }
-  bool transmits() const override { return material_->transmits(); }
-  bool isotropic() const override { return material_->isotropic(); }
-
- private:
-  std::shared_ptr<const Material> material_;
-  float factor_;
-};
+inline std::shared_ptr<const Material> scaled_gray(std::shared_ptr<const Material> material, float factor) {
+  return std::make_shared<ChangedMaterial>(std::move(material),
+                                           [factor](const DirectionBatch& wl, RgbBatch& f, ScalarBatch&) {
+                                             for (int i = 0; i < wl.count; ++i)
+                                               f.set(i, Rgb(factor * luminance(f.get(i))));
+                                           });
+}
 
 enum class ObservedLight { sky, lamps, delta_lights };
 inline constexpr uint32_t kObservedMaterial = 0;
@@ -87,7 +73,7 @@ inline Scene observed_scene(ObservedLight light, float factor,
   const auto add = [&scene](Mesh mesh, const Affine& place, SurfaceMaterial material) {
     scene.add_instance(scene.add_mesh(std::move(mesh)), place, {scene.add_material(std::move(material))});
   };
-  add(sphere(24), {}, {std::make_shared<ScaledGray>(std::move(observed), factor), Rgb(0.0f), false});
+  add(sphere(24), {}, {scaled_gray(std::move(observed), factor), Rgb(0.0f), false});
   add(square(4), shift({0, 0, -1}), {std::make_shared<Lambert>(0.7f), Rgb(0.0f), false});
   add(square(0.7f), shift({1.2f, -1.2f, -0.9f}), {std::make_shared<Lambert>(0.3f), {1.5f, 2, 1}, false});
   if (light == ObservedLight::sky) add_sky(scene);
@@ -101,10 +87,10 @@ inline Scene observed_scene(ObservedLight light, float factor,
 /// Mean over the picture of the luminance that hits send on, were their material's f that of `material`: what the
 /// picture gains, to first order, from f.
 inline double observed_radiance(const SceneObservation& o, const Material& material) {
-  const auto point = std::make_unique<PreparedBrdf>();
+  ScratchArena arena;
   double sum = 0;
   for (const ObservedHit& hit : o.hits) {
-    material.prepare(hit.wv, *point);
+    const PreparedBrdf* const point = material.prepare(hit.wv, arena);
     for (uint32_t first = hit.first; first < hit.last; first += DirectionBatch::kCapacity) {
       DirectionBatch wl;
       const uint32_t end = std::min<uint32_t>(hit.last, first + DirectionBatch::kCapacity);
@@ -112,7 +98,7 @@ inline double observed_radiance(const SceneObservation& o, const Material& mater
       wl.pad();
       RgbBatch f;
       ScalarBatch pdf;
-      material.eval(*point, wl, f, pdf);
+      point->eval(wl, f, pdf);
       for (uint32_t i = first; i < end; ++i) {
         sum += 0.5 * static_cast<double>(luminance(f.get(static_cast<int>(i - first)) * o.light[i]));
       }

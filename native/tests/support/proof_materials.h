@@ -8,14 +8,13 @@
 
 namespace velour::test {
 
-/// The material's sampler for one view; `interpolated`: as PreparedBrdf::interpolated_draws.
+/// The material's sampler for one view; `interpolated`: PrepareOptions::interpolated_draws.
 inline Sampler material_sampler(std::shared_ptr<const Material> material, const Vec3& wv,
                                 const SurfaceSite& site = SurfaceSite::everywhere(), bool interpolated = false) {
-  auto point = std::make_shared<PreparedBrdf>();
-  point->interpolated_draws = interpolated;
-  material->prepare(wv, site, *point);
-  return {[material, point](const Vec2& u) { return material->sample_one(*point, u); },
-          [material, point](const Vec3& wl) { return static_cast<double>(eval_one(*material, *point, wl).pdf); }};
+  const auto arena = std::make_shared<ScratchArena>();
+  const PreparedBrdf* const point = material->prepare(wv, site, {.interpolated_draws = interpolated}, *arena);
+  return {[material, arena, point](const Vec2& u) { return point->sample_one(u); },
+          [material, arena, point](const Vec3& wl) { return static_cast<double>(eval_one(*point, wl).pdf); }};
 }
 
 /// A highlight of albedo 1/2 about each view's mirror direction, whatever its bandwidth, over a broad lobe and a
@@ -65,29 +64,31 @@ inline std::shared_ptr<const Material> measured(const PerViewBrdf& proposal) {
   return make_measured_material(std::make_shared<SyntheticMeasurement>(), std::make_shared<PerViewBrdf>(proposal), 0);
 }
 
-/// A kind of material whose samples come from lobes.
+/// A kind of material whose samples come from lobes: a per-view model, or a measurement sampled by one.
 struct LobeMaterial {
   const char* name;
   std::vector<float> bandwidths;
-  std::shared_ptr<const Material> (*make)(float bandwidth);
+  PerViewBrdf (*model)(float bandwidth);
+  bool is_measured = false;
+
+  std::shared_ptr<const Material> make(float bandwidth) const {
+    if (is_measured) return measured(model(bandwidth));
+    return make_per_view_material(std::make_shared<PerViewBrdf>(model(bandwidth)), 0);
+  }
 };
 
+inline PerViewBrdf gaussian_highlight(float bandwidth) {
+  return highlight_model(Kernel::gaussian, bandwidth, meridian_views(), true);
+}
+
 inline const std::vector<LobeMaterial> kLobeMaterials = {
-    {"isotropic gaussian", {1e-4f, 0.1f, 10, 1e3f, 1e5f, 1e6f}, highlight_material},
+    {"isotropic gaussian", {1e-4f, 0.1f, 10, 1e3f, 1e5f, 1e6f}, gaussian_highlight},
     {"isotropic abel-poisson",
      {1e-4f, 0.5f, 0.9f, 0.999f},
-     [](float b) {
-       return make_per_view_material(
-           std::make_shared<PerViewBrdf>(highlight_model(Kernel::abel_poisson, b, meridian_views(), true)), 0);
-     }},
+     [](float b) { return highlight_model(Kernel::abel_poisson, b, meridian_views(), true); }},
     {"anisotropic gaussian",
      {1, 1e3f, 1e6f},
-     [](float b) {
-       return make_per_view_material(
-           std::make_shared<PerViewBrdf>(highlight_model(Kernel::gaussian, b, hemisphere_fibonacci(150), false)), 0);
-     }},
-    {"measured, proposal of lobes", {10, 1e5f}, [](float b) {
-       return measured(highlight_model(Kernel::gaussian, b, meridian_views(), true));
-     }}};
+     [](float b) { return highlight_model(Kernel::gaussian, b, hemisphere_fibonacci(150), false); }},
+    {"measured, proposal of lobes", {10, 1e5f}, gaussian_highlight, true}};
 
 }  // namespace velour::test

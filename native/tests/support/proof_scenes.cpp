@@ -4,6 +4,7 @@
 #include "material/principled/principled_material.h"
 #include "math/sphere/directions.h"
 #include "math/sphere/random.h"
+#include "support/changed_material.h"
 #include "support/parametric_models.h"
 #include "support/proof_materials.h"
 #include "support/test_scene.h"
@@ -12,30 +13,13 @@ namespace velour::test {
 
 namespace {
 
-/// Another material that claims a density `factor` times its own.
-class ScaledDensity final : public Material {
- public:
-  ScaledDensity(std::shared_ptr<const Material> material, float factor)
-      : material_(std::move(material)), factor_(factor) {}
-  void prepare(const Vec3& wv, const SurfaceSite& site, PreparedBrdf& point) const override {
-    material_->prepare(wv, site, point);
-  }
-  void eval(const PreparedBrdf& point, const DirectionBatch& wl, RgbBatch& f, ScalarBatch& pdf) const override {
-    material_->eval(point, wl, f, pdf);
-    for (int i = 0; i < wl.count; ++i) pdf.v[i] *= factor_;
-  }
-  void sample(const PreparedBrdf& point, std::span<const Vec2> u, DirectionBatch& wl) const override {
-    material_->sample(point, u, wl);
-  }
-  bool proposal_lobes(const PreparedBrdf& point, ProposalLobes& lobes) const override {
-    return material_->proposal_lobes(point, lobes);
-  }
-  bool isotropic() const override { return material_->isotropic(); }
-
- private:
-  std::shared_ptr<const Material> material_;
-  float factor_;
-};
+/// The material with a density that is not its own.
+std::shared_ptr<const Material> with_density_times(float factor, std::shared_ptr<const Material> material) {
+  return std::make_shared<ChangedMaterial>(std::move(material),
+                                           [factor](const DirectionBatch& wl, RgbBatch&, ScalarBatch& pdf) {
+                                             for (int i = 0; i < wl.count; ++i) pdf.v[i] *= factor;
+                                           });
+}
 
 /// Fills a scene whose errors are those of a control.
 class Builder {
@@ -43,7 +27,7 @@ class Builder {
   explicit Builder(const SceneError& error) : error_(error) {}
 
   uint32_t material(std::shared_ptr<const Material> material) {
-    if (error_.density != 1) material = std::make_shared<ScaledDensity>(std::move(material), error_.density);
+    if (error_.density != 1) material = with_density_times(error_.density, std::move(material));
     return scene.add_material({std::move(material), Rgb(0.0f), false});
   }
   void object(Mesh mesh, const Affine& place, uint32_t material) {

@@ -10,6 +10,7 @@
 #include "math/sphere/warp.h"
 #include "render/render.h"
 #include "scene/scene.h"
+#include "support/changed_material.h"
 
 namespace velour::test {
 
@@ -17,19 +18,31 @@ namespace velour::test {
 class Lambert : public Material {
  public:
   explicit Lambert(float albedo) : albedo_(albedo) {}
-  void prepare(const Vec3& wv, const SurfaceSite& /*site*/, PreparedBrdf& point) const override { point.wv = wv; }
-  void eval(const PreparedBrdf&, const DirectionBatch& wl, RgbBatch& f, ScalarBatch& pdf) const override {
-    for (int i = 0; i < wl.count; ++i) {
-      f.set(i, Rgb(wl.z[i] > 0 ? albedo_ / kPi : 0.0f));
-      pdf.v[i] = pdf_cosine_hemisphere(wl.get(i));
-    }
-  }
-  void sample(const PreparedBrdf&, std::span<const Vec2> u, DirectionBatch& wl) const override {
-    wl.fill(u, sample_cosine_hemisphere);
+  const PreparedBrdf* prepare(const Vec3& /*wv*/, const SurfaceSite& site, const PrepareOptions& /*options*/,
+                              ScratchArena& arena) const override {
+    return arena.make<Prepared>(albedo(site));
   }
   bool isotropic() const override { return true; }
 
+ protected:
+  virtual float albedo(const SurfaceSite& /*site*/) const { return albedo_; }
+
  private:
+  class Prepared final : public PreparedBrdf {
+   public:
+    explicit Prepared(float albedo) : albedo_(albedo) {}
+    void eval(const DirectionBatch& wl, RgbBatch& f, ScalarBatch& pdf) const override {
+      for (int i = 0; i < wl.count; ++i) {
+        f.set(i, Rgb(wl.z[i] > 0 ? albedo_ / kPi : 0.0f));
+        pdf.v[i] = pdf_cosine_hemisphere(wl.get(i));
+      }
+    }
+    void sample(std::span<const Vec2> u, DirectionBatch& wl) const override { wl.fill(u, sample_cosine_hemisphere); }
+
+   private:
+    float albedo_;
+  };
+
   float albedo_;
 };
 
@@ -44,11 +57,12 @@ class ThinLambert : public Lambert {
 };
 
 /// Lambert, but a third of its directions has a value that is not a number.
-class BrokenLambert : public Lambert {
+class BrokenLambert : public ChangedMaterial {
  public:
-  using Lambert::Lambert;
-  void eval(const PreparedBrdf& point, const DirectionBatch& wl, RgbBatch& f, ScalarBatch& pdf) const override {
-    Lambert::eval(point, wl, f, pdf);
+  explicit BrokenLambert(float albedo) : ChangedMaterial(std::make_shared<Lambert>(albedo), break_some) {}
+
+ private:
+  static void break_some(const DirectionBatch& wl, RgbBatch& f, ScalarBatch& /*pdf*/) {
     for (int i = 0; i < wl.count; ++i) {
       if (wl.x[i] > 0.3f) f.g[i] = std::numeric_limits<float>::quiet_NaN();
     }

@@ -30,41 +30,14 @@ class ParametricMaterial : public Material {
     if (serves(*tables)) tables_ = tables;
   }
 
-  void prepare(const Vec3& wv, const SurfaceSite& /*site*/, PreparedBrdf& point) const override {
-    point.wv = wv;
-    evaluate(wv, point.warped);
-    if (tables_ == nullptr) return draw_plain_lobes(point.warped, kDefensiveShare);
-    tables_->prepare(wv, point.table);
-  }
-
-  void eval(const PreparedBrdf& point, const DirectionBatch& wl, RgbBatch& f, ScalarBatch& pdf) const override {
-    if (tables_ == nullptr) eval_warped(point.warped, wl, f, pdf);
-    value(point.wv, point.warped, wl, f);
-    if (tables_ != nullptr) TableSampler::pdf(point.table, wl, pdf);
-  }
-
-  Reflection eval_one(const PreparedBrdf& point, const Vec3& wl) const override {
-    Reflection result{value(point.wv, point.warped, wl), 0};
-    Rgb unused;
-    if (tables_ == nullptr) eval_warped(point.warped, wl, unused, result.pdf);
-    if (tables_ != nullptr) result.pdf = TableSampler::pdf(point.table, wl);
-    return result;
-  }
-
-  void sample(const PreparedBrdf& point, std::span<const Vec2> u, DirectionBatch& wl) const override {
-    if (tables_ == nullptr) return sample_warped(point.warped, u, wl);
-    TableSampler::sample(point.table, u, wl);
-  }
-
-  bool proposal_lobes(const PreparedBrdf& point, ProposalLobes& lobes) const override {
-    nodes_.propose(point.wv, lobes);
-    return true;
-  }
+  const PreparedBrdf* prepare(const Vec3& wv, const SurfaceSite& site, const PrepareOptions& options,
+                              ScratchArena& arena) const override;
 
   std::shared_ptr<const TableSampler> tables() const override { return tables_; }
   bool isotropic() const override { return values_.isotropic(); }
+  void propose(const Vec3& wv, ProposalLobes& lobes) const { nodes_.propose(wv, lobes); }
 
- protected:
+  /// The lobes at `wv`.
   void evaluate(const Vec3& wv, WarpedMixture& mixture) const {
     if (table_.covers(wv)) return table_.evaluate(wv, mixture);
     values_.evaluate(wv, ViewPlace(wv), mixture);
@@ -117,12 +90,58 @@ class ParametricMaterial : public Material {
   std::shared_ptr<const TableSampler> tables_;
 };
 
+/// The lobes at a view. Samples come from the tables, otherwise from the lobes.
+class PreparedParametric final : public PreparedBrdf {
+ public:
+  PreparedParametric(const ParametricMaterial& material, const TableSampler* tables, const Vec3& wv)
+      : material_(material), tables_(tables), wv_(wv) {
+    material.evaluate(wv, lobes_);
+    if (tables == nullptr) draw_plain_lobes(lobes_, kDefensiveShare);
+    if (tables != nullptr) tables->prepare(wv, table_);
+  }
+
+  void eval(const DirectionBatch& wl, RgbBatch& f, ScalarBatch& pdf) const override {
+    if (tables_ == nullptr) eval_warped(lobes_, wl, f, pdf);
+    material_.value(wv_, lobes_, wl, f);
+    if (tables_ != nullptr) TableSampler::pdf(table_, wl, pdf);
+  }
+
+  Reflection eval_one(const Vec3& wl) const override {
+    Reflection result{material_.value(wv_, lobes_, wl), 0};
+    Rgb unused;
+    if (tables_ == nullptr) eval_warped(lobes_, wl, unused, result.pdf);
+    if (tables_ != nullptr) result.pdf = TableSampler::pdf(table_, wl);
+    return result;
+  }
+
+  void sample(std::span<const Vec2> u, DirectionBatch& wl) const override {
+    if (tables_ == nullptr) return sample_warped(lobes_, u, wl);
+    TableSampler::sample(table_, u, wl);
+  }
+
+  bool proposal_lobes(ProposalLobes& lobes) const override {
+    material_.propose(wv_, lobes);
+    return true;
+  }
+
+ private:
+  const ParametricMaterial& material_;
+  const TableSampler* tables_;  // null: none
+  Vec3 wv_;
+  TablePoint table_;
+  WarpedMixture lobes_;
+};
+
+const PreparedBrdf* ParametricMaterial::prepare(const Vec3& wv, const SurfaceSite& /*site*/,
+                                                const PrepareOptions& /*options*/, ScratchArena& arena) const {
+  return arena.make<PreparedParametric>(*this, tables_.get(), wv);
+}
+
 /// f is averaged over both orders of a direction pair.
 class SymmetricMaterial final : public ParametricMaterial {
  public:
   using ParametricMaterial::ParametricMaterial;
 
- protected:
   void value(const Vec3& wv, const WarpedMixture& mixture, const DirectionBatch& wl, RgbBatch& f) const override {
     eval_warped(mixture, wl, f);
     for (int i = 0; i < wl.count; ++i) f.set(i, mean(wv, wl.get(i), f.get(i)));
@@ -140,30 +159,53 @@ class SymmetricMaterial final : public ParametricMaterial {
   }
 };
 
-/// f of a measurement, sampled from a model.
+/// f of a measurement; samples and densities of a model.
+class PreparedMeasured final : public PreparedBrdf {
+ public:
+  /// `proposal`: the model at the view; null: `tables` are sampled.
+  PreparedMeasured(const Measurement& measurement, const ParametricMaterial& model, const Vec3& wv,
+                   const PreparedBrdf* proposal, const TableSampler* tables)
+      : measurement_(measurement), model_(model), wv_(wv), proposal_(proposal) {
+    if (tables != nullptr) tables->prepare(wv, table_);
+  }
+
+  void eval(const DirectionBatch& wl, RgbBatch& f, ScalarBatch& pdf) const override {
+    if (proposal_ != nullptr) {
+      proposal_->eval(wl, f, pdf);  // its value is overwritten
+    } else {
+      TableSampler::pdf(table_, wl, pdf);
+    }
+    measured_values(measurement_, wv_, wl, f);
+  }
+
+  void sample(std::span<const Vec2> u, DirectionBatch& wl) const override {
+    if (proposal_ != nullptr) return proposal_->sample(u, wl);
+    TableSampler::sample(table_, u, wl);
+  }
+
+  bool proposal_lobes(ProposalLobes& lobes) const override {
+    model_.propose(wv_, lobes);
+    return true;
+  }
+
+ private:
+  const Measurement& measurement_;
+  const ParametricMaterial& model_;
+  Vec3 wv_;
+  const PreparedBrdf* proposal_;
+  TablePoint table_;
+};
+
 class MeasuredParametricMaterial final : public Material {
  public:
-  MeasuredParametricMaterial(std::shared_ptr<const Measurement> measurement, std::shared_ptr<const Material> proposal)
+  MeasuredParametricMaterial(std::shared_ptr<const Measurement> measurement,
+                             std::shared_ptr<const ParametricMaterial> proposal)
       : measurement_(std::move(measurement)), proposal_(std::move(proposal)), tables_(proposal_->tables()) {}
 
-  void prepare(const Vec3& wv, const SurfaceSite& /*site*/, PreparedBrdf& point) const override {
-    if (tables_ == nullptr) return proposal_->prepare(wv, point);
-    point.wv = wv;
-    tables_->prepare(wv, point.table);
-  }
-
-  void eval(const PreparedBrdf& point, const DirectionBatch& wl, RgbBatch& f, ScalarBatch& pdf) const override {
-    if (tables_ == nullptr) proposal_->eval(point, wl, f, pdf);  // its value is overwritten
-    if (tables_ != nullptr) TableSampler::pdf(point.table, wl, pdf);
-    measured_values(*measurement_, point.wv, wl, f);
-  }
-
-  void sample(const PreparedBrdf& point, std::span<const Vec2> u, DirectionBatch& wl) const override {
-    proposal_->sample(point, u, wl);
-  }
-
-  bool proposal_lobes(const PreparedBrdf& point, ProposalLobes& lobes) const override {
-    return proposal_->proposal_lobes(point, lobes);
+  const PreparedBrdf* prepare(const Vec3& wv, const SurfaceSite& site, const PrepareOptions& options,
+                              ScratchArena& arena) const override {
+    const PreparedBrdf* const proposal = tables_ == nullptr ? proposal_->prepare(wv, site, options, arena) : nullptr;
+    return arena.make<PreparedMeasured>(*measurement_, *proposal_, wv, proposal, tables_.get());
   }
 
   std::shared_ptr<const TableSampler> tables() const override { return tables_; }
@@ -171,12 +213,12 @@ class MeasuredParametricMaterial final : public Material {
 
  private:
   std::shared_ptr<const Measurement> measurement_;
-  std::shared_ptr<const Material> proposal_;
+  std::shared_ptr<const ParametricMaterial> proposal_;
   std::shared_ptr<const TableSampler> tables_;
 };
 
 template <class M>
-std::shared_ptr<const Material> with_draws(const ParametricBrdf& brdf) {
+std::shared_ptr<const M> with_draws(const ParametricBrdf& brdf) {
   const auto material = std::make_shared<M>(brdf);
   material->tabulate_draws();
   return material;
@@ -185,7 +227,8 @@ std::shared_ptr<const Material> with_draws(const ParametricBrdf& brdf) {
 }  // namespace
 
 std::shared_ptr<const Material> make_parametric_material(const std::shared_ptr<const ParametricBrdf>& brdf) {
-  return brdf->symmetric ? with_draws<SymmetricMaterial>(*brdf) : with_draws<ParametricMaterial>(*brdf);
+  if (brdf->symmetric) return with_draws<SymmetricMaterial>(*brdf);
+  return with_draws<ParametricMaterial>(*brdf);
 }
 
 std::shared_ptr<const Material> make_measured_material(std::shared_ptr<const Measurement> measurement,

@@ -51,56 +51,66 @@ std::shared_ptr<const TableSampler> tables_of(const PerViewBrdf& brdf, const Per
   return resolve(*tables, brdf, lobes) ? tables : nullptr;
 }
 
-/// Base class of both materials: samples the model and gives their density. Without usable tables it samples all lobes
-/// of the nearest views.
+/// Base class of both materials.
 class LobeSampledMaterial : public Material {
  public:
   LobeSampledMaterial(const PerViewBrdf& brdf, int neighbors)
       : lobes_(brdf, neighbors), tables_(tables_of(brdf, lobes_)) {}
 
-  void sample(const PreparedBrdf& point, std::span<const Vec2> u, DirectionBatch& wl) const override {
-    if (draws_lobes(point)) return sample_mixture(point.draws, u, wl);
-    TableSampler::sample(point.table, u, wl);
-  }
-
-  bool proposal_lobes(const PreparedBrdf& point, ProposalLobes& lobes) const override {
-    lobes_.propose(lobes_.place(point.wv), lobes);
-    return true;
-  }
-
+  const PerViewLobes& lobes() const { return lobes_; }
+  const TableSampler* usable_tables() const { return tables_.get(); }  // null: none
   std::shared_ptr<const TableSampler> tables() const override { return tables_; }
 
- protected:
-  void prepare_draws(const Vec3& wv, PreparedBrdf& point) const {
-    if (draws_lobes(point)) return lobes_.gather(lobes_.place_nearest(wv), point.draws);
-    tables_->prepare(wv, point.table);
-  }
-  void pdf_of_draws(const PreparedBrdf& point, const DirectionBatch& wl, ScalarBatch& pdf) const {
-    if (draws_lobes(point)) return eval_density(point.draws, wl, pdf);
-    TableSampler::pdf(point.table, wl, pdf);
-  }
-
-  PerViewLobes lobes_;
-
  private:
-  bool draws_lobes(const PreparedBrdf& point) const { return point.interpolated_draws || tables_ == nullptr; }
-
+  PerViewLobes lobes_;
   std::shared_ptr<const TableSampler> tables_;
 };
 
-class PerViewMaterial final : public LobeSampledMaterial {
+/// Samples and densities of the model at a view: of its tables, otherwise of all lobes of the nearest views.
+class PreparedProposal {
  public:
-  using LobeSampledMaterial::LobeSampledMaterial;
-
-  void prepare(const Vec3& wv, const SurfaceSite& /*site*/, PreparedBrdf& point) const override {
-    point.wv = wv;
-    lobes_.gather(lobes_.place(wv), point.lobes);
-    prepare_draws(wv, point);
+  PreparedProposal(const LobeSampledMaterial& material, const Vec3& wv, const PrepareOptions& options,
+                   ScratchArena& arena)
+      : lobes_(material.lobes()), wv_(wv) {
+    if (const TableSampler* const tables = material.usable_tables(); tables != nullptr && !options.interpolated_draws) {
+      tables->prepare(wv, table_);
+      return;
+    }
+    LobeMixture* const draws = arena.make<LobeMixture>();
+    lobes_.gather(lobes_.place_nearest(wv), *draws);
+    draws_ = draws;
   }
 
-  void eval(const PreparedBrdf& point, const DirectionBatch& wl, RgbBatch& f, ScalarBatch& pdf) const override {
-    eval_mixture(point.lobes, wl, f, pdf);  // its density is overwritten
-    pdf_of_draws(point, wl, pdf);
+  void sample(std::span<const Vec2> u, DirectionBatch& wl) const {
+    if (draws_ != nullptr) return sample_mixture(*draws_, u, wl);
+    TableSampler::sample(table_, u, wl);
+  }
+
+  void pdf(const DirectionBatch& wl, ScalarBatch& pdf) const {
+    if (draws_ != nullptr) return eval_density(*draws_, wl, pdf);
+    TableSampler::pdf(table_, wl, pdf);
+  }
+
+  void lobes(ProposalLobes& lobes) const { lobes_.propose(lobes_.place(wv_), lobes); }
+
+ private:
+  const PerViewLobes& lobes_;
+  Vec3 wv_;
+  const LobeMixture* draws_ = nullptr;  // null: the tables are sampled
+  TablePoint table_;
+};
+
+class PreparedPerView final : public PreparedBrdf {
+ public:
+  PreparedPerView(const LobeSampledMaterial& material, const Vec3& wv, const PrepareOptions& options,
+                  ScratchArena& arena)
+      : proposal_(material, wv, options, arena) {
+    material.lobes().gather(material.lobes().place(wv), lobes_);
+  }
+
+  void eval(const DirectionBatch& wl, RgbBatch& f, ScalarBatch& pdf) const override {
+    eval_mixture(lobes_, wl, f, pdf);  // its density is overwritten
+    proposal_.pdf(wl, pdf);
     for (int i = 0; i < wl.count; ++i) {
       // The lobes hold f cos, which is finite at the horizon where f is not. The floor keeps the quotient finite, and f
       // times the cosine equals the lobes' value down to cosines far below the precision of a float direction.
@@ -111,7 +121,52 @@ class PerViewMaterial final : public LobeSampledMaterial {
     }
   }
 
-  bool isotropic() const override { return lobes_.isotropic(); }
+  void sample(std::span<const Vec2> u, DirectionBatch& wl) const override { proposal_.sample(u, wl); }
+
+  bool proposal_lobes(ProposalLobes& lobes) const override {
+    proposal_.lobes(lobes);
+    return true;
+  }
+
+ private:
+  PreparedProposal proposal_;
+  LobeMixture lobes_;
+};
+
+class PerViewMaterial final : public LobeSampledMaterial {
+ public:
+  using LobeSampledMaterial::LobeSampledMaterial;
+
+  const PreparedBrdf* prepare(const Vec3& wv, const SurfaceSite& /*site*/, const PrepareOptions& options,
+                              ScratchArena& arena) const override {
+    return arena.make<PreparedPerView>(*this, wv, options, arena);
+  }
+
+  bool isotropic() const override { return lobes().isotropic(); }
+};
+
+class PreparedMeasuredByViews final : public PreparedBrdf {
+ public:
+  PreparedMeasuredByViews(const Measurement& measurement, const LobeSampledMaterial& material, const Vec3& wv,
+                          const PrepareOptions& options, ScratchArena& arena)
+      : measurement_(measurement), wv_(wv), proposal_(material, wv, options, arena) {}
+
+  void eval(const DirectionBatch& wl, RgbBatch& f, ScalarBatch& pdf) const override {
+    proposal_.pdf(wl, pdf);
+    measured_values(measurement_, wv_, wl, f);
+  }
+
+  void sample(std::span<const Vec2> u, DirectionBatch& wl) const override { proposal_.sample(u, wl); }
+
+  bool proposal_lobes(ProposalLobes& lobes) const override {
+    proposal_.lobes(lobes);
+    return true;
+  }
+
+ private:
+  const Measurement& measurement_;
+  Vec3 wv_;
+  PreparedProposal proposal_;
 };
 
 class MeasuredPerViewMaterial final : public LobeSampledMaterial {
@@ -119,14 +174,9 @@ class MeasuredPerViewMaterial final : public LobeSampledMaterial {
   MeasuredPerViewMaterial(std::shared_ptr<const Measurement> measurement, const PerViewBrdf& proposal, int neighbors)
       : LobeSampledMaterial(proposal, neighbors), measurement_(std::move(measurement)) {}
 
-  void prepare(const Vec3& wv, const SurfaceSite& /*site*/, PreparedBrdf& point) const override {
-    point.wv = wv;
-    prepare_draws(wv, point);
-  }
-
-  void eval(const PreparedBrdf& point, const DirectionBatch& wl, RgbBatch& f, ScalarBatch& pdf) const override {
-    pdf_of_draws(point, wl, pdf);
-    measured_values(*measurement_, point.wv, wl, f);
+  const PreparedBrdf* prepare(const Vec3& wv, const SurfaceSite& /*site*/, const PrepareOptions& options,
+                              ScratchArena& arena) const override {
+    return arena.make<PreparedMeasuredByViews>(*measurement_, *this, wv, options, arena);
   }
 
   bool isotropic() const override { return measurement_->isotropic(); }

@@ -291,6 +291,7 @@ HWY_AFTER_NAMESPACE();
 
 #include "base/parallel.h"
 #include "material/material.h"
+#include "math/sphere/frame.h"
 
 namespace velour {
 
@@ -347,12 +348,12 @@ TableSampler::TableSampler(bool isotropic, const Luminance& luminance)
 
 TableSampler::TableSampler(const Material& material)
     : TableSampler(material.isotropic(), [&](const Vec3& wv, auto wl, auto f_cos) {
-        const auto point = std::make_unique<PreparedBrdf>();
-        material.prepare(wv, *point);
+        ScratchArena arena;
+        const PreparedBrdf* const point = material.prepare(wv, arena);
         RgbBatch f;
         ScalarBatch unused;
         for (size_t k = 0; k < wl.size(); ++k) {
-          material.eval(*point, wl[k], f, unused);
+          point->eval(wl[k], f, unused);
           for (int i = 0; i < wl[k].count; ++i) f_cos[k].v[i] = luminance(f.get(i)) * std::max(wl[k].z[i], 0.0f);
         }
       }) {}

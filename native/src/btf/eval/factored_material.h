@@ -3,6 +3,7 @@
 
 #include <memory>
 
+#include "btf/eval/btf_light.h"
 #include "btf/model/factored_btf.h"
 #include "material/material.h"
 

@@ -1,7 +1,9 @@
 #include "btf/eval/measured_btf_material.h"
 
 #include <algorithm>
+#include <array>
 #include <cstdio>
+#include <span>
 #include <string>
 #include "base/error.h"
 #include "btf/measure/btf_measurement.h"
@@ -18,31 +20,47 @@ class MeasuredBtfMaterial final : public CosineBtfMaterial {
   MeasuredBtfMaterial(std::shared_ptr<const BtfTable> table, BtfLight light)
       : CosineBtfMaterial(light), table_(std::move(table)), two_sided_(table_->between.has_lower_side()) {}
 
-  void prepare(const Vec3& wv, const SurfaceSite& site, PreparedBrdf& point) const override {
-    point.wv = wv;
-    BtfTablePoint& p = point.btf_table;
-    p.count = 0;
-    p.back = site.back && two_sided_;
-    const auto views = table_->between.view(turned(wv, p.back));
+  const PreparedBrdf* prepare(const Vec3& wv, const SurfaceSite& site, const PrepareOptions& options,
+                              ScratchArena& arena) const override;
+
+  Vec2 texels() const override { return Vec2(table_->levels[0].width, table_->levels[0].height); }
+
+  const BtfTable& table() const { return *table_; }
+  bool two_sided() const { return two_sided_; }
+
+ private:
+  std::shared_ptr<const BtfTable> table_;
+  bool two_sided_;
+};
+
+class PreparedMeasuredBtf final : public PreparedCosineBtf {
+ public:
+  PreparedMeasuredBtf(const MeasuredBtfMaterial& material, const Vec3& wv, const SurfaceSite& site)
+      : material_(material), back_(site.back && material.two_sided()) {
+    const BtfTable& table = material.table();
+    const auto views = table.between.view(material.turned(wv, back_));
     if (!views) return;
-    visit_texels(site, table_->levels, [&](size_t level, uint64_t texel, float share) {
+    visit_texels(site, table.levels, [&](size_t level, uint64_t texel, float share) {
       for (size_t v = 0; v < 3; ++v) {
         const float weight = share * views->weight[v];
-        if (weight > 0) p.row[static_cast<size_t>(p.count++)] = {table_->row(level, views->index[v], texel), weight};
+        if (weight > 0) row_[count_++] = {table.row(level, views->index[v], texel), weight};
       }
     });
   }
 
-  Vec2 texels() const override { return Vec2(table_->levels[0].width, table_->levels[0].height); }
-
  private:
-  Rgb value(const PreparedBrdf& point, const Vec3& wl) const override {
-    const BtfTablePoint& p = point.btf_table;
-    const auto lights = wl.z > 0 ? table_->between.light(turned_light(wl, p.back)) : std::nullopt;
+  /// Footprint taps, two levels, four texels, three views.
+  static constexpr size_t kMaxRows = size_t{FootprintTaps::kMost} * 2 * 4 * 3;
+  struct Row {
+    const HalfBits* lights;  // [light][channel]
+    float weight;
+  };
+
+  Rgb value(const Vec3& wl) const override {
+    const auto lights = wl.z > 0 ? material_.table().between.light(material_.turned_light(wl, back_)) : std::nullopt;
     if (!lights) return Rgb(0.0f);
     Rgb sum(0.0f);
-    for (int i = 0; i < p.count; ++i) {
-      const BtfTablePoint::Row& row = p.row[static_cast<size_t>(i)];
+    for (const Row& row : std::span(row_.data(), count_)) {
       for (size_t l = 0; l < 3; ++l) sum += row.weight * lights->weight[l] * color(row.lights, lights->index[l]);
     }
     return glm::max(sum, Rgb(0.0f));
@@ -53,9 +71,16 @@ class MeasuredBtfMaterial final : public CosineBtfMaterial {
     return {finite_half_to_float(rgb[0]), finite_half_to_float(rgb[1]), finite_half_to_float(rgb[2])};
   }
 
-  std::shared_ptr<const BtfTable> table_;
-  bool two_sided_;
+  const MeasuredBtfMaterial& material_;
+  bool back_;
+  size_t count_ = 0;
+  std::array<Row, kMaxRows> row_;  // rows of lights to blend, and their weights
 };
+
+const PreparedBrdf* MeasuredBtfMaterial::prepare(const Vec3& wv, const SurfaceSite& site,
+                                                 const PrepareOptions& /*options*/, ScratchArena& arena) const {
+  return arena.make<PreparedMeasuredBtf>(*this, wv, site);
+}
 
 }  // namespace
 

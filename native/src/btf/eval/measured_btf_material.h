@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <memory>
 #include <vector>
+#include "btf/eval/btf_light.h"
 #include "btf/measure/btf_measurement.h"
 #include "btf/measure/half_floats.h"
 #include "btf/measure/pair_interpolation.h"
@@ -45,30 +46,34 @@ std::shared_ptr<const BtfTable> read_btf_table(const BtfMeasurement& btf, uint64
 std::shared_ptr<const Material> make_measured_btf_material(std::shared_ptr<const BtfTable> table,
                                                            BtfLight light = BtfLight::viewers_side);
 
-// Base class of BTF materials without lobes: cosine-weighted sampling.
+// Base classes of BTF materials without lobes: cosine-weighted sampling.
 
-/// A spatially varying material that evaluates one direction at a time.
-class CosineBtfMaterial : public Material {
+/// A BTF at a point, evaluated one direction at a time.
+class PreparedCosineBtf : public PreparedBrdf {
  public:
-  explicit CosineBtfMaterial(BtfLight light) : beyond_(light == BtfLight::other_side) {}
-
-  void eval(const PreparedBrdf& point, const DirectionBatch& wl, RgbBatch& f, ScalarBatch& pdf) const final {
+  void eval(const DirectionBatch& wl, RgbBatch& f, ScalarBatch& pdf) const final {
     for (int i = 0; i < wl.count; ++i) {
-      f.set(i, value(point, wl.get(i)));
+      f.set(i, value(wl.get(i)));
       pdf.v[i] = pdf_cosine_hemisphere(wl.get(i));
     }
   }
 
-  void sample(const PreparedBrdf& /*point*/, std::span<const Vec2> u, DirectionBatch& wl) const final {
+  void sample(std::span<const Vec2> u, DirectionBatch& wl) const final {
     wl.fill(u, [](const Vec2& v) { return sample_cosine_hemisphere(v); });
   }
 
+ protected:
+  ~PreparedCosineBtf() = default;
+  /// f, 0 where wl.z <= 0.
+  virtual Rgb value(const Vec3& wl) const = 0;
+};
+
+class CosineBtfMaterial : public Material {
+ public:
+  explicit CosineBtfMaterial(BtfLight light) : beyond_(light == BtfLight::other_side) {}
+
   bool varies() const final { return true; }
   bool isotropic() const final { return false; }
-
- protected:
-  /// f, 0 where wl.z <= 0.
-  virtual Rgb value(const PreparedBrdf& point, const Vec3& wl) const = 0;
 
   /// `w` in the frame of a two-sided BTF; `back`: seen from below.
   static Vec3 turned(const Vec3& w, bool back) { return {w.x, w.y, back ? -w.z : w.z}; }

@@ -4,6 +4,8 @@
 #include <memory>
 #include <optional>
 #include "btf/eval/btf_draws.h"
+#include "btf/eval/btf_light.h"
+#include "btf/eval/measured_btf_material.h"
 #include "btf/model/srbf_btf.h"
 #include "btf/model/tensor_btf.h"
 #include "material/footprint_taps.h"
@@ -62,10 +64,9 @@ class BtfLooks {
   std::array<typename Evaluator::Light, BtfLook::kBroad> broad_;
 };
 
-/// `Evaluator`: SrbfEvaluator or a class with the same members; `kPoint`: its point in PreparedBrdf. Texture
-/// coordinates are in tiles: the BTF repeats at every integer. Light directions on the other side are passed mirrored,
-/// with wl.z > 0.
-template <typename Evaluator, typename Evaluator::Point PreparedBrdf::*kPoint>
+/// `Evaluator`: SrbfEvaluator or a class with the same members. Texture coordinates are in tiles: the BTF repeats at
+/// every integer. Light directions on the other side are passed mirrored, with wl.z > 0.
+template <typename Evaluator>
 class SidedBtfMaterial final : public Material {
  public:
   template <typename Btf>
@@ -76,48 +77,11 @@ class SidedBtfMaterial final : public Material {
     }
   }
 
-  void prepare(const Vec3& wv, const SurfaceSite& site, PreparedBrdf& point) const override {
-    point.wv = wv;
-    typename Evaluator::Point& p = point.*kPoint;
+  const PreparedBrdf* prepare(const Vec3& wv, const SurfaceSite& site, const PrepareOptions& options,
+                              ScratchArena& arena) const override {
     const auto& side = side_of(site);
-    p.seen = side.has_value();
-    if (!p.seen) return;
-    evaluator_.begin(side->number, wv, p);
-    const FootprintTaps taps = footprint_taps(site.footprint, evaluator_.texels());
-    for (int i = 0; i < taps.count; ++i) {
-      evaluator_.add(taps.place(site.uv, i), taps.level, 1.0f / static_cast<float>(taps.count), p);
-    }
-    evaluator_.finish(p);
-    if (point.value_only) return;
-    BtfLook look{wv, evaluator_.normal(p), {}, 0};
-    if (side->draws.asks()) look.broad = side->table.look_up(site.uv, taps.level, wv);
-    if (side->draws.asks_mirror(wv, look.normal)) look.mirror = side->looks.mirror(evaluator_, p, look.normal);
-    side->draws.fill(look, point.warped);
-  }
-
-  void eval(const PreparedBrdf& point, const DirectionBatch& wl, RgbBatch& f, ScalarBatch& pdf) const override {
-    if (!(point.*kPoint).seen) return eval_unseen(wl, f, pdf);
-    eval_density(point, wl, f, pdf);
-    for (int i = 0; i < wl.count; ++i) f.set(i, value(point, wl.get(i)));
-  }
-
-  Reflection eval_one(const PreparedBrdf& point, const Vec3& wl) const override {
-    if (!(point.*kPoint).seen) return {Rgb(0.0f), pdf_cosine_hemisphere(wl)};
-    Reflection result{};
-    if (!point.value_only) eval_warped(point.warped, wl, result.f, result.pdf);
-    result.f = value(point, wl);
-    return result;
-  }
-
-  void sample(const PreparedBrdf& point, std::span<const Vec2> u, DirectionBatch& wl) const override {
-    if ((point.*kPoint).seen) return sample_warped(point.warped, u, wl);
-    wl.fill(u, [](const Vec2& v) { return sample_cosine_hemisphere(v); });
-  }
-
-  bool proposal_lobes(const PreparedBrdf& point, ProposalLobes& lobes) const override {
-    if (!(point.*kPoint).seen) return false;
-    BtfDraws::propose(point.warped, lobes);
-    return true;
+    if (!side) return arena.make<PreparedUnseen>();
+    return arena.make<Prepared>(evaluator_, *side, wv, site, options.value_only);
   }
 
   bool varies() const override { return true; }
@@ -143,26 +107,64 @@ class SidedBtfMaterial final : public Material {
     BtfLookTable table;  // empty unless draws.asks()
   };
 
+  class Prepared final : public PreparedBrdf {
+   public:
+    Prepared(const Evaluator& evaluator, const Side& side, const Vec3& wv, const SurfaceSite& site, bool value_only)
+        : evaluator_(evaluator), value_only_(value_only) {
+      evaluator.begin(side.number, wv, point_);
+      const FootprintTaps taps = footprint_taps(site.footprint, evaluator.texels());
+      for (int i = 0; i < taps.count; ++i) {
+        evaluator.add(taps.place(site.uv, i), taps.level, 1.0f / static_cast<float>(taps.count), point_);
+      }
+      evaluator.finish(point_);
+      if (value_only) return;
+      BtfLook look{wv, evaluator.normal(point_), {}, 0};
+      if (side.draws.asks()) look.broad = side.table.look_up(site.uv, taps.level, wv);
+      if (side.draws.asks_mirror(wv, look.normal)) look.mirror = side.looks.mirror(evaluator, point_, look.normal);
+      side.draws.fill(look, density_);
+    }
+
+    void eval(const DirectionBatch& wl, RgbBatch& f, ScalarBatch& pdf) const override {
+      if (value_only_) {
+        std::fill_n(pdf.v, wl.count, 0.0f);
+      } else {
+        eval_warped(density_, wl, f, pdf);  // its value, 0, is overwritten
+      }
+      for (int i = 0; i < wl.count; ++i) f.set(i, value(wl.get(i)));
+    }
+
+    Reflection eval_one(const Vec3& wl) const override {
+      Reflection result{};
+      if (!value_only_) eval_warped(density_, wl, result.f, result.pdf);
+      result.f = value(wl);
+      return result;
+    }
+
+    void sample(std::span<const Vec2> u, DirectionBatch& wl) const override { sample_warped(density_, u, wl); }
+
+    bool proposal_lobes(ProposalLobes& lobes) const override {
+      if (value_only_) return false;
+      BtfDraws::propose(density_, lobes);
+      return true;
+    }
+
+   private:
+    Rgb value(const Vec3& wl) const { return wl.z > 0 ? evaluator_.value(point_, wl) : Rgb(0.0f); }
+
+    const Evaluator& evaluator_;
+    bool value_only_;
+    WarpedMixture density_;  // unless value_only_
+    typename Evaluator::Point point_;
+  };
+
+  /// Where the BTF was not fitted: black.
+  class PreparedUnseen final : public PreparedCosineBtf {
+    Rgb value(const Vec3& /*wl*/) const override { return Rgb(0.0f); }
+  };
+
   /// A one-sided BTF shows the same side from behind.
   const std::optional<Side>& side_of(const SurfaceSite& site) const {
     return sides_[site.back && (sides_[1] || light_ == BtfLight::other_side)];
-  }
-
-  Rgb value(const PreparedBrdf& point, const Vec3& wl) const {
-    return wl.z > 0 ? evaluator_.value(point.*kPoint, wl) : Rgb(0.0f);
-  }
-
-  /// Sets f to the mixture's value, 0; the caller overwrites it.
-  static void eval_density(const PreparedBrdf& point, const DirectionBatch& wl, RgbBatch& f, ScalarBatch& pdf) {
-    if (!point.value_only) return eval_warped(point.warped, wl, f, pdf);
-    std::fill_n(pdf.v, wl.count, 0.0f);
-  }
-
-  static void eval_unseen(const DirectionBatch& wl, RgbBatch& f, ScalarBatch& pdf) {
-    for (int i = 0; i < wl.count; ++i) {
-      f.set(i, Rgb(0.0f));
-      pdf.v[i] = pdf_cosine_hemisphere(wl.get(i));
-    }
   }
 
   Evaluator evaluator_;
@@ -184,43 +186,15 @@ std::shared_ptr<const Material> make_tensor_btf_material(std::shared_ptr<const T
 
 // Material of a BTF with an open structure, on a surface whose rays intersect the structure's silhouette themselves.
 
-/// f of the solid part, from a BTF whose values average solid and empty parts. Texels beyond a silhouette hold light of
-/// the structure inside; it is folded back over the silhouette, so that rays that hit the structure gather exactly all
-/// of it.
+/// f of the solid part, from a BTF whose values average solid and empty parts, or from a material that contains one.
+/// Texels beyond a silhouette hold light of the structure inside; it is folded back over the silhouette, so that rays
+/// that hit the structure gather exactly all of it.
 class HoledBtfMaterial final : public Material {
  public:
   explicit HoledBtfMaterial(std::shared_ptr<const Material> btf) : btf_(std::move(btf)) {}
 
-  void prepare(const Vec3& wv, const SurfaceSite& site, PreparedBrdf& point) const override {
-    btf_->prepare(wv, site, point);
-    point.folded = site.beyond_outline != Vec2(0.0f);
-    if (!point.folded) return;
-    if (!point.beyond) point.beyond = std::make_unique<PreparedBrdf>();
-    point.beyond->value_only = true;
-    SurfaceSite beyond = site;
-    beyond.uv += site.beyond_outline;
-    btf_->prepare(wv, beyond, *point.beyond);
-  }
-
-  void eval(const PreparedBrdf& point, const DirectionBatch& wl, RgbBatch& f, ScalarBatch& pdf) const override {
-    if (point.folded) btf_->eval(*point.beyond, wl, f, pdf);
-    RgbBatch inside;
-    btf_->eval(point, wl, inside, pdf);
-    for (int i = 0; i < wl.count; ++i) f.set(i, inside.get(i) + (point.folded ? f.get(i) : Rgb(0.0f)));
-  }
-  Reflection eval_one(const PreparedBrdf& point, const Vec3& wl) const override {
-    Reflection sum = btf_->eval_one(point, wl);
-    if (point.folded) sum.f += btf_->eval_one(*point.beyond, wl).f;
-    return sum;
-  }
-
-  void sample(const PreparedBrdf& point, std::span<const Vec2> u, DirectionBatch& wl) const override {
-    btf_->sample(point, u, wl);
-  }
-  Vec3 sample_one(const PreparedBrdf& point, const Vec2& u) const override { return btf_->sample_one(point, u); }
-  bool proposal_lobes(const PreparedBrdf& point, ProposalLobes& lobes) const override {
-    return btf_->proposal_lobes(point, lobes);
-  }
+  const PreparedBrdf* prepare(const Vec3& wv, const SurfaceSite& site, const PrepareOptions& options,
+                              ScratchArena& arena) const override;
 
   bool varies() const override { return true; }
   bool transmits() const override { return btf_->transmits(); }

@@ -76,9 +76,9 @@ BtfValue value_of(const std::shared_ptr<const Model>& model) {
   if (const auto* tensors = std::get_if<TensorBtf>(&model->body)) {
     return value_by(std::make_shared<const TensorEvaluator>(std::shared_ptr<const TensorBtf>(model, tensors)));
   }
-  return [material = make_material(model, 0), point = std::make_shared<PreparedBrdf>()](const BtfQuery& query) {
-    material->prepare(query.pair.wv, {.uv = query.place}, *point);
-    return material->eval_one(*point, query.pair.wl).f;
+  return [material = make_material(model, 0), arena = std::make_shared<ScratchArena>()](const BtfQuery& query) {
+    arena->reset();
+    return material->prepare(query.pair.wv, {.uv = query.place}, {}, *arena)->eval_one(query.pair.wl).f;
   };
 }
 

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "btf/fit/tensor/direction_bases.h"
-#include "btf/measure/bilinear_texels.h"
+#include "image/bilinear_texels.h"
 
 namespace velour {
 

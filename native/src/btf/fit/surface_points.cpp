@@ -1,7 +1,7 @@
 #include "btf/fit/surface_points.h"
 
-#include "btf/measure/bilinear_texels.h"
 #include "btf/model/srbf_btf.h"
+#include "image/bilinear_texels.h"
 #include "math/sphere/random.h"
 
 namespace velour {

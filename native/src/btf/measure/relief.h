@@ -4,8 +4,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "btf/measure/bilinear_texels.h"
 #include "btf/measure/relief_march.h"
+#include "image/bilinear_texels.h"
 #include "math/sphere/vec.h"
 
 namespace velour {

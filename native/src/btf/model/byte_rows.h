@@ -3,7 +3,7 @@
 
 #include <cstdint>
 
-#include "btf/measure/bilinear_texels.h"
+#include "image/bilinear_texels.h"
 
 namespace velour {
 

@@ -3,9 +3,9 @@
 #include <cmath>
 #include <optional>
 
-#include "btf/measure/bilinear_texels.h"
 #include "btf/measure/relief.h"
 #include "btf/model/tensor_btf.h"
+#include "image/bilinear_texels.h"
 #include "math/sphere/direction_mesh.h"
 
 namespace velour {

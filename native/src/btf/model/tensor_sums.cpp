@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "btf/measure/bilinear_texels.h"
+#include "image/bilinear_texels.h"
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "btf/model/tensor_sums.cpp"

@@ -125,9 +125,10 @@ void PathVertices::go_on(uint32_t depth) {
     const uint64_t key = mix64(keys_[path / sampling_.samples] + depth + 1);
     Vec2 u;
     sobol_points(key, path % sampling_.samples, {&u, 1});
-    from.vertex.surface->material->prepare(from.vertex.wv, from.vertex.site, prepared_);
-    const auto continuation = sample_continuation(from.vertex, prepared_, SurfaceSampling::material,
-                                                  tile_.scene().rec709_to_working(), from.throughput, u);
+    arena_.reset();
+    const PreparedSurface prepared(SurfaceSampling::material, from.vertex, {}, arena_);
+    const auto continuation =
+        sample_continuation(from.vertex, prepared, tile_.scene().rec709_to_working(), from.throughput, u);
     if (!continuation || !std::isfinite(luminance(continuation->throughput))) continue;
     rays_.push_back(continuation->ray);
     throughput_.push_back(continuation->throughput);

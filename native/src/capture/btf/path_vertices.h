@@ -189,7 +189,7 @@ class PathVertices {
   std::vector<Hit> hits_;
   std::vector<uint64_t> ray_keys_;
   std::vector<uint64_t> order_;  // Morton code of the hit, then the ray's index
-  PreparedBrdf prepared_;
+  ScratchArena arena_;
 };
 
 }  // namespace velour

@@ -81,10 +81,11 @@ std::span<const uint8_t> bytes_of(std::span<const T> values) {
 /// f for a few pairs of directions, which serves as the identity of a material.
 std::vector<Rgb> probe(const Material& material) {
   std::vector<Rgb> values;
-  PreparedBrdf point;
+  ScratchArena arena;
   for (const Vec3& wv : hemisphere_fibonacci(5)) {
-    material.prepare(wv, point);
-    for (const Vec3& wl : hemisphere_fibonacci(7)) values.push_back(material.eval_one(point, wl).f);
+    arena.reset();
+    const PreparedBrdf* const point = material.prepare(wv, arena);
+    for (const Vec3& wl : hemisphere_fibonacci(7)) values.push_back(point->eval_one(wl).f);
   }
   return values;
 }

@@ -151,16 +151,17 @@ void TexelShader::shade_path(const PathVertices& paths, uint32_t path, const Lig
 
 void TexelShader::shade_vertex(const PathVertex& at, const LightGroup& group, const ShadowMasks::Mask& mask) {
   if ((mask[0] | mask[1]) == 0) return;
-  at.vertex.surface->material->prepare(at.vertex.wv, at.vertex.site, prepared_);
+  arena_.reset();
+  const PreparedBrdf* const brdf = at.vertex.surface->material->prepare(at.vertex.wv, at.vertex.site, {}, arena_);
   for (uint32_t word = 0; word < mask.size(); ++word) {
     if (mask[word] == 0) continue;
     collect_lit(group, 64 * word, mask[word], at.vertex.frame, lit_);
-    add_lit(at);
+    add_lit(at, *brdf);
   }
 }
 
-void TexelShader::add_lit(const PathVertex& at) {
-  at.vertex.surface->material->eval(prepared_, lit_.wl, f_, pdf_);
+void TexelShader::add_lit(const PathVertex& at, const PreparedBrdf& brdf) {
+  brdf.eval(lit_.wl, f_, pdf_);
   for (int i = 0; i < lit_.wl.count; ++i) {
     const Rgb f = in_working_space(rec709_to_working_, at.vertex, f_.get(i));
     const Rgb value = at.throughput * f * lit_.weight[i];

@@ -77,12 +77,12 @@ class TexelShader {
  private:
   void shade_path(const PathVertices& paths, uint32_t path, const LightGroup& group, const ShadowMasks& masks);
   void shade_vertex(const PathVertex& at, const LightGroup& group, const ShadowMasks::Mask& mask);
-  void add_lit(const PathVertex& at);
+  void add_lit(const PathVertex& at, const PreparedBrdf& brdf);
 
   const TexelSampling sampling_;
   const std::optional<Mat3>& rec709_to_working_;
   Vec3 luminance_weights_;  // for colors in the working space
-  PreparedBrdf prepared_;
+  ScratchArena arena_;
   LitLights lit_;  // of one vertex
   RgbBatch f_;
   ScalarBatch pdf_;

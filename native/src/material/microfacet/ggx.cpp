@@ -5,23 +5,38 @@ namespace velour {
 
 namespace {
 
+class PreparedGgx final : public PreparedBrdf {
+ public:
+  PreparedGgx(const GgxParameters& parameters, const GgxSampler& sampler, const Vec3& wv)
+      : parameters_(parameters), sampler_(sampler), wv_(wv) {
+    sampler.prepare(wv, point_);
+  }
+
+  void eval(const DirectionBatch& wl, RgbBatch& f, ScalarBatch& pdf) const override {
+    for (int i = 0; i < wl.count; ++i) {
+      f.set(i, wl.z[i] > 0 ? ggx_model(parameters_, {.wl = wl.get(i), .wv = wv_}) : Rgb(0));
+    }
+    sampler_.pdf(point_, wl, pdf);
+  }
+
+  void sample(std::span<const Vec2> u, DirectionBatch& wl) const override {
+    wl.fill(u, [&](const Vec2& v) { return sampler_.sample(point_, v); });
+  }
+
+ private:
+  const GgxParameters& parameters_;
+  const GgxSampler& sampler_;
+  Vec3 wv_;
+  GgxPoint point_;
+};
+
 class GgxMaterial final : public Material {
  public:
   explicit GgxMaterial(const GgxParameters& parameters) : parameters_(parameters), sampler_(parameters) {}
 
-  void prepare(const Vec3& wv, const SurfaceSite& /*site*/, PreparedBrdf& point) const override {
-    sampler_.prepare(point.wv = wv, point.ggx);
-  }
-
-  void eval(const PreparedBrdf& point, const DirectionBatch& wl, RgbBatch& f, ScalarBatch& pdf) const override {
-    for (int i = 0; i < wl.count; ++i) {
-      f.set(i, wl.z[i] > 0 ? ggx_model(parameters_, {.wl = wl.get(i), .wv = point.wv}) : Rgb(0));
-    }
-    sampler_.pdf(point.ggx, wl, pdf);
-  }
-
-  void sample(const PreparedBrdf& point, std::span<const Vec2> u, DirectionBatch& wl) const override {
-    wl.fill(u, [&](const Vec2& v) { return sampler_.sample(point.ggx, v); });
+  const PreparedBrdf* prepare(const Vec3& wv, const SurfaceSite& /*site*/, const PrepareOptions& /*options*/,
+                              ScratchArena& arena) const override {
+    return arena.make<PreparedGgx>(parameters_, sampler_, wv);
   }
 
   bool isotropic() const override { return parameters_.alpha.x == parameters_.alpha.y; }

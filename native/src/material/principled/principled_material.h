@@ -25,10 +25,8 @@ class PrincipledMaterial final : public Material {
   explicit PrincipledMaterial(const PrincipledParameters& parameters, const PrincipledTextures& textures = {},
                               float alpha = 1);
 
-  void prepare(const Vec3& wv, const SurfaceSite& site, PreparedBrdf& point) const override;
-  void eval(const PreparedBrdf& point, const DirectionBatch& wl, RgbBatch& f, ScalarBatch& pdf) const override;
-  void sample(const PreparedBrdf& point, std::span<const Vec2> u, DirectionBatch& wl) const override;
-  float diffuse_share(const PreparedBrdf& point, const Vec3& wl, float pdf) const override;
+  const PreparedBrdf* prepare(const Vec3& wv, const SurfaceSite& site, const PrepareOptions& options,
+                              ScratchArena& arena) const override;
 
   bool isotropic() const override { return true; }
   bool varies() const override { return textures_.any(); }

@@ -52,11 +52,11 @@ float SurfaceRecorder::distance(const Vec3& world) const {
 }
 
 Rgb SurfaceAlbedo::estimate(const Vertex& vertex, PathNumbers numbers) {
-  const Material& material = *vertex.surface->material;
-  material.prepare(vertex.wv, vertex.site, prepared_);
+  arena_.reset();
+  const PreparedBrdf* const brdf = vertex.surface->material->prepare(vertex.wv, vertex.site, {}, arena_);
   Vec2 u[kDirections];
   numbers.points(Purpose::surface, numbers.ray() * kDirections, u);
-  material.sample(prepared_, u, drawn_);
+  brdf->sample(u, drawn_);
   wl_.count = 0;
   for (int i = 0; i < drawn_.count; ++i) {
     const Vec3 wl = drawn_.get(i);
@@ -64,7 +64,7 @@ Rgb SurfaceAlbedo::estimate(const Vertex& vertex, PathNumbers numbers) {
   }
   if (wl_.count == 0) return Rgb(0.0f);
   wl_.pad();
-  material.eval(prepared_, wl_, f_, pdf_);
+  brdf->eval(wl_, f_, pdf_);
   Rgb sum(0.0f);
   for (int i = 0; i < wl_.count; ++i) {
     const Rgb term = f_.get(i) * (std::abs(wl_.z[i]) / pdf_.v[i]);

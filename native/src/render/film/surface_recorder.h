@@ -24,7 +24,7 @@ class SurfaceAlbedo {
   static constexpr int kDirections = 4;
 
   const std::optional<Mat3>& rec709_to_working_;
-  PreparedBrdf prepared_;
+  ScratchArena arena_;
   DirectionBatch drawn_, wl_;
   RgbBatch f_;
   ScalarBatch pdf_;

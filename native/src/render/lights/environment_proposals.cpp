@@ -126,12 +126,12 @@ constexpr double kDiffuse = 0.9;  // minimum broad share of a diffuse material
 }  // namespace
 
 double broad_share(const Material& material) {
-  const auto point = std::make_unique<PreparedBrdf>();
+  ScratchArena arena;
   double broad = 0, all = 0;
   for (const float degrees : {10.0f, 30.0f, 50.0f, 70.0f}) {
     ProposalLobes lobes;
-    material.prepare(direction(radians_from(degrees), 0), *point);
-    if (!material.proposal_lobes(*point, lobes)) continue;
+    arena.reset();
+    if (!material.prepare(direction(radians_from(degrees), 0), arena)->proposal_lobes(lobes)) continue;
     const auto cosine = static_cast<double>(lobes.cosine * kPi);
     broad += cosine;
     all += cosine;

@@ -101,7 +101,7 @@ class Observer {
     std::vector<HitLight> light(kept.size());
     in_parallel(kept.size(), [&](size_t i) {
       const SeenHit& hit = kept[i].item;
-      light[i] = estimators_.local().estimate(hit.vertex, hit.bounces, kept[i].key);
+      light[i] = recorders_.local().record(hit.vertex, hit.bounces, kept[i].key);
     });
     for (size_t i = 0; i < kept.size(); ++i) append(kept[i].key, kept[i].item.vertex, light[i]);
   }
@@ -125,8 +125,8 @@ class Observer {
   tbb::task_arena arena_;
   tbb::enumerable_thread_specific<ViewTracer> tracers_{
       [this] { return ViewTracer(scene_, material_, grid_, paths_, SceneObservation::kHits); }};
-  tbb::enumerable_thread_specific<HitLightEstimator> estimators_{
-      [this] { return HitLightEstimator(scene_, lighting_, halves_); }};
+  tbb::enumerable_thread_specific<HitLightRecorder> recorders_{
+      [this] { return HitLightRecorder(scene_, lighting_, halves_); }};
   SceneObservation observation_;
 };
 

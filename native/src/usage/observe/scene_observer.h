@@ -29,10 +29,11 @@ void check_observer(const Scene& scene, uint32_t material, const ObserverOptions
 /// independent sample with probability proportional to weight (a hit may be kept more than once, with different light),
 /// and the earliest times of several frames are the same kind of sample from all of them.
 ///
-/// Each half of a kept hit's light holds kObservedDirections directions, half of them light-sampled (Lighting), half
-/// from the material's sampler, weighted by the balance heuristic [VG95]. Unoccluded environment, lights and emissive
-/// meshes count and, with remaining bounces, the radiance found by continuing a path. Delta lights are added one by
-/// one: all of up to 64, otherwise 64 sampled by contribution.
+/// Each half of a kept hit's light holds the renderer's own terms (DirectLight under `mis`, with f left out) of
+/// kObservedDirections directions, half of them light-sampled, half from the material's sampler: unoccluded
+/// environment, lights and emissive meshes. With remaining bounces, paths continue along the directions from the
+/// material and add what surfaces reflect. Delta lights are added one by one: all of up to 64, otherwise 64 sampled by
+/// contribution.
 ///
 /// The light density of a hit is the largest density d (Lighting, 1/sr) such that terms of density d or more make up at
 /// least kNoticeableLight of the luminance of the hit's irradiance. Light reflected by surfaces counts there and is

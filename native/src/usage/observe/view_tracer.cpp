@@ -78,10 +78,10 @@ void ViewTracer::see_surface(const Vertex& vertex, double weight, SurfaceDomain&
 
 void ViewTracer::go_on(const Vertex& vertex, const Path& path) {
   PathNumbers numbers = path.numbers;
-  vertex.surface->material->prepare(vertex.wv, vertex.site, prepared_);
-  const auto continuation =
-      sample_continuation(vertex, prepared_, SurfaceSampling::material, scene_.rec709_to_working(), path.throughput,
-                          numbers.point(Purpose::continuation));
+  arena_.reset();
+  const PreparedSurface prepared(SurfaceSampling::material, vertex, {}, arena_);
+  const auto continuation = sample_continuation(vertex, prepared, scene_.rec709_to_working(), path.throughput,
+                                                numbers.point(Purpose::continuation));
   if (!continuation || !std::isfinite(luminance(continuation->throughput))) return;
   numbers.next_vertex();
   next_.push_back({numbers, continuation->throughput, path.cell, vertex.cone});

@@ -74,7 +74,7 @@ class ViewTracer {
   std::vector<Ray> rays_, next_rays_;  // by path
   std::vector<Hit> hits_;
   std::vector<Rgb> passed_;  // by ray, if rays may change color
-  PreparedBrdf prepared_;
+  ScratchArena arena_;
 };
 
 }  // namespace velour

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "base/progress.h"
-#include "btf/measure/bilinear_texels.h"
+#include "image/bilinear_texels.h"
 #include "votf/eval/occlusion_volume.h"
 #include "votf/eval/visibility_mask.h"
 

@@ -38,12 +38,12 @@ std::vector<Named> materials() {
 
 /// Mean of f cos / pdf over samples: the estimator of a constant environment. `error` scales the density, for control.
 test::Estimate albedo_by_sampling(const Material& material, const Vec3& wv, double error = 1) {
-  PreparedBrdf point;
-  material.prepare(wv, point);
+  ScratchArena arena;
+  const PreparedBrdf* const point = material.prepare(wv, arena);
   test::RunningMean mean;
   for (uint64_t i = 0; i < 100'000; ++i) {
-    const Vec3 wl = material.sample_one(point, RandomStream(5, 0, i).next2());
-    const auto e = eval_one(material, point, wl);
+    const Vec3 wl = point->sample_one(RandomStream(5, 0, i).next2());
+    const auto e = eval_one(*point, wl);
     mean.add(wl.z > 0 ? e.f.g * wl.z / (e.pdf * error) : 0.0);
   }
   return mean.estimate();

@@ -1,9 +1,11 @@
 // Every material's sampler against the density that it claims: all angles of the view, all widths of the highlight.
+#include "brdf/eval/per_view_lobes.h"
 #include "brdf/eval/per_view_material.h"
 #include "material/microfacet/ggx_sampler.h"
 #include "material/principled/principled_material.h"
 #include "support/lobe_cells.h"
 #include "support/proof_materials.h"
+#include "support/statistics.h"
 
 namespace velour {
 namespace {
@@ -46,11 +48,11 @@ class LobeMaterialSampling : public ::testing::TestWithParam<LobeMaterialCase> {
 Sampler lobe_material_sampler(const test::LobeMaterial& kind, float bandwidth, float degrees, bool interpolated) {
   const auto material = kind.make(bandwidth);
   const Vec3 wv = test::view_at(degrees);
-  PreparedBrdf point;
-  point.interpolated_draws = true;
-  material->prepare(wv, point);
+  const auto draws = std::make_unique<LobeMixture>();
+  const PerViewLobes lobes(kind.model(bandwidth), 0);
+  lobes.gather(lobes.place_nearest(wv), *draws);
   Sampler sampler = test::material_sampler(material, wv, SurfaceSite::everywhere(), interpolated);
-  test::resolve_lobe(point.draws, test::sharpest_lobe(point.draws), sampler);
+  test::resolve_lobe(*draws, test::sharpest_lobe(*draws), sampler);
   if (!interpolated) sampler.refinements = {1, 3};  // below the horizon a table ends within a cell
   return sampler;
 }
@@ -74,15 +76,16 @@ TEST(InterpolatedViewsSampling, FollowsItsDensity) {
 double spread(const Material& material, bool interpolated) {
   constexpr int kViews = 40, kSamples = 1000;
   double sum = 0;
-  PreparedBrdf point;
-  point.interpolated_draws = interpolated;
+  ScratchArena arena;
   for (int v = 0; v < kViews; ++v) {
     const float sine = std::sqrt((static_cast<float>(v) + 0.5f) / kViews);
-    material.prepare(direction(std::asin(sine), 0.4f), point);
+    arena.reset();
+    const PreparedBrdf* const point =
+        material.prepare(direction(std::asin(sine), 0.4f), {}, {.interpolated_draws = interpolated}, arena);
     test::RunningMean mean;
     for (uint64_t i = 0; i < kSamples; ++i) {
-      const Vec3 wl = material.sample_one(point, RandomStream(5, static_cast<uint64_t>(v), i).next2());
-      const auto e = test::eval_one(material, point, wl);
+      const Vec3 wl = point->sample_one(RandomStream(5, static_cast<uint64_t>(v), i).next2());
+      const auto e = test::eval_one(*point, wl);
       mean.add(wl.z > 0 ? static_cast<double>(luminance(e.f) * wl.z / e.pdf) : 0.0);
     }
     sum += mean.variance() / (mean.mean() * mean.mean());

@@ -9,10 +9,15 @@ namespace velour {
 namespace {
 
 template <typename Body>
-std::shared_ptr<const Material> rougher(Body body, float roughness) {
+std::shared_ptr<const Model> rougher_model(Body body, float roughness) {
   Model model;
   model.body = std::move(body);
-  return make_material(std::make_shared<const Model>(roughened(model, roughness)), 0);
+  return std::make_shared<const Model>(roughened(model, roughness));
+}
+
+std::shared_ptr<const ParametricBrdf> rougher_brdf(ParametricBrdf brdf, float roughness) {
+  const auto model = rougher_model(std::move(brdf), roughness);
+  return {model, &std::get<ParametricBrdf>(model->body)};
 }
 
 struct SamplingCase {
@@ -37,15 +42,15 @@ class RoughenedSampling : public ::testing::TestWithParam<SamplingCase> {};
 
 TEST_P(RoughenedSampling, OfAParametricModelFollowsItsDensity) {
   const auto [bandwidth, roughness, degrees] = GetParam();
-  const auto material = rougher(test::parametric_model(true, test::highlight_recipe(bandwidth)), roughness);
-  test::expect_proven(test::warped_sampler(material, test::view_at(degrees)), "rougher-parametric");
+  const auto brdf = rougher_brdf(test::parametric_model(true, test::highlight_recipe(bandwidth)), roughness);
+  test::expect_proven(test::warped_sampler(brdf, test::view_at(degrees)), "rougher-parametric");
 }
 
 TEST_P(RoughenedSampling, OfAPerViewModelFollowsItsDensity) {
   const auto [bandwidth, roughness, degrees] = GetParam();
   const auto model = test::highlight_model(Kernel::gaussian, bandwidth, test::meridian_views(), true);
   const Vec3 wv = test::view_at(degrees);
-  test::Sampler sampler = test::material_sampler(rougher(model, roughness), wv);
+  test::Sampler sampler = test::material_sampler(make_material(rougher_model(model, roughness), 0), wv);
   sampler.axis = test::mirror(wv);
   sampler.concentration = std::min(static_cast<double>(bandwidth), light_bandwidth_of_roughness(roughness, wv.z));
   test::expect_proven(sampler, "rougher-scattered");
@@ -54,9 +59,9 @@ TEST_P(RoughenedSampling, OfAPerViewModelFollowsItsDensity) {
 INSTANTIATE_TEST_SUITE_P(All, RoughenedSampling, ::testing::ValuesIn(sampling_cases()));
 
 TEST(RoughenedSamplingAnisotropic, FollowsItsDensity) {
-  const auto material = rougher(test::parametric_model(false, test::highlight_recipe(1e4f), 6), 0.3f);
+  const auto brdf = rougher_brdf(test::parametric_model(false, test::highlight_recipe(1e4f), 6), 0.3f);
   for (const float degrees : {20.0f, 70.0f}) {
-    test::expect_proven(test::warped_sampler(material, test::view_at(degrees)), "rougher-anisotropic");
+    test::expect_proven(test::warped_sampler(brdf, test::view_at(degrees)), "rougher-anisotropic");
   }
 }
 
@@ -64,7 +69,7 @@ TEST(RoughenedSamplingAnisotropic, FollowsItsDensity) {
 TEST(RoughenedSamplingControl, ARoughnessOffByTwoPercentIsSeen) {
   const auto sampler = [](float roughness) {
     const test::LobeRecipe lone{LobeSpace::half, 1e5f, Rgb(1)};
-    return test::warped_sampler(rougher(test::parametric_model(true, {lone}), roughness), test::view_at(50));
+    return test::warped_sampler(rougher_brdf(test::parametric_model(true, {lone}), roughness), test::view_at(50));
   };
   EXPECT_GT(test::p_value(sampler(0.3f), sampler(0.3f)), 1e-4);
   EXPECT_LT(test::p_value(sampler(0.3f), sampler(0.306f)), 1e-6);

@@ -47,7 +47,7 @@ class SidedBtfSampling : public ::testing::TestWithParam<Look> {};
 
 TEST_P(SidedBtfSampling, FollowsItsDensity) {
   const Look& look = GetParam();
-  test::expect_proven(test::warped_sampler(look.glossy(), test::view_at(look.degrees), look.site), look.name);
+  test::expect_proven(test::highlight_sampler(look.glossy(), test::view_at(look.degrees), look.site), look.name);
 }
 
 INSTANTIATE_TEST_SUITE_P(All, SidedBtfSampling, ::testing::ValuesIn(looks()));
@@ -55,25 +55,25 @@ INSTANTIATE_TEST_SUITE_P(All, SidedBtfSampling, ::testing::ValuesIn(looks()));
 template <typename Kind>
 class SidedBtfDraws : public ::testing::Test {
  protected:
-  static PreparedBrdf& prepared(const Material& material, float degrees, SurfaceSite site) {
-    static const auto point = std::make_unique<PreparedBrdf>();
-    material.prepare(test::view_at(degrees), site, *point);
-    return *point;
+  static const PreparedBrdf& prepared(const Material& material, float degrees, SurfaceSite site) {
+    static ScratchArena arena;
+    arena.reset();
+    return *material.prepare(test::view_at(degrees), site, {}, arena);
   }
 
   /// Mean of f cos / pdf over samples: the estimator of an even sky. `error` scales the density, for control.
-  static test::RunningMean albedo_by_sampling(const Material& material, const PreparedBrdf& point, double error = 1) {
+  static test::RunningMean albedo_by_sampling(const PreparedBrdf& point, double error = 1) {
     test::RunningMean mean;
     for (uint64_t i = 0; i < 50'000; ++i) {
-      const Vec3 wl = material.sample_one(point, RandomStream(5, 0, i).next2());
-      const auto e = material.eval_one(point, wl);
+      const Vec3 wl = point.sample_one(RandomStream(5, 0, i).next2());
+      const auto e = point.eval_one(wl);
       mean.add(wl.z > 0 ? static_cast<double>(e.f.g * wl.z / e.pdf) / error : 0.0);
     }
     return mean;
   }
 
-  static test::Estimate albedo_by_quadrature(const Material& material, const PreparedBrdf& point) {
-    const double albedo = test::albedo(material, point, 100, 400);
+  static test::Estimate albedo_by_quadrature(const PreparedBrdf& point) {
+    const double albedo = test::albedo(point, 100, 400);
     return {albedo, 2e-4 * albedo};  // f has creases where its directions are
   }
 
@@ -83,8 +83,8 @@ class SidedBtfDraws : public ::testing::Test {
     for (const float degrees : {0.0f, 45.0f, 75.0f, 89.0f}) {
       for (const bool back : {false, true}) {
         const PreparedBrdf& point = prepared(*material, degrees, {.uv = {0.3f, 0.6f}, .back = back});
-        tests.add(std::to_string(degrees) + (back ? " behind" : " front"),
-                  albedo_by_sampling(*material, point, error).estimate(), albedo_by_quadrature(*material, point));
+        tests.add(std::to_string(degrees) + (back ? " behind" : " front"), albedo_by_sampling(point, error).estimate(),
+                  albedo_by_quadrature(point));
       }
     }
     return tests;
@@ -103,7 +103,7 @@ TYPED_TEST(SidedBtfDraws, ControlADensityFivePercentTooHighIsSeen) { EXPECT_TRUE
 /// What the sampler would be were the mixture another: the proof above is not of the cosine alone.
 TYPED_TEST(SidedBtfDraws, ControlThePlaceNextToItHasAnotherDensity) {
   const auto at = [](float u, bool back) {
-    return test::warped_sampler(glossy_material<TypeParam>(), test::view_at(45), {.uv = {u, 0.6f}, .back = back});
+    return test::highlight_sampler(glossy_material<TypeParam>(), test::view_at(45), {.uv = {u, 0.6f}, .back = back});
   };
   EXPECT_GT(test::p_value(at(0.3f, false), at(0.3f, false)), 1e-4);
   EXPECT_LT(test::p_value(at(0.3f, false), at(0.8f, false)), 1e-6);
@@ -114,15 +114,15 @@ TYPED_TEST(SidedBtfDraws, FollowTheHighlight) {
   const Shared material = glossy_material<TypeParam>();
   const PreparedBrdf& point = this->prepared(*material, 45, {.uv = {0.3f, 0.6f}});
   ProposalLobes lobes;
-  ASSERT_TRUE(material->proposal_lobes(point, lobes));
+  ASSERT_TRUE(point.proposal_lobes(lobes));
   EXPECT_EQ(lobes.count, 8);  // seven broad ones and that of the half vector
   EXPECT_LT(lobes.cosine, 0.8f / kPi);
   test::RunningMean cosine;
   for (uint64_t i = 0; i < 50'000; ++i) {
     const Vec3 wl = sample_cosine_hemisphere(RandomStream(5, 0, i).next2());
-    cosine.add(static_cast<double>(material->eval_one(point, wl).f.g) * kPiD);
+    cosine.add(static_cast<double>(point.eval_one(wl).f.g) * kPiD);
   }
-  EXPECT_LT(this->albedo_by_sampling(*material, point).variance(), 0.5 * cosine.variance());
+  EXPECT_LT(this->albedo_by_sampling(point).variance(), 0.5 * cosine.variance());
 }
 
 }  // namespace

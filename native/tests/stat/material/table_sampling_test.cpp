@@ -66,15 +66,14 @@ TEST(TableSamplingGain, BeatsTheCosineOnAHighlight) {
   const auto material = make_principled_material({.metallic = 1, .roughness = 0.3f});
   const TableSampler table(*material);
   const Vec3 wv = test::view_at(40);
-  PreparedBrdf point;
-  material->prepare(wv, point);
+  ScratchArena arena;
+  const PreparedBrdf* const point = material->prepare(wv, arena);
   test::RunningMean by_table, by_cosine;
   for (uint64_t i = 0; i < 20'000; ++i) {
     const Vec2 u = RandomStream(3, 0, i).next2();
     const Vec3 a = test::sample_one(table, wv, u), b = sample_cosine_hemisphere(u);
-    by_table.add(a.z > 0 ? test::eval_one(*material, point, a).f.g * a.z / test::pdf_one(table, {.wl = a, .wv = wv})
-                         : 0);
-    by_cosine.add(test::eval_one(*material, point, b).f.g * kPiD);
+    by_table.add(a.z > 0 ? test::eval_one(*point, a).f.g * a.z / test::pdf_one(table, {.wl = a, .wv = wv}) : 0);
+    by_cosine.add(test::eval_one(*point, b).f.g * kPiD);
   }
   test::ZTests tests;
   tests.add("albedo", by_table.estimate(), by_cosine.estimate());

@@ -68,12 +68,12 @@ class ProposalSampling : public ::testing::TestWithParam<ProposalCase> {};
 TEST_P(ProposalSampling, FollowsItsDensity) {
   const auto [lobes, sharpest, bandwidth, degrees] = GetParam();
   const auto material = test::highlight_material(bandwidth);
-  PreparedBrdf point;
-  material->prepare(test::view_at(degrees), point);
+  ScratchArena arena;
+  const PreparedBrdf* const point = material->prepare(test::view_at(degrees), arena);
   EnvironmentMixture sky = sky_of(lobes, sharpest);
   if (lobes == 1) sky.bandwidth = {sharpest}, sky.center = {kFrame.to_world(test::mirror(test::view_at(degrees)))};
   ProposalLobes few;
-  ASSERT_TRUE(material->proposal_lobes(point, few));
+  ASSERT_TRUE(point->proposal_lobes(few));
   test::expect_proven(test::mixture_sampler(proposal(sky, few)), "proposal");
 }
 

@@ -182,14 +182,15 @@ TEST(ThroughGeometry, BarsWithAnOutlineLookLikeTheirGeometry) {
 TEST(ThroughGeometry, FrontAndBackAreReciprocal) {
   const auto table = captured(slats(1), {kView, kBehind}, {kView, kBehind});
   const auto through = make_measured_btf_material(table, BtfLight::other_side);
-  const auto point = std::make_unique<PreparedBrdf>();
+  ScratchArena arena;
   const auto mean = [&](bool back) {
     const Vec3 view = unit_direction(back ? kBehind : kView), light = unit_direction(back ? kView : kBehind);
     double sum = 0;
     for (uint32_t t = 0; t < 256; ++t) {
       const Vec2 uv = (Vec2(t % 16, t / 16) + 0.5f) / 16.0f;
-      through->prepare({view.x, view.y, std::abs(view.z)}, {.uv = uv, .back = back}, *point);
-      sum += static_cast<double>(through->eval_one(*point, {light.x, light.y, std::abs(light.z)}).f.g) / 256;
+      const PreparedBrdf* const point =
+          through->prepare({view.x, view.y, std::abs(view.z)}, {.uv = uv, .back = back}, {}, arena);
+      sum += static_cast<double>(point->eval_one({light.x, light.y, std::abs(light.z)}).f.g) / 256;
     }
     return sum;
   };

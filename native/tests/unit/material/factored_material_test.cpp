@@ -16,12 +16,13 @@ namespace {
 struct Evaluator {
   explicit Evaluator(const FactoredBtf& btf)
       : material(make_factored_material(std::make_shared<const FactoredBtf>(btf))) {}
-  Rgb operator()(const SurfaceSite& site, const Vec3& wv, const Vec3& wl) {
-    material->prepare(wv, site, *point);
-    return material->eval_one(*point, wl).f;
+  Rgb operator()(const SurfaceSite& site, const Vec3& wv, const Vec3& wl) { return prepared(site, wv).eval_one(wl).f; }
+  const PreparedBrdf& prepared(const SurfaceSite& site, const Vec3& wv) {
+    arena.reset();
+    return *material->prepare(wv, site, {}, arena);
   }
   std::shared_ptr<const Material> material;
-  std::unique_ptr<PreparedBrdf> point = std::make_unique<PreparedBrdf>();
+  ScratchArena arena;
 };
 
 SurfaceSite at(float u, float v, const Mat2& footprint = Mat2(0.0f)) { return {.uv = {u, v}, .footprint = footprint}; }

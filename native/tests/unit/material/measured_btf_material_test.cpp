@@ -13,12 +13,13 @@ constexpr uint32_t kWidth = 6, kHeight = 4;
 
 struct Evaluator {
   explicit Evaluator(const BtfMeasurement& btf) : material(make_measured_btf_material(read_btf_table(btf))) {}
-  Rgb operator()(const SurfaceSite& site, const Vec3& wv, const Vec3& wl) {
-    material->prepare(wv, site, *point);
-    return material->eval_one(*point, wl).f;
+  Rgb operator()(const SurfaceSite& site, const Vec3& wv, const Vec3& wl) { return prepared(site, wv).eval_one(wl).f; }
+  const PreparedBrdf& prepared(const SurfaceSite& site, const Vec3& wv) {
+    arena.reset();
+    return *material->prepare(wv, site, {}, arena);
   }
   std::shared_ptr<const Material> material;
-  std::unique_ptr<PreparedBrdf> point = std::make_unique<PreparedBrdf>();
+  ScratchArena arena;
 };
 
 /// The middle of a texel, some tiles away.
@@ -125,11 +126,11 @@ TEST(MeasuredBtfMaterial, IsBlackBelowTheHorizonAndNeverNegative) {
 
 TEST(MeasuredBtfMaterial, SamplesAreThoseOfTheCosine) {
   Evaluator f(test::striped_btf({kWidth, kHeight}));
-  f.material->prepare(direction(0.8f, 1), middle_of(0, 0), *f.point);
+  const PreparedBrdf& point = f.prepared(middle_of(0, 0), direction(0.8f, 1));
   for (const Vec2& u : {Vec2(0.1f, 0.7f), Vec2(0.9f, 0.2f)}) {
-    const Vec3 wl = f.material->sample_one(*f.point, u);
+    const Vec3 wl = point.sample_one(u);
     EXPECT_EQ(wl, sample_cosine_hemisphere(u));
-    EXPECT_EQ(f.material->eval_one(*f.point, wl).pdf, pdf_cosine_hemisphere(wl));
+    EXPECT_EQ(point.eval_one(wl).pdf, pdf_cosine_hemisphere(wl));
   }
 }
 

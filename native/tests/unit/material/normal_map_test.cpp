@@ -4,6 +4,7 @@
 
 #include "material/glossy_material.h"
 #include "material/principled/principled_material.h"
+#include "math/sphere/frame.h"
 #include "math/sphere/random.h"
 #include "math/sphere/warp.h"
 #include "support/materials.h"
@@ -19,9 +20,9 @@ std::shared_ptr<const Material> mapped(const Vec3& normal, float strength = 1) {
 }
 
 float f_of(const Material& material, const Vec3& wv, const Vec3& wl, const Mat3& relief = Mat3(1.0f)) {
-  PreparedBrdf point;
-  material.prepare(wv, {.relief = relief}, point);
-  return kPi * test::eval_one(material, point, wl).f.g;
+  ScratchArena arena;
+  const PreparedBrdf* const point = material.prepare(wv, {.relief = relief}, {}, arena);
+  return kPi * test::eval_one(*point, wl).f.g;
 }
 
 const Vec3 kView = direction(0.3f, 1);
@@ -104,13 +105,13 @@ TEST(NormalMap, ABaseIsDimmedAboutTheNormalOfTheLobe) {
   const Vec3 normal = direction(0.7f, 0), wl = direction(0.5f, 0.4f), wv = direction(1.3f, kPi);
   const NormalMap map{test::one_texel(0.5f + 0.5f * normal), 1, ReliefCorrection::shadowed};
   const auto base = make_principled_material({.roughness = 0.2f, .part = PrincipledPart::base});
-  PreparedBrdf point;
+  ScratchArena arena;
   const auto material = make_normal_mapped(base, map, ReliefPart::base);
-  material->prepare(wv, {.relief = Mat3(1.0f), .ground = {0, 0, 1}}, point);
+  const PreparedBrdf* const point = material->prepare(wv, {.relief = Mat3(1.0f), .ground = {0, 0, 1}}, {}, arena);
   const Vec3 turned = with_mirror_above(normal, {0, 0, 1}, wv);
   const float expected = f_of(*base, direction(std::acos(glm::dot(turned, wv)), 0), {0, 0, 1}) * glm::dot(normal, wl) *
                          relief_shadowing(wl.z, normal.z);
-  EXPECT_NEAR(kPi * test::eval_one(*material, point, wl).f.g * wl.z, expected, 1e-4f);
+  EXPECT_NEAR(kPi * test::eval_one(*point, wl).f.g * wl.z, expected, 1e-4f);
   const float cosine_of_mapped = std::max(glm::dot(normal, wv), 1e-3f);
   const float unturned = f_of(*base, direction(std::acos(cosine_of_mapped), 0), {0, 0, 1});
   EXPECT_GT(std::abs(unturned / f_of(*base, direction(std::acos(glm::dot(turned, wv)), 0), {0, 0, 1}) - 1), 0.05f);
@@ -123,10 +124,10 @@ TEST(NormalMap, CorrectionsDiffer) {
   ASSERT_LT(glm::dot(normal, wv), 0);  // and it is behind the mapped normal
   const auto value = [&](ReliefCorrection correction, ReliefPart part) {
     const NormalMap map{test::one_texel(0.5f + 0.5f * normal), 1, correction};
-    PreparedBrdf point;
+    ScratchArena arena;
     const auto material = make_normal_mapped(white(), map, part);
-    material->prepare(wv, {.relief = Mat3(1.0f), .ground = {0, 0, 1}}, point);
-    return kPi * test::eval_one(*material, point, low).f.g * low.z;
+    const PreparedBrdf* const point = material->prepare(wv, {.relief = Mat3(1.0f), .ground = {0, 0, 1}}, {}, arena);
+    return kPi * test::eval_one(*point, low).f.g * low.z;
   };
   const float hard = glm::dot(normal, low), shadowed = relief_shadowing(low.z, normal.z);
   const float faded = terminator_softening(low.z, hard, normal.z);

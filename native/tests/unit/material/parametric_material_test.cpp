@@ -60,15 +60,15 @@ const float kAngles[] = {0, 1, 5, 30, 60, 75, 85, 89.5f, 89.9f};
 
 void expect_is_the_model(const ParametricBrdf& brdf, const Material& material, const Vec3& wv) {
   const auto lobes = lobes_at(brdf, Vec3d(wv));
-  PreparedBrdf point;
-  material.prepare(wv, point);
+  ScratchArena arena;
+  const PreparedBrdf* const point = material.prepare(wv, arena);
   const auto set = directions_about(lobes, wv);
   for (const size_t size : {size_t{1}, size_t{2}, size_t{5}, size_t{33}}) {
     for (size_t first = 0; first + size <= set.size(); first += size) {
       const DirectionBatch wl = test::batch_of({set.data() + first, size});
       RgbBatch f;
       ScalarBatch pdf;
-      material.eval(point, wl, f, pdf);
+      point->eval(wl, f, pdf);
       for (int i = 0; i < wl.count; ++i) {
         const Reference expected = reference(lobes, wl.get(i), wv);
         ASSERT_NEAR(f.g[i], expected.f.y, expected.allowed + 1e-35) << size << ' ' << first << ' ' << i;
@@ -116,15 +116,15 @@ TEST(ParametricMaterial, IsZeroBelowTheHorizonAndFiniteEverywhere) {
     for (const float bandwidth : kBandwidths) {
       const auto material = material_of(test::parametric_model(isotropic, test::highlight_recipe(bandwidth)));
       for (const float theta_v : {0.0f, 0.8f, 1.5f, 1.5707f}) {
-        PreparedBrdf point;
+        ScratchArena arena;
         const Vec3 wv = direction(theta_v, 0.3f);
-        material->prepare(wv, point);
+        const PreparedBrdf* const point = material->prepare(wv, arena);
         for (const float z : {-1.0f, -1e-3f, -1e-38f, -0.0f, 0.0f}) {
-          EXPECT_EQ(eval_one(*material, point, glm::normalize(Vec3(-1, 0, z))).f, Rgb(0)) << z;
+          EXPECT_EQ(eval_one(*point, glm::normalize(Vec3(-1, 0, z))).f, Rgb(0)) << z;
         }
-        EXPECT_TRUE(std::isfinite(eval_one(*material, point, -wv).pdf));
+        EXPECT_TRUE(std::isfinite(eval_one(*point, -wv).pdf));
         for (const float z : {1e-45f, 1e-38f, 1e-9f, 1e-4f}) {
-          const auto e = eval_one(*material, point, Vec3(-std::cos(0.3f), -std::sin(0.3f), z));
+          const auto e = eval_one(*point, Vec3(-std::cos(0.3f), -std::sin(0.3f), z));
           EXPECT_TRUE(std::isfinite(e.f.r) && e.f.r >= 0 && std::isfinite(e.pdf) && e.pdf > 0) << z;
         }
       }
@@ -205,14 +205,14 @@ TEST(ParametricMaterial, ProposalsResembleTheModel) {
   for (const bool isotropic : {true, false}) {
     const auto material = material_of(test::parametric_model(isotropic, test::highlight_recipe(40)));
     for (const float degrees : {0.0f, 20.0f, 45.0f, 60.0f}) {
-      PreparedBrdf point;
+      ScratchArena arena;
       const Vec3 wv = direction(radians_from(degrees), 2.2f);
-      material->prepare(wv, point);
+      const PreparedBrdf* const point = material->prepare(wv, arena);
       ProposalLobes lobes;
-      ASSERT_TRUE(material->proposal_lobes(point, lobes));
+      ASSERT_TRUE(point->proposal_lobes(lobes));
       double difference = 0, whole = 0;
       for (const Vec3& wl : hemisphere_fibonacci(2000)) {
-        const double f_cos = luminance(eval_one(*material, point, wl).f) * wl.z;
+        const double f_cos = luminance(eval_one(*point, wl).f) * wl.z;
         difference += std::abs(proposed(lobes, wl) - f_cos);
         whole += f_cos;
       }

@@ -161,23 +161,23 @@ TEST(ParametricTable, SteepCoefficientsStayPositive) {
 /// One direction is what a batch of it is, and of a larger one but for rounding.
 TEST(ParametricMaterial, OneDirectionIsABatchOfOne) {
   const auto material = make_parametric_material(test::parametric_highlight(200, true));
-  PreparedBrdf point;
-  material->prepare(direction(0.8f, 0.3f), point);
+  ScratchArena arena;
+  const PreparedBrdf* const point = material->prepare(direction(0.8f, 0.3f), arena);
   RandomStream random(1, 2, 3);
   std::vector<Vec2> u;
   for (int i = 0; i < 64; ++i) u.push_back(random.next2());
   DirectionBatch wl, alone;
-  material->sample(point, u, wl);
+  point->sample(u, wl);
   for (int i = 0; i < wl.count; ++i) {
-    const Vec3 one = material->sample_one(point, u[static_cast<size_t>(i)]);
+    const Vec3 one = point->sample_one(u[static_cast<size_t>(i)]);
     EXPECT_LT(glm::distance(one, wl.get(i)), 2e-6f);
-    material->sample(point, {&u[static_cast<size_t>(i)], 1}, alone);
+    point->sample({&u[static_cast<size_t>(i)], 1}, alone);
     EXPECT_EQ(alone.get(0), one);
     alone.pad();
     RgbBatch f;
     ScalarBatch pdf;
-    material->eval(point, alone, f, pdf);
-    const auto reflection = material->eval_one(point, one);
+    point->eval(alone, f, pdf);
+    const auto reflection = point->eval_one(one);
     EXPECT_EQ(reflection.f, f.get(0));
     EXPECT_EQ(reflection.pdf, pdf.v[0]);
   }

@@ -38,11 +38,11 @@ TEST(PerViewMaterial, IsTheSliceAtItsViews) {
        {test::isotropic_model(), test::isotropic_model(Kernel::abel_poisson), test::anisotropic_model()}) {
     const auto material = material_of(brdf);
     for (size_t i = 0; i < brdf.views.size(); i += 7) {
-      PreparedBrdf point;
-      material->prepare(brdf.views[i], point);
+      ScratchArena arena;
+      const PreparedBrdf* const point = material->prepare(brdf.views[i], arena);
       for (const Vec3& wl : hemisphere_fibonacci(40)) {
         const Rgb expected = slice_value(brdf, i, wl);
-        EXPECT_LT(largest_difference(eval_one(*material, point, wl).f * wl.z, expected), 1e-4f * (1 + expected.r));
+        EXPECT_LT(largest_difference(eval_one(*point, wl).f * wl.z, expected), 1e-4f * (1 + expected.r));
       }
     }
   }
@@ -51,15 +51,15 @@ TEST(PerViewMaterial, IsTheSliceAtItsViews) {
 TEST(PerViewMaterial, IsZeroBelowTheHorizonAndFiniteEverywhere) {
   const auto material = material_of(test::isotropic_model());
   for (const float theta_v : {0.0f, 0.8f, 1.5f, 1.5707f}) {
-    PreparedBrdf point;
-    material->prepare(direction(theta_v, 0.3f), point);
+    ScratchArena arena;
+    const PreparedBrdf* const point = material->prepare(direction(theta_v, 0.3f), arena);
     const Vec3 at_horizon(-1, 0, 0);
     for (const float z : {-1.0f, -1e-3f, -1e-38f, -0.0f, 0.0f}) {
-      EXPECT_EQ(eval_one(*material, point, glm::normalize(Vec3(-1, 0, z))).f, Rgb(0)) << z;
+      EXPECT_EQ(eval_one(*point, glm::normalize(Vec3(-1, 0, z))).f, Rgb(0)) << z;
     }
-    const Rgb value = eval_one(*material, point, glm::normalize(at_horizon + Vec3(0, 0, 1e-6f))).f * 1e-6f;
+    const Rgb value = eval_one(*point, glm::normalize(at_horizon + Vec3(0, 0, 1e-6f))).f * 1e-6f;
     for (const float z : {1e-45f, 1e-38f, 1e-19f, 1e-9f, 1e-4f}) {
-      const auto e = eval_one(*material, point, at_horizon + Vec3(0, 0, z));
+      const auto e = eval_one(*point, at_horizon + Vec3(0, 0, z));
       EXPECT_TRUE(std::isfinite(e.f.r) && std::isfinite(e.f.g) && std::isfinite(e.f.b)) << z;
       EXPECT_GE(e.f.r, 0);
       EXPECT_GT(e.pdf, 0);
@@ -175,10 +175,10 @@ TEST(PerViewMaterial, ProposesFewLobesOfTheSameEnergyAndDirection) {
        {test::isotropic_model(), test::isotropic_model(Kernel::abel_poisson), test::anisotropic_model()}) {
     const auto material = material_of(brdf);
     for (size_t i = 0; i < brdf.views.size(); i += 5) {
-      PreparedBrdf point;
-      material->prepare(brdf.views[i], point);
+      ScratchArena arena;
+      const PreparedBrdf* const point = material->prepare(brdf.views[i], arena);
       ProposalLobes few;
-      ASSERT_TRUE(material->proposal_lobes(point, few));
+      ASSERT_TRUE(point->proposal_lobes(few));
       EXPECT_LE(few.count, ProposalLobes::kCapacity);
       EXPECT_FLOAT_EQ(few.cosine, luminance(brdf.diffuse[i]));
       Vec3d whole(0), proposed(0);
@@ -205,13 +205,11 @@ TEST(PerViewMaterial, ProposalsFollowTheViewsMirror) {
   PerViewBrdf brdf = test::isotropic_model();
   brdf.align_views = true;
   const auto material = material_of(brdf);
-  PreparedBrdf point;
+  ScratchArena arena;
   ProposalLobes at_view, turned;
-  material->prepare(brdf.views[3], point);
-  ASSERT_TRUE(material->proposal_lobes(point, at_view));
+  ASSERT_TRUE(material->prepare(brdf.views[3], arena)->proposal_lobes(at_view));
   const Vec3 wv = direction(std::acos(brdf.views[3].z) + 1e-3f, 1.0f);
-  material->prepare(wv, point);
-  ASSERT_TRUE(material->proposal_lobes(point, turned));
+  ASSERT_TRUE(material->prepare(wv, arena)->proposal_lobes(turned));
   ASSERT_EQ(turned.count, at_view.count);
   const Mat3 rotation = rotation_between(mirror(brdf.views[3]), mirror(direction(std::acos(wv.z), 0.0f)));
   for (int j = 0; j < turned.count; ++j) {
@@ -238,13 +236,13 @@ TEST(InterpolatedViews, AtAViewAreItsOwnDensity) {
   for (const PerViewBrdf& brdf :
        {test::isotropic_model(), test::isotropic_model(Kernel::abel_poisson), test::anisotropic_model()}) {
     const auto material = material_of(brdf);
-    PreparedBrdf point;
-    point.interpolated_draws = true;
+    ScratchArena arena;
     for (size_t i = 0; i < brdf.views.size(); i += 7) {
-      material->prepare(brdf.views[i], point);
+      arena.reset();
+      const PreparedBrdf* const point = material->prepare(brdf.views[i], {}, {.interpolated_draws = true}, arena);
       for (const Vec3& wl : hemisphere_fibonacci(40)) {
         const double expected = slice_density(brdf, i, wl);
-        EXPECT_NEAR(static_cast<double>(eval_one(*material, point, wl).pdf), expected, 1e-3 * (expected + 0.01));
+        EXPECT_NEAR(static_cast<double>(eval_one(*point, wl).pdf), expected, 1e-3 * (expected + 0.01));
       }
     }
   }

@@ -121,14 +121,14 @@ TEST(PrincipledKernels, AreTheFormulaOnEveryTarget) {
   for (const PrincipledParameters& p : kMaterials) {
     const auto material = make_principled_material(p);
     for (const Vec3& wv : hemisphere_fibonacci(12)) {
-      PreparedBrdf point;
-      material->prepare(wv, point);
+      ScratchArena arena;
+      const PreparedBrdf* const point = material->prepare(wv, arena);
       std::optional<RgbBatch> first;
       std::optional<ScalarBatch> density;
       test::on_every_simd_target([&] {
         RgbBatch f;
         ScalarBatch pdf;
-        material->eval(point, batch, f, pdf);
+        point->eval(batch, f, pdf);
         for (int i = 0; i < batch.count; ++i) {
           const Vec3d l(batch.get(i)), v(wv);
           const Vec3d expected = l.z <= 0 ? Vec3d(0) : p.formula == kDisney ? disney(p, v, l) : layered(p, v, l);

@@ -30,9 +30,9 @@ double integrate_hemisphere(const G& g) {
 }
 
 double albedo(const Material& material, const Vec3& wv, int channel) {
-  PreparedBrdf point;
-  material.prepare(wv, point);
-  return integrate_hemisphere([&](const Vec3& wl) { return eval_one(material, point, wl).f[channel] * wl.z; });
+  ScratchArena arena;
+  const PreparedBrdf* const point = material.prepare(wv, arena);
+  return integrate_hemisphere([&](const Vec3& wl) { return eval_one(*point, wl).f[channel] * wl.z; });
 }
 
 TEST(Ggx, DistributionProjectsToOne) {
@@ -175,10 +175,10 @@ TEST(PrincipledMaterial, IsFiniteInEveryCorner) {
       for (const Rgb& color : {Rgb(0), Rgb(1), Rgb(-1, 2, 0.5f)}) {
         const auto material = make_principled_material({color, metallic, roughness, 0.5f, color, metallic, roughness});
         for (const Vec3& wv : {Vec3(0, 0, 1), direction(1.5707f, 0.4f), Vec3(0, 1, 1e-7f)}) {
-          PreparedBrdf point;
-          material->prepare(wv, point);
+          ScratchArena arena;
+          const PreparedBrdf* const point = material->prepare(wv, arena);
           for (const Vec3& wl : {wv, -wv, test::mirror(wv), Vec3(1, 0, 0), Vec3(0, 0, -1), direction(1.57f, 3.5f)}) {
-            const auto e = eval_one(*material, point, wl);
+            const auto e = eval_one(*point, wl);
             EXPECT_TRUE(std::isfinite(e.f.r + e.f.g + e.f.b) && std::isfinite(e.pdf));
             EXPECT_GE(std::min({e.f.r, e.f.g, e.f.b, e.pdf}), 0);
             if (wl.z <= 0) {
@@ -186,7 +186,7 @@ TEST(PrincipledMaterial, IsFiniteInEveryCorner) {
             }
           }
           for (const Vec2& u : {Vec2(0, 0), Vec2(1 - 0x1p-24f), Vec2(0.5f)}) {
-            EXPECT_NEAR(glm::length(material->sample_one(point, u)), 1, 1e-5f);
+            EXPECT_NEAR(glm::length(point->sample_one(u)), 1, 1e-5f);
           }
         }
       }

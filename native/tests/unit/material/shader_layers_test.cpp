@@ -4,12 +4,14 @@
 #include <gtest/gtest.h>
 
 #include "material/glossy_material.h"
+#include "material/placed_material.h"
 #include "material/principled/principled_material.h"
 #include "material/rough_diffuse_material.h"
 #include "math/sphere/random.h"
 #include "support/albedo.h"
 #include "support/materials.h"
 #include "support/textured_materials.h"
+#include "support/through_btfs.h"
 
 namespace velour {
 namespace {
@@ -30,9 +32,9 @@ ShaderLayers two(float share) {
 }
 
 Rgb f_of(const Material& material, const SurfaceSite& site = {}) {
-  PreparedBrdf point;
-  material.prepare(direction(0.5f, 1), site, point);
-  return test::eval_one(material, point, direction(0.7f, 3)).f;
+  ScratchArena arena;
+  const PreparedBrdf* const point = material.prepare(direction(0.5f, 1), site, {}, arena);
+  return test::eval_one(*point, direction(0.7f, 3)).f;
 }
 
 void expect_near(const Rgb& found, const Rgb& expected, float error = 1e-5f) {
@@ -87,7 +89,7 @@ TEST(ShaderLayers, SharesMakeUpForTheProbabilityOfMeeting) {
 }
 
 TEST(ShaderLayers, NothingIsBlackAndOpenIsOpen) {
-  PreparedBrdf point;
+  ScratchArena arena;
   const auto nothing = make_layered_material({});
   EXPECT_EQ(nothing->alpha({}), 1);
   expect_near(f_of(*nothing), Rgb(0));
@@ -116,13 +118,13 @@ TEST(ShaderLayers, AWhiteMixKeepsAllLight) {
 
 /// Mean of f cos / pdf over samples.
 double sampled_albedo(const Material& material, float theta_v) {
-  PreparedBrdf point;
-  material.prepare(direction(theta_v, 0), point);
+  ScratchArena arena;
+  const PreparedBrdf* const point = material.prepare(direction(theta_v, 0), arena);
   double sum = 0;
   constexpr uint64_t kSamples = 100'000;
   for (uint64_t i = 0; i < kSamples; ++i) {
-    const Vec3 wl = material.sample_one(point, RandomStream(1, 0, i).next2());
-    const auto found = test::eval_one(material, point, wl);
+    const Vec3 wl = point->sample_one(RandomStream(1, 0, i).next2());
+    const auto found = test::eval_one(*point, wl);
     sum += static_cast<double>(found.f.g * std::max(wl.z, 0.0f) / found.pdf);
   }
   return sum / kSamples;
@@ -200,6 +202,99 @@ TEST(RoughDiffuseMaterial, FollowsItsFormula) {
   EXPECT_NEAR(f({0, 0, 1}, {0, 0, 1}), a, 1e-6f);
   EXPECT_NEAR(f(direction(1, 0), direction(1, 0)), a * (1 + std::sin(1.0f) * std::sin(1.0f) / std::cos(1.0f)), 1e-5f);
   EXPECT_NEAR(f(direction(1, kPi), direction(1, 0)), a * (1 - std::sin(1.0f) * std::sin(1.0f)), 1e-5f);
+}
+
+using Btf = test::SrbfKind;
+
+std::shared_ptr<const Material> cloth() {
+  static const auto material = test::through_material<Btf>(test::with_through(Btf::example(true)));
+  return material;
+}
+
+Rgb f_at(const Material& material, const SurfaceSite& site, const Vec3& wv, const Vec3& wl) {
+  ScratchArena arena;
+  return material.prepare(wv, site, {}, arena)->eval_one(wl).f;
+}
+
+/// A measured layer is one among others: weighted, tinted, converted to the working space, on both sides.
+TEST(ShaderLayers, MeasuredLayersAreWeightedAndTinted) {
+  const Mat3 to_working({0.6f, 0.1f, 0}, {0.3f, 0.8f, 0.1f}, {0.1f, 0.1f, 0.9f});
+  const auto tint = test::one_texel(Rgb(0.9f, 0.5f, 0.2f));
+  ShaderLayers layers;
+  layers.reflecting = {{.material = cloth(), .weight = by(Kind::share, 0.3f), .rec709_colors = true},
+                       {.material = matte({1, 0, 0}), .weight = by(Kind::rest, 0.3f)}};
+  layers.reflecting[0].weight.tints = {{.texture = tint}, {.color = {0.5f, 1, 1}}};
+  layers.rec709_to_working = to_working;
+  const auto mix = make_layered_material(layers);
+  EXPECT_TRUE(mix->varies());
+  EXPECT_TRUE(mix->transmits());
+  EXPECT_EQ(mix->texels(), cloth()->texels());
+  EXPECT_FALSE(make_layered_material(two(0.5f))->transmits());
+  const Vec3 wv = direction(0.5f, 1);
+  for (const SurfaceSite& site : {SurfaceSite{.uv = {0.3f, 0.6f}}, SurfaceSite{.uv = {0.7f, 0.1f}, .back = true}}) {
+    for (const Vec3& wl : sphere_fibonacci(40)) {
+      const Rgb measured = 0.3f * Rgb(0.45f, 0.5f, 0.2f) * (to_working * f_at(*cloth(), site, wv, wl));
+      expect_near(f_at(*mix, site, wv, wl), measured + Rgb(wl.z > 0 ? 0.7f / kPi : 0.0f, 0, 0));
+    }
+  }
+}
+
+TEST(ShaderLayers, TintsAbsorb) {
+  ShaderLayers layers;
+  layers.reflecting = {{matte(Rgb(1)), by(Kind::share, 0.5f)}};
+  layers.transparent = {{Rgb(1), {}, by(Kind::rest, 0.5f)}};
+  layers.reflecting[0].weight.tints = {{Rgb(0)}};
+  layers.emissive = {{Rgb(2)}};
+  layers.emissive[0].weight.tints = {{{1, 0.5f, 0}}};
+  const auto material = make_layered_material(layers);
+  const float alpha = material->alpha({});
+  expect_near(f_of(*material), Rgb(0));
+  expect_near(alpha * material->emission({}), {2, 1, 0});
+  layers.emissive.clear();
+  EXPECT_NEAR(make_layered_material(layers)->alpha({}), 0.5f, 1e-6f) << "what a tint absorbs does not pass";
+}
+
+/// Lobes of all layers, or none.
+TEST(ShaderLayers, ProposalsAreThoseOfTheLayers) {
+  ShaderLayers layers;
+  layers.reflecting = {{cloth(), by(Kind::share, 0.5f)}, {cloth(), by(Kind::rest, 0.5f)}};
+  ScratchArena arena;
+  ProposalLobes lobes;
+  EXPECT_FALSE(make_layered_material(layers)->prepare({0, 0, 1}, arena)->proposal_lobes(lobes)) << "of light behind";
+  const auto front = Btf::material(Btf::example());
+  layers.reflecting = {{front, by(Kind::share, 0.5f)}, {front, by(Kind::gain, 0.25f)}};
+  ProposalLobes alone;
+  ASSERT_TRUE(make_layered_material(layers)->prepare({0, 0, 1}, arena)->proposal_lobes(lobes));
+  ASSERT_TRUE(front->prepare({0, 0, 1}, arena)->proposal_lobes(alone));
+  EXPECT_NEAR(lobes.cosine, 0.75f * alone.cosine, 1e-6f);
+  EXPECT_EQ(lobes.count, ProposalLobes::kCapacity);
+  layers.reflecting.push_back({matte(Rgb(1)), by(Kind::gain, 1)});
+  EXPECT_FALSE(make_layered_material(layers)->prepare({0, 0, 1}, arena)->proposal_lobes(lobes));
+}
+
+/// A layer with coordinates of its own is what the surface would be whose coordinates are placed like that.
+TEST(PlacedMaterial, MovesAndTurnsTheTexture) {
+  const auto btf = cloth();
+  const float c = std::cos(0.7f), s = std::sin(0.7f);
+  const TextureMap map{Mat2({2 * c, -2 * s}, {2 * s, 2 * c}), {0.1f, 0.2f}};  // the texture turns by 0.7
+  const auto placed = make_placed(btf, map);
+  const SurfaceSite site{.uv = {0.3f, 0.6f}, .footprint = Mat2(0.05f)};
+  const SurfaceSite own{.uv = map.point(site.uv), .footprint = map.map * site.footprint};
+  const Mat3 turn({c, s, 0}, {-s, c, 0}, {0, 0, 1});  // from the texture's frame to the surface's
+  const Vec3 wv = direction(0.5f, 1);
+  for (const Vec3& wl : sphere_fibonacci(20)) {
+    expect_near(f_at(*placed, site, turn * wv, turn * wl), f_at(*btf, own, wv, wl));
+  }
+  const TextureMap mirror{Mat2({-1, 0}, {0, 1}), {0, 0}};
+  const auto mirrored = make_placed(btf, mirror);
+  const SurfaceSite across{.uv = mirror.point(site.uv), .footprint = mirror.map * site.footprint};
+  for (const Vec3& wl : sphere_fibonacci(20)) {
+    const Vec3 flipped(-wl.x, wl.y, wl.z);
+    expect_near(f_at(*mirrored, site, {-wv.x, wv.y, wv.z}, flipped), f_at(*btf, across, wv, wl));
+  }
+  EXPECT_EQ(make_placed(btf, {}), btf);
+  const auto plain = matte(Rgb(1));
+  EXPECT_EQ(make_placed(plain, map), plain);
 }
 
 }  // namespace

@@ -26,17 +26,17 @@ Vec3 of_tile(const Vec3& w, bool back) { return back ? mirrored(w) : w; }
 TEST(ThroughMaterial, IsTheBtfUnderLightFromEitherSideSeenFromEitherSide) {
   const auto material = striped();
   const PairLayout layout = test::ringed_layout();
-  const auto point = std::make_unique<PreparedBrdf>();
+  ScratchArena arena;
   int compared = 0;
   for (uint64_t pair = 0; pair < layout.pairs(); pair += 7) {
     const DirectionPair d = layout.directions(pair);
     const auto x = static_cast<uint32_t>(pair % kWidth), y = static_cast<uint32_t>(pair % kHeight);
     for (const bool back : {false, true}) {
       const SurfaceSite site{.uv = (Vec2(x, y) + 0.5f) / Vec2(kWidth, kHeight), .back = back};
-      material->prepare(d.wv, site, *point);
+      const PreparedBrdf* const point = material->prepare(d.wv, site, {}, arena);
       for (const Vec3& wl : {d.wl, mirrored(d.wl)}) {
         const Rgb expected = test::striped({of_tile(wl, back), of_tile(d.wv, back)}, x, y);
-        const Rgb f = material->eval_one(*point, wl).f;
+        const Rgb f = point->eval_one(wl).f;
         for (int c = 0; c < 3; ++c) EXPECT_NEAR(f[c], expected[c], 2e-3f * expected[c]);
         ++compared;
       }
@@ -47,21 +47,21 @@ TEST(ThroughMaterial, IsTheBtfUnderLightFromEitherSideSeenFromEitherSide) {
 
 TEST(ThroughMaterial, ABatchIsWhatOneDirectionAfterTheOtherGives) {
   const auto material = test::through_material<test::SrbfKind>(test::with_through(test::SrbfKind::glossy()));
-  const auto point = std::make_unique<PreparedBrdf>();
-  material->prepare(direction(0.7f, 1), {.uv = {0.3f, 0.6f}}, *point);
+  ScratchArena arena;
+  const PreparedBrdf* const point = material->prepare(direction(0.7f, 1), {.uv = {0.3f, 0.6f}}, {}, arena);
   std::vector<Vec2> u;
   for (uint32_t i = 0; i < 40; ++i) u.push_back(RandomStream(1, i, 0).next2());
   DirectionBatch wl;
-  material->sample(*point, u, wl);
+  point->sample(u, wl);
   ASSERT_EQ(wl.count, 40);
   wl.pad();
   RgbBatch f;
   ScalarBatch pdf;
-  material->eval(*point, wl, f, pdf);
+  point->eval(wl, f, pdf);
   int below = 0;
   for (int i = 0; i < wl.count; ++i) {
-    EXPECT_EQ(wl.get(i), material->sample_one(*point, u[static_cast<size_t>(i)]));
-    const auto one = material->eval_one(*point, wl.get(i));
+    EXPECT_EQ(wl.get(i), point->sample_one(u[static_cast<size_t>(i)]));
+    const auto one = point->eval_one(wl.get(i));
     EXPECT_NEAR(f.get(i).g, one.f.g, 1e-5f);
     EXPECT_NEAR(pdf.v[i], one.pdf, 1e-4f * one.pdf);
     below += wl.z[i] < 0;
@@ -75,11 +75,12 @@ TEST(ThroughMaterial, ASideThatIsLeftOutIsBlack) {
   auto btf = test::with_through(test::SrbfKind::glossy());
   btf.sides.pop_back();  // seen from below, lit from above
   const auto material = test::through_material<test::SrbfKind>(btf);
-  const auto point = std::make_unique<PreparedBrdf>();
+  ScratchArena arena;
   for (const bool back : {false, true}) {
-    material->prepare(direction(0.7f, 1), {.uv = {0.3f, 0.6f}, .back = back}, *point);
-    EXPECT_EQ(material->eval_one(*point, Vec3(0.6f, 0, -0.8f)).f.g > 0, !back);
-    EXPECT_GT(material->eval_one(*point, Vec3(0.6f, 0, 0.8f)).f.g, 0);
+    const PreparedBrdf* const point =
+        material->prepare(direction(0.7f, 1), {.uv = {0.3f, 0.6f}, .back = back}, {}, arena);
+    EXPECT_EQ(point->eval_one(Vec3(0.6f, 0, -0.8f)).f.g > 0, !back);
+    EXPECT_GT(point->eval_one(Vec3(0.6f, 0, 0.8f)).f.g, 0);
   }
 }
 

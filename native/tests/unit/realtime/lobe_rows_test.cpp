@@ -36,8 +36,8 @@ Rgb radiance(const EnvironmentMixture& sky, const Vec3& w) {
 /// What `material` reflects of `sky` towards `wv`, by evenly spread light directions: no error of a table.
 Vec3d reflected(const Material& material, const EnvironmentMixture& sky, const Frame& frame, const Vec3& wv) {
   static const auto lights = hemisphere_fibonacci(120000);
-  PreparedBrdf point;
-  material.prepare(frame.to_local(wv), point);
+  ScratchArena arena;
+  const PreparedBrdf* const point = material.prepare(frame.to_local(wv), arena);
   Vec3d sum(0.0);
   for (size_t i = 0; i < lights.size(); i += DirectionBatch::kCapacity) {
     DirectionBatch wl;
@@ -45,7 +45,7 @@ Vec3d reflected(const Material& material, const EnvironmentMixture& sky, const F
     wl.pad();
     RgbBatch f;
     ScalarBatch pdf;
-    material.eval(point, wl, f, pdf);
+    point->eval(wl, f, pdf);
     for (int j = 0; j < wl.count; ++j) {
       const Rgb light = f.get(j) * radiance(sky, frame.to_world(wl.get(j)));
       sum += static_cast<double>(wl.z[j]) * Vec3d(light.r, light.g, light.b);

@@ -55,11 +55,11 @@ std::vector<std::optional<Vertex>> vertices(const Scene& scene) {
 
 /// f for light from directions all around.
 std::vector<float> reflected(const Vertex& vertex) {
-  PreparedBrdf point;
-  vertex.surface->material->prepare(vertex.wv, vertex.site, point);
+  ScratchArena arena;
+  const PreparedBrdf* const point = vertex.surface->material->prepare(vertex.wv, vertex.site, {}, arena);
   std::vector<float> f;
   for (const Vec3& wl : hemisphere_fibonacci(20)) {
-    f.push_back(vertex.surface->material->eval_one(point, vertex.frame.to_local(wl)).f.r);
+    f.push_back(point->eval_one(vertex.frame.to_local(wl)).f.r);
   }
   return f;
 }

@@ -3,6 +3,7 @@
 
 #include "material/normal_map.h"
 #include "material/principled/principled_material.h"
+#include "math/sphere/frame.h"
 #include "math/sphere/random.h"
 #include "support/textured_scenes.h"
 

@@ -193,15 +193,15 @@ TEST(Placement, HasNoSeams) {
   const Mesh mesh = test::repeating_square(1, 1);
   const TextureMap& map = kPlacements[0];
   const Scene scene = lit(mesh, btf(), {}, {map});
-  PreparedBrdf point;
+  ScratchArena arena;
   const Vec3 wl = direction(0.7f, 2.0f);
   const auto seen = [&](const Vec2& xy) {
     const Ray ray{{xy, 1}, 0, {0, 0, -1}};
     Hit hit;
     scene.rays().intersect(ray, hit);
     const Vertex vertex(scene, scene.surface(hit), ray, hit, {}, nullptr);
-    vertex.surface->material->prepare(vertex.wv, vertex.site, point);
-    return vertex.surface->material->eval_one(point, vertex.frame.to_local(wl)).f;
+    arena.reset();
+    return vertex.surface->material->prepare(vertex.wv, vertex.site, {}, arena)->eval_one(vertex.frame.to_local(wl)).f;
   };
   const Mat2 to_square = 2.0f * glm::inverse(map.map);  // of a step in tiles
   const Vec2 middle = map.point(Vec2(0.5f)), corner(std::round(middle.x), std::floor(middle.y));

@@ -169,9 +169,10 @@ TEST(Progressive, TakesUpWhatHasChanged) {
 class SlowLambert : public test::Lambert {
  public:
   using Lambert::Lambert;
-  void prepare(const Vec3& wv, const SurfaceSite& site, PreparedBrdf& point) const override {
+  const PreparedBrdf* prepare(const Vec3& wv, const SurfaceSite& site, const PrepareOptions& options,
+                              ScratchArena& arena) const override {
     std::this_thread::sleep_for(std::chrono::microseconds(30));
-    Lambert::prepare(wv, site, point);
+    return Lambert::prepare(wv, site, options, arena);
   }
 };
 

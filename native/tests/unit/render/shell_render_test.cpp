@@ -2,7 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "btf/eval/sided_btf_material.h"
-#include "btf/measure/bilinear_texels.h"
+#include "image/bilinear_texels.h"
 #include "math/sphere/directions.h"
 #include "math/sphere/frame.h"
 #include "math/sphere/random.h"
@@ -239,21 +239,16 @@ class CoveredTexels : public test::Lambert {
       covered_.push_back(std::max(0.0f, std::min(end, 0.5f + kRadius) - std::max(begin, 0.5f - kRadius)) * kTexels);
     }
   }
-  void prepare(const Vec3& wv, const SurfaceSite& site, PreparedBrdf& point) const override {
-    Lambert::prepare(wv, site, point);
-    const BilinearTexels texels = bilinear_texels(site.uv, kTexels, 1);
-    point.parameter[0] = 0;
-    for (size_t i = 0; i < 4; ++i) point.parameter[0] += texels.weight[i] * covered_[texels.index[i]];
-  }
-  void eval(const PreparedBrdf& point, const DirectionBatch& wl, RgbBatch& f, ScalarBatch& pdf) const override {
-    Lambert::eval(point, wl, f, pdf);
-    for (int i = 0; i < wl.count; ++i) f.set(i, point.parameter[0] * f.get(i));
-  }
-  Reflection eval_one(const PreparedBrdf& point, const Vec3& wl) const override {
-    return Material::eval_one(point, wl);
-  }
   bool varies() const override { return true; }
   Vec2 texels() const override { return {kTexels, 1}; }
+
+ protected:
+  float albedo(const SurfaceSite& site) const override {
+    const BilinearTexels texels = bilinear_texels(site.uv, kTexels, 1);
+    float sum = 0;
+    for (size_t i = 0; i < 4; ++i) sum += texels.weight[i] * covered_[texels.index[i]];
+    return sum;
+  }
 
  private:
   static constexpr int kTexels = 18;

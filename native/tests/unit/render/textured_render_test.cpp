@@ -90,11 +90,9 @@ TEST(TexturedRender, ControlWithoutAFootprintItIsNot) {
   class Pointwise final : public test::Varying {
    public:
     explicit Pointwise(std::shared_ptr<const Material> material) : Varying(0), material_(std::move(material)) {}
-    void prepare(const Vec3& wv, const SurfaceSite& site, PreparedBrdf& point) const override {
-      material_->prepare(wv, {.uv = site.uv}, point);
-    }
-    void eval(const PreparedBrdf& point, const DirectionBatch& wl, RgbBatch& f, ScalarBatch& pdf) const override {
-      material_->eval(point, wl, f, pdf);
+    const PreparedBrdf* prepare(const Vec3& wv, const SurfaceSite& site, const PrepareOptions& options,
+                                ScratchArena& arena) const override {
+      return material_->prepare(wv, {.uv = site.uv}, options, arena);
     }
 
    private:
@@ -107,19 +105,19 @@ TEST(TexturedRender, ControlWithoutAFootprintItIsNot) {
   EXPECT_GT(worst, 0.1f);
 }
 
-/// Brighter towards the local +y: shows how the frame lies.
-class Sided : public test::Varying {
+/// Reflects only light from the local +y: shows how the frame lies.
+class Sided : public test::ChangedMaterial {
  public:
-  explicit Sided(bool varies) : Varying(0), varies_(varies) {}
+  explicit Sided(bool varies) : ChangedMaterial(std::make_shared<test::Lambert>(1.0f), darken), varies_(varies) {}
   bool varies() const override { return varies_; }
-  void eval(const PreparedBrdf&, const DirectionBatch& wl, RgbBatch& f, ScalarBatch& pdf) const override {
+
+ private:
+  static void darken(const DirectionBatch& wl, RgbBatch& f, ScalarBatch& /*pdf*/) {
     for (int i = 0; i < wl.count; ++i) {
-      f.set(i, Rgb(wl.z[i] > 0 && wl.y[i] > 0 ? 1 / kPi : 0.0f));
-      pdf.v[i] = pdf_cosine_hemisphere(wl.get(i));
+      if (!(wl.y[i] > 0)) f.set(i, Rgb(0.0f));
     }
   }
 
- private:
   bool varies_;
 };
 

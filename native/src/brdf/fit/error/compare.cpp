@@ -248,24 +248,24 @@ CloseRings rings_about(const Vec3& axis) { return {axis, kInnerRadius, 0.5 * kPi
 constexpr int kOwnLights = 2048;
 
 /// Appends directions that the material's own sampler generates from a rank-1 lattice.
-void append_own(const Material& material, const PreparedBrdf& point, std::vector<Vec3>& out) {
+void append_own(const PreparedBrdf& point, std::vector<Vec3>& out) {
   for (int i = 0; i < kOwnLights; ++i) {
     const double u = (i + 0.5) / kOwnLights, v = kGoldenRatio * i;
-    out.push_back(material.sample_one(point, Vec2(u, v - std::floor(v))));
+    out.push_back(point.sample_one(Vec2(u, v - std::floor(v))));
   }
 }
 
 }  // namespace
 
 WeightedLights close_lights(const Material& material, const Vec3& wv) {
-  const auto point = std::make_unique<PreparedBrdf>();
-  material.prepare(wv, *point);
+  ScratchArena arena;
+  const PreparedBrdf* const point = material.prepare(wv, arena);
   const CloseRings mirror = rings_about({-wv.x, -wv.y, wv.z}), retro = rings_about(wv);
   std::vector<Vec3> all = hemisphere_fibonacci(kEvenLights);
   mirror.append(all);
   retro.append(all);
   const size_t not_own = all.size();
-  append_own(material, *point, all);
+  append_own(*point, all);
   std::vector<float> own(all.size());
   evaluate(material, wv, all, {}, own);
   WeightedLights lights;

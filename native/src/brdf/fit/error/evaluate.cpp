@@ -9,8 +9,8 @@ namespace velour {
 
 void evaluate(const Material& material, const Vec3& wv, std::span<const Vec3> wl, std::span<Rgb> f,
               std::span<float> density) {
-  const auto point = std::make_unique<PreparedBrdf>();
-  material.prepare(wv, *point);
+  ScratchArena arena;
+  const PreparedBrdf* const point = material.prepare(wv, arena);
   DirectionBatch batch;
   RgbBatch values;
   ScalarBatch pdf;
@@ -19,7 +19,7 @@ void evaluate(const Material& material, const Vec3& wv, std::span<const Vec3> wl
     batch.count = 0;
     for (size_t i = begin; i < end; ++i) batch.push(wl[i]);
     batch.pad();
-    material.eval(*point, batch, values, pdf);
+    point->eval(batch, values, pdf);
     for (size_t i = begin; i < end && !f.empty(); ++i) f[i] = values.get(static_cast<int>(i - begin));
     if (!density.empty()) std::copy_n(pdf.v, end - begin, density.data() + begin);
   }

@@ -8,7 +8,7 @@
 #include "btf/fit/byte_rounding.h"
 #include "btf/fit/relief_pyramid.h"
 #include "btf/fit/srbf/texel_solver.h"
-#include "btf/measure/bilinear_texels.h"
+#include "image/bilinear_texels.h"
 
 namespace velour {
 namespace {

@@ -4,8 +4,8 @@
 #include "base/parallel.h"
 #include "btf/fit/srbf/row_products.h"
 #include "btf/fit/surface_points.h"
-#include "btf/measure/bilinear_texels.h"
 #include "btf/model/srbf_btf.h"
+#include "image/bilinear_texels.h"
 #include "math/tensor/decompositions.h"
 #include "math/tensor/matrix_product.h"
 

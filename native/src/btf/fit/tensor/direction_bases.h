@@ -5,8 +5,8 @@
 #include <vector>
 #include "base/progress.h"
 #include "btf/fit/side_views.h"
-#include "btf/measure/bilinear_texels.h"
 #include "btf/measure/relief.h"
+#include "image/bilinear_texels.h"
 #include "math/tensor/tensor_view.h"
 
 namespace velour {

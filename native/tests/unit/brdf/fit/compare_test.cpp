@@ -16,16 +16,28 @@ using test::AnalyticMeasurement;
 class FormulaMaterial : public Material {
  public:
   explicit FormulaMaterial(AnalyticMeasurement::Formula f) : f_(std::move(f)) {}
-  void prepare(const Vec3& wv, const SurfaceSite& /*site*/, PreparedBrdf& point) const override { point.wv = wv; }
-  void eval(const PreparedBrdf& point, const DirectionBatch& wl, RgbBatch& f, ScalarBatch& pdf) const override {
-    for (int i = 0; i < wl.count; ++i) f.set(i, f_({wl.get(i), point.wv})), pdf.v[i] = 0;
-  }
-  void sample(const PreparedBrdf&, std::span<const Vec2> u, DirectionBatch& wl) const override {
-    wl.fill(u, [](const Vec2&) { return Vec3(0, 0, 1); });
+  const PreparedBrdf* prepare(const Vec3& wv, const SurfaceSite& /*site*/, const PrepareOptions& /*options*/,
+                              ScratchArena& arena) const override {
+    return arena.make<Prepared>(f_, wv);
   }
   bool isotropic() const override { return true; }
 
  private:
+  class Prepared final : public PreparedBrdf {
+   public:
+    Prepared(const AnalyticMeasurement::Formula& f, const Vec3& wv) : f_(f), wv_(wv) {}
+    void eval(const DirectionBatch& wl, RgbBatch& f, ScalarBatch& pdf) const override {
+      for (int i = 0; i < wl.count; ++i) f.set(i, f_({wl.get(i), wv_})), pdf.v[i] = 0;
+    }
+    void sample(std::span<const Vec2> u, DirectionBatch& wl) const override {
+      wl.fill(u, [](const Vec2&) { return Vec3(0, 0, 1); });
+    }
+
+   private:
+    const AnalyticMeasurement::Formula& f_;
+    Vec3 wv_;
+  };
+
   AnalyticMeasurement::Formula f_;
 };
 

@@ -96,14 +96,14 @@ class RandomLights {
 /// Relative L2 of the luminance of f cos against the truth, by random directions.
 double true_error(const Material& material, const HostileCase& hostile, const Vec3& wv) {
   const RandomLights lights(wv);
-  PreparedBrdf point;
-  material.prepare(wv, point);
+  ScratchArena arena;
+  const PreparedBrdf* const point = material.prepare(wv, arena);
   double error = 0, energy = 0;
   for (size_t i = 0; i < lights.wl.size(); ++i) {
     const Vec3& wl = lights.wl[i];
     if (hostile.known && !hostile.known({wl, wv})) continue;
     const double expected = luminance(hostile.truth({wl, wv})) * static_cast<double>(wl.z);
-    const double found = luminance(test::eval_one(material, point, wl).f) * static_cast<double>(wl.z);
+    const double found = luminance(test::eval_one(*point, wl).f) * static_cast<double>(wl.z);
     error += lights.weight[i] * (expected - found) * (expected - found);
     energy += lights.weight[i] * expected * expected;
   }
@@ -116,19 +116,19 @@ bool is_sound(float x) { return std::isfinite(x) && x >= 0; }
 /// Values, densities and drawn directions at views from the normal to a tenth of a degree above the horizon, at random
 /// lights and at the exact directions where formulas have holes.
 void expect_sound(const Material& material) {
-  PreparedBrdf point;
+  ScratchArena arena;
   for (const float degrees : {0.0f, 5.0f, 30.0f, 60.0f, 75.0f, 85.0f, 89.0f, 89.9f}) {
     const Vec3 wv = direction(radians_from(degrees), 0);
-    material.prepare(wv, point);
+    const PreparedBrdf* const point = material.prepare(wv, arena);
     std::vector<Vec3> lights{wv, -wv, test::mirror(wv), {0, 0, 1}, {1, 0, 0}, {-1, 0, 0}, {0, 0, -1}};
     for (uint64_t i = 0; i < 200; ++i) {
       RandomStream random(3, 0, i);
       lights.push_back(sample_uniform_hemisphere(random.next2()));
-      lights.push_back(material.sample_one(point, random.next2()));
+      lights.push_back(point->sample_one(random.next2()));
       EXPECT_NEAR(glm::length(lights.back()), 1, 1e-4) << degrees;
     }
     for (const Vec3& wl : lights) {
-      const auto [f, pdf] = test::eval_one(material, point, wl);
+      const auto [f, pdf] = test::eval_one(*point, wl);
       EXPECT_TRUE(is_sound(f.r) && is_sound(f.g) && is_sound(f.b) && is_sound(pdf))
           << "view " << degrees << ", light " << wl.x << ' ' << wl.y << ' ' << wl.z << ": f " << f.r << ' ' << f.g
           << ' ' << f.b << ", pdf " << pdf;

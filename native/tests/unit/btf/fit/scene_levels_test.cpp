@@ -53,9 +53,9 @@ TensorBtf square_tensors() {
 
 Rgb value(const ModelBody& body, const Vec2& uv, float width, const Vec3& wl, const Vec3& wv) {
   const auto material = make_material(std::make_shared<const Model>(Model{body, {}, {}}), 0);
-  const auto point = std::make_unique<PreparedBrdf>();
-  material->prepare(wv, {.uv = uv, .footprint = Mat2(width)}, *point);
-  return material->eval_one(*point, wl).f;
+  ScratchArena arena;
+  const PreparedBrdf* const point = material->prepare(wv, {.uv = uv, .footprint = Mat2(width)}, {}, arena);
+  return point->eval_one(wl).f;
 }
 
 TEST(SceneLevels, LeaveTwoTexelsALookUp) {

@@ -4,8 +4,8 @@
 
 #include "base/aligned_array.h"
 #include "btf/fit/srbf/row_products.h"
-#include "btf/measure/bilinear_texels.h"
 #include "btf/model/srbf_btf.h"
+#include "image/bilinear_texels.h"
 #include "image/half_image.h"
 #include "math/sphere/random.h"
 #include "support/example_srbf.h"
