@@ -36,12 +36,12 @@ struct ClosureAlbedoError {
 };
 
 struct ClosureFit {
-  ClosureNetwork network;
+  ClosureNetwork network{};
   LobeMasking masking = LobeMasking::separable;
-  std::vector<ClosureViewError> errors;    // at 5, 30, 60, 75 and 85 degrees
-  double mean_error = 0;                   // mean of luminance errors up to 75 degrees
-  std::vector<ClosureAlbedoError> albedo;  // at the 36 fitted views
-  double largest_cut = 0;                  // largest share of a weight removed to keep the albedo
+  std::vector<ClosureViewError> errors{};    // at 5, 30, 60, 75 and 85 degrees
+  double mean_error = 0;                     // mean of luminance errors up to 75 degrees
+  std::vector<ClosureAlbedoError> albedo{};  // at the 36 fitted views
+  double largest_cut = 0;                    // largest share of a weight removed to keep the albedo
 };
 
 /// Least squares on f cos and albedo at 36 views, each relative to its own norms (ClosureProblem), by
