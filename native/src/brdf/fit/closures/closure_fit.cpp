@@ -204,7 +204,9 @@ class ClosureDescents {
     const ClosureProblem problem(views_, distributions, options_.masking, bounds_, freedoms);
     std::vector<Candidate<ClosureUnknowns>> candidates;
     for (const ClosureUnknowns& u : starts) candidates.push_back({u, 0});
-    ClosureSolution found{distributions, best_descent(problem, std::move(candidates), options_.threads, progress_)};
+    ClosureUnknowns u = best_descent(problem, std::move(candidates), options_.threads, progress_);
+    u = descend(problem, u, [&] { progress_.check(); });  // the best may have used up its steps
+    ClosureSolution found{distributions, u};
     found.cost = problem.cost(found.unknowns);
     return found;
   }
@@ -292,7 +294,7 @@ class ClosureDescents {
 
 namespace {
 
-constexpr double kGoodClosures = 0.04, kNearBestClosures = 1.1;
+constexpr double kNearBestClosures = 1.1;
 
 void check_closure_options(const ClosureFitOptions& o) {
   if (o.max_lobes < 1 || o.max_lobes > kMaxClosureLobes) {
@@ -316,11 +318,11 @@ ClosureSolution next_solution(const ClosureDescents& descents, const std::vector
 }
 
 /// The fewest lobes that are good enough.
-ClosureFit& chosen_of(std::vector<ClosureFit>& fits) {
+ClosureFit& chosen_of(std::vector<ClosureFit>& fits, double tolerance) {
   double best = fits[0].mean_error;
   for (const ClosureFit& f : fits) best = std::min(best, f.mean_error);
   return *std::find_if(fits.begin(), fits.end(), [&](const ClosureFit& f) {
-    return f.mean_error < kGoodClosures || f.mean_error <= kNearBestClosures * best;
+    return f.mean_error < tolerance || f.mean_error <= kNearBestClosures * best;
   });
 }
 
@@ -357,9 +359,9 @@ ClosureFit fit_closures(const ClosureSource& source, bool isotropic, const Closu
     limit_albedo(albedos, options.threads, progress, fit);
     set_errors(judged, options.threads, progress, fit);
     fits.push_back(std::move(fit));
-    if (fits.back().mean_error < kGoodClosures) break;
+    if (fits.back().mean_error < options.tolerance) break;
   }
-  ClosureFit chosen = std::move(chosen_of(fits));
+  ClosureFit chosen = std::move(chosen_of(fits, options.tolerance));
   for (const ClosureViewSamples& s : views) chosen.albedo.push_back(albedo_error(s, chosen));
   return chosen;
 }

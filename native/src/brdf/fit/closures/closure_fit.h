@@ -10,7 +10,8 @@
 namespace velour {
 
 struct ClosureFitOptions {
-  int max_lobes = 3;  // in [1, 3]
+  double tolerance = 0.04;  // mean error with which no more lobes are added
+  int max_lobes = 3;        // in [1, 3]
   LobeMasking masking = LobeMasking::separable;
   bool tilt = true, anisotropy = true;
   /// No anisotropy at theta_v = 0, where the tangent has no direction: otherwise a sphere shows a dark pinwheel there.
@@ -46,10 +47,10 @@ struct ClosureFit {
 
 /// Least squares on f cos and albedo at 36 views, each relative to its own norms (ClosureProblem), by
 /// Levenberg-Marquardt. A network of K lobes starts from the best of K - 1 lobes and one more that is narrower, wider
-/// or points at the viewer. The smallest K with a mean error below 0.04 or within 10 % of the best is returned. Then
-/// weights are reduced where the albedo of a channel exceeds the material's by more than 1 %. Anisotropic materials are
-/// averaged over the azimuth of the view, varying ones over the surface. Throws Error(invalid_argument) if an option is
-/// out of range, and Error(cancelled) after a cancel. Black if the material is.
+/// or points at the viewer. The smallest K with a mean error below the tolerance or within 10 % of the best is
+/// returned. Then weights are reduced where the albedo of a channel exceeds the material's by more than 1 %.
+/// Anisotropic materials are averaged over the azimuth of the view, varying ones over the surface. Throws
+/// Error(invalid_argument) if an option is out of range, and Error(cancelled) after a cancel. Black if the material is.
 ClosureFit fit_closures(const Material& material, const ClosureFitOptions& options, Progress& progress);
 ClosureFit fit_closures(const ClosureSource& source, bool isotropic, const ClosureFitOptions& options,
                         Progress& progress);

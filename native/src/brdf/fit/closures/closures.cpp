@@ -83,11 +83,12 @@ Rgb ClosuresAtView::f_cos(const Vec3& wl) const {
 }
 
 float ClosuresAtView::lobe_albedo(size_t k) const {
-  constexpr int kRings = 96, kSpokes = 64;
+  constexpr int kHalfVectors = 8192;  // a rank-1 lattice
   const auto& [shape, distribution, weight] = lobes_[k];
   double sum = 0;
-  for (int i = 0; i < kRings * kSpokes; ++i) {
-    const Vec2 u((static_cast<float>(i / kSpokes) + 0.5f) / kRings, (static_cast<float>(i % kSpokes) + 0.5f) / kSpokes);
+  for (int i = 0; i < kHalfVectors; ++i) {
+    const double across = 0.6180339887498949 * i;
+    const Vec2 u((static_cast<float>(i) + 0.5f) / kHalfVectors, static_cast<float>(across - std::floor(across)));
     const Vec3 own = lobe_half_vector(distribution, shape, u);
     const Vec3 h(own.x * shape.cos_tilt + own.z * shape.sin_tilt, own.y,
                  own.z * shape.cos_tilt - own.x * shape.sin_tilt);
@@ -97,7 +98,7 @@ float ClosuresAtView::lobe_albedo(size_t k) const {
     const float density = lobe_half_density(distribution, shape, own) / (4 * v_h);
     if (density > 0) sum += lobe_sample_of(distribution, masking_, shape, wl, h).value / density;
   }
-  return static_cast<float>(sum / (kRings * kSpokes));
+  return static_cast<float>(sum / kHalfVectors);
 }
 
 Rgb ClosuresAtView::albedo() const {

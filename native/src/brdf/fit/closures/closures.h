@@ -42,7 +42,7 @@ class ClosuresAtView {
 
   /// f cos(theta_l) in 1/sr; `wl` in a frame whose +x-z plane holds the viewer on the side of +x. 0 below the horizon.
   Rgb f_cos(const Vec3& wl) const;
-  /// Integral of f cos over the hemisphere by midpoint quadrature over half vectors; error about 1e-3.
+  /// Integral of f cos over the hemisphere by quadrature over half vectors of the lobes; error about 1e-3.
   Rgb albedo() const;
 
  private:
