@@ -24,7 +24,8 @@ struct ClosureFitOptions {
   int threads = 0;          // 0: all; the result does not depend on it
 };
 
-/// Relative L2 error of f cos over 4096 equal-area lights.
+/// Relative L2 error of f cos over 4096 equal-area lights. They resolve narrow highlights poorly: at alpha 0.06 an
+/// error of 6 % may read as 8 %.
 struct ClosureViewError {
   int degrees;  // theta_v
   double luminance, rgb;

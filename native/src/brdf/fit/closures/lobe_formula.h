@@ -27,7 +27,7 @@ inline SmithLambda smith_lambda(float t) {
     const float root = std::sqrt(1 + t);
     return {0.5f * (root - 1), 0.25f / root};
   } else {
-    // Rational approximation [W07]. Versions of Cycles round its threshold, a = 1.6, differently.
+    // Rational approximation [WMLT07]. Versions of Cycles round its threshold, a = 1.6, differently.
     constexpr float kThreshold = masking == LobeMasking::separable ? 0.625f * 0.625f : 0.39f;
     const float safe = std::max(t, 0.5f * kThreshold), a = 1 / std::sqrt(safe);
     const float above = (0.396f * a - 1.259f) * a + 1, below = (2.181f * a + 3.535f) * a;
