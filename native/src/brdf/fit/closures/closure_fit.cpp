@@ -77,7 +77,7 @@ namespace {
 constexpr int kAlbedoLights = 1024;
 constexpr float kAlbedoSlack = 1.01f;
 
-/// The source at the angles of ClosureCurve: light directions with solid angles, and albedos.
+/// The source at an angle: light directions with solid angles, and albedos.
 struct AlbedoView {
   float theta_v;
   WeightedLights lights;
@@ -99,9 +99,9 @@ AlbedoView albedo_view(const ClosureSource& source, bool isotropic, float theta_
 
 std::vector<AlbedoView> albedo_views(const ClosureSource& source, bool isotropic, int threads,
                                      const Progress& progress) {
-  std::vector<AlbedoView> views(kClosureSamples);
+  std::vector<AlbedoView> views(2 * kClosureSamples - 1);  // at the samples of ClosureCurve and halfway between them
   parallel_pieces(views.size(), threads, progress, [&](size_t i) {
-    const float degrees = 90.0f * static_cast<float>(i) / (kClosureSamples - 1);
+    const float degrees = 90.0f * static_cast<float>(i) / (2 * kClosureSamples - 2);
     views[i] = albedo_view(source, isotropic, radians_from(std::min(degrees, 89.5f)));
   });
   return views;
@@ -122,25 +122,23 @@ void limit_albedo(const std::vector<AlbedoView>& views, int threads, const Progr
       factor[i][c] = model[c] > most ? most / model[c] : 1.0f;
     }
   });
-  for (size_t i = 0; i < views.size(); ++i) {
-    fit.network.diffuse[i] *= factor[i];
-    for (ClosureLobe& lobe : fit.network.lobes) lobe.weight[i] *= factor[i];
-    for (int c = 0; c < 3; ++c) fit.largest_cut = std::max(fit.largest_cut, 1.0 - static_cast<double>(factor[i][c]));
+  for (size_t i = 0; i < kClosureSamples; ++i) {
+    Rgb least = factor[2 * i];
+    if (i > 0) least = glm::min(least, factor[2 * i - 1]);
+    if (i + 1 < kClosureSamples) least = glm::min(least, factor[2 * i + 1]);
+    fit.network.diffuse[i] *= least;
+    for (ClosureLobe& lobe : fit.network.lobes) lobe.weight[i] *= least;
+    for (int c = 0; c < 3; ++c) fit.largest_cut = std::max(fit.largest_cut, 1.0 - static_cast<double>(least[c]));
   }
 }
 
-ClosureAlbedoError albedo_error(const ClosureViewSamples& s, const ClosureFit& fit) {
-  const float theta_v = static_cast<float>(s.theta_v);
-  const ClosuresAtView closures(fit.network, fit.masking, theta_v);
-  Rgb model(0), relative(0);
-  for (int i = 0; i < s.count; ++i) {
-    const float weight = s.root_weight[i] * s.root_weight[i];
-    model += weight * closures.f_cos(Vec3(s.wl_x[i], s.wl_y[i], s.wl_z[i]));
-  }
+ClosureAlbedoError albedo_error(const AlbedoView& view, const ClosureFit& fit) {
+  const Rgb model = model_albedo(fit, view);
+  Rgb relative(0);
   for (int c = 0; c < 3; ++c) {
-    if (s.albedo[c] > 0) relative[c] = model[c] / static_cast<float>(s.albedo[c]) - 1;
+    if (view.albedo[c] > 0) relative[c] = model[c] / view.albedo[c] - 1;
   }
-  return {s.theta_v * 180 / kPiD, relative};
+  return {static_cast<double>(view.theta_v) * 180 / kPiD, relative};
 }
 
 }  // namespace
@@ -362,7 +360,11 @@ ClosureFit fit_closures(const ClosureSource& source, bool isotropic, const Closu
     if (fits.back().mean_error < options.tolerance) break;
   }
   ClosureFit chosen = std::move(chosen_of(fits, options.tolerance));
-  for (const ClosureViewSamples& s : views) chosen.albedo.push_back(albedo_error(s, chosen));
+  chosen.albedo.resize(views.size());
+  parallel_pieces(views.size(), options.threads, progress, [&](size_t i) {
+    const AlbedoView view = albedo_view(source, isotropic, static_cast<float>(views[i].theta_v));
+    chosen.albedo[i] = albedo_error(view, chosen);
+  });
   return chosen;
 }
 
