@@ -60,10 +60,18 @@ namespace {
 
 constexpr double kMaxAnisotropy = 1.2;
 
+/// Polar angle of the view (radians) below which anisotropy fades to 0: the tangent has no direction at the normal.
+constexpr double kAnisotropyFade = radians_from(4.0);
+
+double anisotropy_share(double theta_v) {
+  const double t = std::min(theta_v / kAnisotropyFade, 1.0);
+  return t * t * (3 - 2 * t);
+}
+
 /// Largest tilt away from the viewer, relative to theta_v, in (0, 1].
-double largest_lean(double theta_v, const ClosureBounds& bounds) {
+double largest_lean(double theta_v) {
   constexpr double kLeast = 1e-4;
-  if (!bounds.limit_tilt || theta_v < 0.01) return 1;
+  if (theta_v < 0.01) return 1;
   const double angle = std::min(theta_v, closure_knots().back());
   return std::clamp(-static_cast<double>(lowest_closure_tilt(static_cast<float>(angle))) / angle, kLeast, 1.0);
 }
@@ -79,15 +87,16 @@ ClosureShape closure_shape(double alpha_unknown, double tilt_unknown, double ani
   s.log_alpha_by_alpha = -lowest * share * (1 - share);
 
   // From -lean to 1, through 0 at 0; tanh if lean is 1.
-  const double lean = largest_lean(theta_v, bounds), e = std::exp(std::clamp(2 * tilt_unknown, -60.0, 60.0));
+  const double lean = largest_lean(theta_v), e = std::exp(std::clamp(2 * tilt_unknown, -60.0, 60.0));
   const double below = lean * e + 1;
   s.tilt = lean * (e - 1) / below;
   s.tilt_by_tilt = 2 * e * lean * (1 + lean) / (below * below);
 
   // |anisotropy| < min(kMaxAnisotropy, depth), made smooth.
   const double norm = std::pow(kMaxAnisotropy, 4) + std::pow(depth, 4), root = std::pow(norm, -0.25);
-  const double bound = kMaxAnisotropy * depth * root, turn = std::tanh(anisotropy_unknown);
-  const double bound_by_depth = root * kMaxAnisotropy * (1 - std::pow(depth, 4) / norm);
+  const double share_of_view = anisotropy_share(theta_v), turn = std::tanh(anisotropy_unknown);
+  const double bound = share_of_view * kMaxAnisotropy * depth * root;
+  const double bound_by_depth = share_of_view * root * kMaxAnisotropy * (1 - std::pow(depth, 4) / norm);
   s.anisotropy = bound * turn;
   s.anisotropy_by_alpha = -bound_by_depth * turn * s.log_alpha_by_alpha;
   s.anisotropy_by_anisotropy = bound * (1 - turn * turn);
@@ -99,8 +108,8 @@ double closure_alpha_unknown(double alpha, const ClosureBounds& bounds) {
   return std::log(inside / (1 - inside));
 }
 
-double closure_tilt_unknown(double tilt, double theta_v, const ClosureBounds& bounds) {
-  const double lean = largest_lean(theta_v, bounds), inside = std::clamp(tilt, -0.95 * lean, 0.95);
+double closure_tilt_unknown(double tilt, double theta_v) {
+  const double lean = largest_lean(theta_v), inside = std::clamp(tilt, -0.95 * lean, 0.95);
   return 0.5 * std::log((inside + lean) / (lean * (1 - inside)));
 }
 

@@ -20,10 +20,9 @@ std::array<double, kClosureKnots> closure_knots();
 /// slope 0 at the first knot and no curvature at the last.
 Eigen::Matrix<double, kClosureKnots, 1> closure_taps(double theta_v);
 
-/// Ranges of the parameters of lobes.
+/// Range of the parameters of lobes; that of tilts is given by lowest_closure_tilt().
 struct ClosureBounds {
   double min_alpha = 0.02;
-  bool limit_tilt = true;  // by lowest_closure_tilt()
 };
 
 /// Parameters of a lobe at a view and their derivatives by the unknowns. alpha e^|anisotropy| stays below 1.
@@ -37,7 +36,7 @@ ClosureShape closure_shape(double alpha_unknown, double tilt_unknown, double ani
 /// The unknown that closure_shape() maps to `alpha`, moved inside the bounds.
 double closure_alpha_unknown(double alpha, const ClosureBounds& bounds);
 /// The unknown that closure_shape() maps to the relative tilt `tilt` at `theta_v`, in (-1, 1) and moved inside.
-double closure_tilt_unknown(double tilt, double theta_v, const ClosureBounds& bounds);
+double closure_tilt_unknown(double tilt, double theta_v);
 
 /// The unknowns of a network: a column per unknown of a view, a row per knot. Trivial to copy; no heap memory.
 using ClosureUnknowns =

@@ -1,10 +1,12 @@
 // A BRDF as nodes of Blender: a Diffuse BSDF and up to three Glossy BSDFs whose colors and shapes are curves over the
-// view angle. Formulas are those of Cycles' closures (kernel/closure/bsdf_microfacet.h).
+// view angle.
 #pragma once
 
 #include <array>
 #include <vector>
-#include "brdf/fit/closures/lobe_formula.h"
+#include "base/aligned_array.h"
+#include "brdf/fit/closures/closure_lights.h"
+#include "brdf/fit/closures/lobe_columns.h"
 #include "math/sphere/vec.h"
 
 namespace velour {
@@ -34,35 +36,14 @@ struct ClosureNetwork {
 /// [0, pi / 2]: the mirror direction about N' must stay above the surface (ensure_valid_reflection).
 float lowest_closure_tilt(float theta_v);
 
-/// A network at one view: curves are looked up once for all light directions.
-class ClosuresAtView {
- public:
-  /// theta_v in radians, [0, pi / 2).
-  ClosuresAtView(const ClosureNetwork& network, LobeMasking masking, float theta_v);
+/// f cos(theta_l) in 1/sr at the lights, which lie above the horizon, times root_weight. A row per channel.
+AlignedArray<float> closure_values(const ClosureNetwork& network, LobeMasking masking, const ClosureLights& lights);
 
-  /// f cos(theta_l) in 1/sr; `wl` in a frame whose +x-z plane holds the viewer on the side of +x. 0 below the horizon.
-  Rgb f_cos(const Vec3& wl) const;
-  /// Integral of f cos over the hemisphere by quadrature over half vectors of the lobes; error about 1e-3.
-  Rgb albedo() const;
+// Values of inputs of Blender's nodes.
 
- private:
-  float lobe_albedo(size_t k) const;
-
-  Vec3 wv_;
-  Rgb diffuse_;
-  LobeMasking masking_;
-  struct Lobe {
-    LobeAtView shape;
-    LobeDistribution distribution;
-    Rgb weight;
-  };
-  std::vector<Lobe> lobes_;
-};
-
-/// f cos(theta_l) in 1/sr of any pair in the local frame; 0 unless both directions are above the horizon.
-Rgb closure_f_cos(const ClosureNetwork& network, LobeMasking masking, const Vec3& wv, const Vec3& wl);
-
-/// Directional albedo of channel `channel` (0 red, 1 green, 2 blue) at `theta_v` in radians, [0, pi / 2).
-float closure_albedo(const ClosureNetwork& network, LobeMasking masking, float theta_v, int channel);
+/// Factor s of N' = normalize(N + s (Incoming - N)) for the relative `tilt` of a lobe, at theta_v < pi / 2.
+float incoming_factor(float tilt, float theta_v);
+/// Anisotropy of a Glossy (or Anisotropic) BSDF whose tangent lies in the plane of incidence.
+float anisotropy_input(float anisotropy);
 
 }  // namespace velour
