@@ -31,7 +31,8 @@ std::vector<ClosureTarget> fitted_targets(const ClosureSource& source, const Hig
                                           const Progress& progress) {
   std::vector<std::vector<ClosureTarget>> one_each(kClosureViews);
   parallel_pieces(one_each.size(), threads, progress, [&](size_t i) {
-    one_each[i].push_back(closure_target(source, widths, radians_from(1.25f + 2.5f * static_cast<float>(i)), kFittedLights));
+    one_each[i].push_back(
+        closure_target(source, widths, radians_from(1.25f + 2.5f * static_cast<float>(i)), kFittedLights));
   });
   std::vector<ClosureTarget> targets;
   for (auto& one : one_each) targets.push_back(std::move(one[0]));
@@ -61,8 +62,7 @@ ClosureFit fit_closures(const ClosureSource& source, const ClosureFitOptions& op
   check_closure_options(options);
   progress.stage("reading the material", 0, 0.2);
   const HighlightWidths widths = highlight_widths(source);
-  const std::vector<ClosureView> views =
-      closure_views(fitted_targets(source, widths, options.threads, progress));
+  const std::vector<ClosureView> views = closure_views(fitted_targets(source, widths, options.threads, progress));
   if (views.empty()) return black_closures(options);
   const ClosureJudge judge(source, widths, options.threads, progress);
   const ClosureAlbedo albedo(source, widths, options.threads, progress);

@@ -12,7 +12,7 @@ struct ClosureFitOptions {
   double tolerance = 0.03;  // mean error with which no more lobes are added
   int max_lobes = 3;        // in [1, 3]
   LobeMasking masking = LobeMasking::separable;
-  int threads = 0;          // 0: all; the result does not depend on it
+  int threads = 0;  // 0: all; the result does not depend on it
 };
 
 struct ClosureFit {
@@ -25,10 +25,11 @@ struct ClosureFit {
 };
 
 /// Least squares on f cos and albedo at 36 views, each relative to its own norms (ClosureProblem), by
-/// Levenberg-Marquardt. A network of K lobes starts from that of K - 1 lobes (one_more_lobe). The smallest K with a mean error below the tolerance or within 10 % of the best is returned. At last weights are scaled until
-/// albedos agree (ClosureAlbedo). Anisotropic sources are averaged over the azimuth of the view, and errors are against
-/// all azimuths. Throws Error(invalid_argument) if an option is out of range, and Error(cancelled) after a cancel. Black
-/// if the source is.
+/// Levenberg-Marquardt. A network of K lobes starts from that of K - 1 lobes (one_more_lobe). The smallest K with a
+/// mean error below the tolerance or within 10 % of the best is returned. At last weights are scaled until albedos
+/// agree (ClosureAlbedo). Anisotropic sources are averaged over the azimuth of the view, and errors are against all
+/// azimuths. Throws Error(invalid_argument) if an option is out of range, and Error(cancelled) after a cancel. Black if
+/// the source is.
 ClosureFit fit_closures(const ClosureSource& source, const ClosureFitOptions& options, Progress& progress);
 
 }  // namespace velour

@@ -115,8 +115,11 @@ struct LightMixture {
 
 WeightedLights closure_lights(const HighlightWidths& widths, float theta_v, int count) {
   constexpr float kWideAlpha = 0.35f;
-  const LightMixture mixture{3 * count / 10, count / 5, count / 10,
-                             {widths.mirror, std::sqrt(widths.mirror * kWideAlpha), kWideAlpha}, widths.viewer};
+  const LightMixture mixture{3 * count / 10,
+                             count / 5,
+                             count / 10,
+                             {widths.mirror, std::sqrt(widths.mirror * kWideAlpha), kWideAlpha},
+                             widths.viewer};
   const Vec3 wv = direction(theta_v, 0);
   WeightedLights lights;
   const auto add = [&](uint64_t key, int n, const auto& direction_of_point) {

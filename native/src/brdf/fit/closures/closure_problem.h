@@ -20,7 +20,8 @@ struct ClosureView {
 std::vector<ClosureView> closure_views(std::vector<ClosureTarget> targets);
 
 /// Minimizes the sum over views of squared residuals, relative to the view's own norms: f cos of each channel, its
-/// luminance, and the albedo of each channel; and of a small penalty on bent curves of shapes. Unknowns in the order of ClosureUnknowns, column by column.
+/// luminance, and the albedo of each channel; and of a small penalty on bent curves of shapes. Unknowns in the order of
+/// ClosureUnknowns, column by column.
 class ClosureProblem {
  public:
   struct Normal {

@@ -20,7 +20,8 @@ ClosureSolution flipped(ClosureSolution s, size_t k, const ClosureBounds& bounds
   auto unknowns = s.unknowns.col(lobe_unknown(static_cast<int>(k)) + 3);
   for (int i = 0; i < kClosureKnots; ++i) {
     const double alpha = closure_shape(unknowns[i], 0, 0, 0, bounds).alpha;
-    unknowns[i] = closure_alpha_unknown(std::min(was_ggx ? kBeckmannAlpha * alpha : alpha / kBeckmannAlpha, 1.0), bounds);
+    unknowns[i] =
+        closure_alpha_unknown(std::min(was_ggx ? kBeckmannAlpha * alpha : alpha / kBeckmannAlpha, 1.0), bounds);
   }
   return s;
 }
@@ -33,7 +34,8 @@ class ClosureSearch {
 
   ClosureSolution descended(ClosureSolution s, const DescentOptions& descent) const {
     const ClosureProblem problem(views_, s.distributions, options_.masking, options_.bounds);
-    s.unknowns = descend(problem, s.unknowns, [&] { progress_.check(); }, descent);
+    s.unknowns = descend(
+        problem, s.unknowns, [&] { progress_.check(); }, descent);
     s.cost = problem.cost(s.unknowns);
     return s;
   }
@@ -41,9 +43,8 @@ class ClosureSearch {
   ClosureSolution best_trial(std::vector<ClosureSolution> starts) const {
     parallel_pieces(starts.size(), options_.threads, progress_,
                     [&](size_t i) { starts[i] = descended(starts[i], kTrial); });
-    return *std::min_element(starts.begin(), starts.end(), [](const ClosureSolution& a, const ClosureSolution& b) {
-      return a.cost < b.cost;
-    });
+    return *std::min_element(starts.begin(), starts.end(),
+                             [](const ClosureSolution& a, const ClosureSolution& b) { return a.cost < b.cost; });
   }
 
  private:

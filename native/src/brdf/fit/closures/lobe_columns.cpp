@@ -59,9 +59,16 @@ LobeAtView lobe_at_view(const LobeShape& s, float theta_v) {
   const float view_x = std::sin(theta_v - s.tilt), view_z = std::max(std::cos(theta_v - s.tilt), 1e-6f);
   const float tangent = view_x / view_z, t = x_sq * tangent * tangent;
   const SmithLambda lambda = smith_lambda<distribution, masking>(lanes_of(t));
-  return {lanes_of(std::sin(s.tilt)), lanes_of(std::cos(s.tilt)), lanes_of(x_sq), lanes_of(y_sq),
-          lanes_of(1 / x_sq), lanes_of(1 / y_sq), lanes_of(1 / (4 * kPi * s.alpha_x * s.alpha_y * view_z)),
-          lambda.value, hn::Mul(lambda.slope, lanes_of(2 * t)), hn::Mul(lambda.slope, lanes_of(-2 * tangent * (x_sq + t))),
+  return {lanes_of(std::sin(s.tilt)),
+          lanes_of(std::cos(s.tilt)),
+          lanes_of(x_sq),
+          lanes_of(y_sq),
+          lanes_of(1 / x_sq),
+          lanes_of(1 / y_sq),
+          lanes_of(1 / (4 * kPi * s.alpha_x * s.alpha_y * view_z)),
+          lambda.value,
+          hn::Mul(lambda.slope, lanes_of(2 * t)),
+          hn::Mul(lambda.slope, lanes_of(-2 * tangent * (x_sq + t))),
           lanes_of(tangent)};
 }
 
@@ -177,7 +184,8 @@ void FillLobe(const ClosureLights& lights, const LobeShape& shape, float* value)
 }
 
 void FillLobeSlopes(const ClosureLights& lights, const LobeShape& shape, const LobeChain& chain, float* out) {
-  with_lobe_kind(shape, [&]<LobeDistribution d, LobeMasking m>() { FillLobeSlopesOf<d, m>(lights, shape, chain, out); });
+  with_lobe_kind(shape,
+                 [&]<LobeDistribution d, LobeMasking m>() { FillLobeSlopesOf<d, m>(lights, shape, chain, out); });
 }
 
 float dot_product(const float* HWY_RESTRICT a, const float* HWY_RESTRICT b, size_t count) {

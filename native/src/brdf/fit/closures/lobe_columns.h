@@ -23,14 +23,16 @@ struct LobeShape {
   float tilt = 0;                  // radians; N' = (sin(tilt), 0, cos(tilt)); the viewer is in front of N'
 };
 
+// Arrays of floats are aligned to cache lines (AlignedArray).
+
 /// D G / (4 wv.N') (1/sr, without the cosine of the light) times root_weight, for each light; 0 behind N'.
 void fill_lobe(const ClosureLights& lights, const LobeShape& shape, float* value);
 
 /// Factors of the derivatives by log(alpha_x), log(alpha_y) and the tilt in those by three other parameters.
 struct LobeChain {
-  float alpha_x, alpha_y;        // parameter 0
-  float tilt;                    // parameter 1
-  float stretch_x, stretch_y;    // parameter 2
+  float alpha_x, alpha_y;      // parameter 0
+  float tilt;                  // parameter 1
+  float stretch_x, stretch_y;  // parameter 2
 };
 
 /// fill_lobe(), and its derivatives by the three parameters of `chain`. Rows of `out` are padded() apart.

@@ -4,6 +4,7 @@
 #include <chrono>
 #include <cmath>
 #include <string>
+#include <utility>
 #include <vector>
 #include "base/error.h"
 #include "brdf/fit/error/evaluate.h"
@@ -28,8 +29,9 @@ std::string reason_of(const ClosureFit& fit) {
       std::max_element(fit.errors.begin(), fit.errors.end() - 1,  // without 85 degrees, as the mean
                        [](const ClosureViewError& a, const ClosureViewError& b) { return a.luminance < b.luminance; });
   const size_t lobes = fit.network.lobes.size();
-  return "The highlights have shapes that " + std::to_string(lobes) + (lobes == 1 ? " glossy closure" : " glossy closures") +
-         " cannot take, above all at " + std::to_string(worst->degrees) + " degrees (" + percent(worst->luminance) + ").";
+  return "The highlights have shapes that " + std::to_string(lobes) +
+         (lobes == 1 ? " glossy closure" : " glossy closures") + " cannot take, above all at " +
+         std::to_string(worst->degrees) + " degrees (" + percent(worst->luminance) + ").";
 }
 
 }  // namespace
@@ -42,18 +44,19 @@ ModelClosures fit_measurement_closures(const Measurement& measurement, const Clo
                                measurement.eval(wv, wl, f, valid);
                              },
                              measurement.isotropic()};
-  ModelClosures closures{.fit = fit_closures(source, options, progress)};
-  closures.reason = reason_of(closures.fit);
-  closures.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  return closures;
+  ClosureFit fit = fit_closures(source, options, progress);
+  const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  std::string reason = reason_of(fit);
+  return {std::move(fit), seconds, std::move(reason)};
 }
 
 ModelClosures fit_model_closures(const std::shared_ptr<const Model>& model, const ClosureFitOptions& options,
                                  Progress& progress) {
   if (is_btf(*model)) {
-    throw Error(Status::unsupported, "The model of \"" + model->source.name +
-                                         "\" is of a BTF, whose texture closures of one BRDF cannot show; fit closures to "
-                                         "a model of a BRDF.");
+    throw Error(Status::unsupported,
+                "The model of \"" + model->source.name +
+                    "\" is of a BTF, whose texture closures of one BRDF cannot show; fit closures to "
+                    "a model of a BRDF.");
   }
   return fit_measurement_closures(MaterialMeasurement(make_material(model, 0)), options, progress);
 }
