@@ -109,7 +109,7 @@ double closure_alpha_unknown(double alpha, const ClosureBounds& bounds) {
 }
 
 double closure_tilt_unknown(double tilt, double theta_v) {
-  const double lean = largest_lean(theta_v), inside = std::clamp(tilt, -0.95 * lean, 0.95);
+  const double lean = largest_lean(theta_v), inside = std::clamp(tilt, -0.95 * lean, 0.98);
   return 0.5 * std::log((inside + lean) / (lean * (1 - inside)));
 }
 

@@ -67,9 +67,10 @@ ClosureFit fit_closures(const ClosureSource& source, const ClosureFitOptions& op
   const ClosureJudge judge(source, widths, options.threads, progress);
   const ClosureAlbedo albedo(source, widths, options.threads, progress);
 
-  const ClosureSearchOptions search{.masking = options.masking,
-                                    .bounds = {.min_alpha = 0.5 * static_cast<double>(widths.mirror)},
-                                    .threads = options.threads};
+  // A half vector turns by half the angle of the light about the viewer.
+  const double narrowest = static_cast<double>(std::min(widths.mirror, 0.5f * widths.viewer));
+  const ClosureSearchOptions search{
+      .masking = options.masking, .bounds = {.min_alpha = 0.5 * narrowest}, .threads = options.threads};
   ClosureSolution solution;
   std::vector<ClosureFit> fits;
   while (static_cast<int>(fits.size()) < options.max_lobes) {

@@ -17,15 +17,15 @@ struct ScannedLobe {
   double cost = 0;
 };
 
-std::vector<ScannedLobe> scanned_lobes(const ClosureBounds& bounds, bool tilted) {
+std::vector<ScannedLobe> scanned_lobes(const ClosureBounds& bounds) {
   constexpr int kAlphas = 7;
   std::vector<ScannedLobe> lobes;
   for (const LobeDistribution distribution : {LobeDistribution::ggx, LobeDistribution::beckmann}) {
     for (int i = 0; i < kAlphas; ++i) {
       const double alpha = bounds.min_alpha * std::pow(0.8 / bounds.min_alpha, (i + 0.3) / (kAlphas - 0.7));
-      for (const double tilt : {0.0, 0.3, 0.85}) {
-        if (tilt == 0 || (tilted && alpha > 0.1)) lobes.push_back({distribution, alpha, tilt});
-      }
+      lobes.push_back({distribution, alpha, 0});
+      if (alpha > 0.1) lobes.push_back({distribution, alpha, 0.3});
+      lobes.push_back({distribution, alpha, alpha > 0.1 ? 0.85 : 0.98});  // retro-reflection
     }
   }
   return lobes;
@@ -129,7 +129,7 @@ void share_albedo(const std::vector<ClosureView>& views, double share, ClosureSo
 std::vector<ClosureSolution> closure_starts(const std::vector<ClosureView>& views, const ClosureSolution& from,
                                             LobeMasking masking, const ClosureBounds& bounds) {
   const ClosureScan scan(views, masking, bounds);
-  std::vector<ScannedLobe> lobes = scanned_lobes(bounds, !from.distributions.empty());
+  std::vector<ScannedLobe> lobes = scanned_lobes(bounds);
   for (ScannedLobe& lobe : lobes) lobe.cost = scan.cost(with_lobe(from, lobe, bounds));
   std::stable_sort(lobes.begin(), lobes.end(),
                    [](const ScannedLobe& a, const ScannedLobe& b) { return a.cost < b.cost; });

@@ -90,9 +90,11 @@ TEST(ClosureStarts, EachKindHasTheWidthOfTheMissingLobe) {
   const auto source = source_of(network_of(Rgb(0.2f), {lobe_of(kBeckmann, Rgb(0.3f), 0.06f)}), kSeparable);
   const ClosureBounds bounds;
   const std::vector<ClosureSolution> starts = closure_starts(views_of(source), {}, kSeparable, bounds);
-  ASSERT_EQ(starts.size(), 2u);
+  ASSERT_EQ(starts.size(), 4u);  // two distributions, toward the normal or the viewer
   EXPECT_NE(starts[0].distributions, starts[1].distributions);
-  for (const ClosureSolution& start : starts) {
+  for (size_t i = 0; i < 2; ++i) {
+    const ClosureSolution& start = starts[i];
+    EXPECT_EQ(start.unknowns(kClosureKnots - 1, 7), 0);  // its tilt
     const double alpha = closure_shape(start.unknowns(0, 6), 0, 0, 0.5, bounds).alpha;
     EXPECT_TRUE(alpha > 0.03 && alpha < 0.12) << alpha;
   }
@@ -136,6 +138,14 @@ TEST(ClosureFit, RecoversANarrowHighlight) {
   ASSERT_EQ(fit.network.lobes.size(), 1u);
   EXPECT_NEAR(fit.network.lobes[0].roughness[30], 0.1f, 0.005f);
   EXPECT_LT(fit.mean_error, 0.02);
+}
+
+TEST(ClosureFit, RecoversRetroReflection) {
+  const ClosureNetwork truth =
+      network_of(Rgb(0.2f), {lobe_of(kGgx, Rgb(0.1f), 0.1f), lobe_of(kBeckmann, Rgb(0.4f), 0.03f, 0.99f)});
+  const ClosureFit fit = fit_of(source_of(truth, kSeparable));
+  ASSERT_EQ(fit.network.lobes.size(), 2u);
+  EXPECT_LT(fit.mean_error, 0.03);
 }
 
 TEST(ClosureFit, NegativeControlAnotherMaskingIsSeen) {
