@@ -109,7 +109,7 @@ Vec3d ClosureAlbedo::albedo_of(const ClosureNetwork& network, LobeMasking maskin
 }
 
 void ClosureAlbedo::correct(ClosureNetwork& network, LobeMasking masking) const {
-  constexpr double kSlack = 0.008, kLeastShare = 0.01, kLargestGain = 1.25;
+  constexpr double kSlack = 0.008, kMinShare = 0.01, kLargestGain = 1.25;
   std::vector<Vec3d> ratio(views_.size());  // albedo of the source over that of the network
   for (size_t v = 0; v < views_.size(); ++v) {
     const Vec3d model = albedo_of(network, masking, views_[v]);
@@ -123,7 +123,7 @@ void ClosureAlbedo::correct(ClosureNetwork& network, LobeMasking masking) const 
       const size_t first = v > 0 ? v - 1 : 0, last = i + 2 >= kClosureSamples ? views_.size() - 1 : v + 1;
       double most = ratio[v][c];
       for (size_t near = first; near <= last; ++near) most = std::min(most, ratio[near][c]);
-      const bool dark = views_[v].albedo[c] < kLeastShare * largest_;
+      const bool dark = views_[v].albedo[c] < kMinShare * largest_;
       const double least = dark ? 0 : std::min(ratio[v][c] * (1 - kSlack), kLargestGain);
       factor[c] = static_cast<float>(std::min(std::max(1.0, least), most * (1 + kSlack)));
     }

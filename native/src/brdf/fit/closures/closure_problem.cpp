@@ -9,7 +9,7 @@
 namespace velour {
 
 std::vector<ClosureView> closure_views(std::vector<ClosureTarget> targets) {
-  constexpr double kLeastView = 1e-3, kLeastChannel = 0.02;
+  constexpr double kMinView = 1e-3, kMinChannel = 0.02;
   const auto largest_of = [](const Vec3d& c) { return std::max({c.r, c.g, c.b}); };
   double largest = 0, largest_albedo = 0;
   for (const ClosureTarget& t : targets) {
@@ -21,11 +21,11 @@ std::vector<ClosureView> closure_views(std::vector<ClosureTarget> targets) {
   for (ClosureTarget& t : targets) {
     ClosureView view{.target = std::move(t), .taps = {}};
     const ClosureTarget& of = view.target;
-    const double least = std::max(of.norm_sq_luminance, kLeastView * kLeastView * largest);
-    const double least_albedo = kLeastChannel * std::max(largest_of(of.albedo), kLeastView * largest_albedo);
+    const double least = std::max(of.norm_sq_luminance, kMinView * kMinView * largest);
+    const double least_albedo = kMinChannel * std::max(largest_of(of.albedo), kMinView * largest_albedo);
     view.inverse_norm_sq_luminance = 1 / least;
     for (int c = 0; c < 3; ++c) {
-      view.inverse_norm_sq[c] = 1 / std::max(of.norm_sq[c], kLeastChannel * kLeastChannel * least);
+      view.inverse_norm_sq[c] = 1 / std::max(of.norm_sq[c], kMinChannel * kMinChannel * least);
       view.inverse_albedo_sq[c] = std::pow(std::max(of.albedo[c], least_albedo), -2);
     }
     view.taps = closure_taps(static_cast<double>(of.lights.theta_v()));
@@ -230,11 +230,11 @@ ClosureProblem::Normal ClosureProblem::normal(const ClosureUnknowns& u) const {
 }
 
 // Unknowns that hardly matter, such as the shape of a lobe of little weight, would take long steps otherwise.
-constexpr double kLeastDamped = 0.05;
+constexpr double kMinDamped = 0.05;
 
 Eigen::VectorXd ClosureProblem::Normal::step(double damping) const {
   Eigen::MatrixXd damped = curvature;
-  damped.diagonal() += damping * curvature.diagonal().cwiseMax(kLeastDamped);
+  damped.diagonal() += damping * curvature.diagonal().cwiseMax(kMinDamped);
   damped.diagonal().array() += 1e-12;
   const Eigen::LLT<Eigen::Ref<Eigen::MatrixXd>> factors(damped);
   if (factors.info() != Eigen::Success) return Eigen::VectorXd::Zero(slope.size());  // no gain: more damping follows

@@ -6,8 +6,8 @@
 namespace velour {
 
 float lowest_closure_tilt(float theta_v) {
-  constexpr float kLeastRise = 0.01f;
-  const float rise = std::min(0.9f * std::cos(theta_v), kLeastRise);
+  constexpr float kMinRise = 0.01f;
+  const float rise = std::min(0.9f * std::cos(theta_v), kMinRise);
   return 0.5f * (theta_v - std::acos(std::clamp(rise, 0.0f, 1.0f)));
 }
 
