@@ -127,7 +127,7 @@ std::array<UnknownRow, kMaxClosureUnknowns> unknown_rows(const ViewUnknowns& u, 
   return out;
 }
 
-double luminance_of(const std::array<double, 3>& c) {
+double brightness_of(const std::array<double, 3>& c) {
   return kLuminance[0] * c[0] + kLuminance[1] * c[1] + kLuminance[2] * c[2];
 }
 
@@ -143,7 +143,7 @@ struct ClosureProblem::ViewNormal {
     const auto derivative = unknown_rows(u, colors);
     for (int i = 0; i < u.size(); ++i) {
       const auto& [a, color_a] = derivative[static_cast<size_t>(i)];
-      const double luminance_a = luminance_of(color_a) * view.inverse_norm_sq_luminance;
+      const double luminance_a = brightness_of(color_a) * view.inverse_norm_sq_luminance;
       std::array<double, 3> of_values, of_albedo;
       double sum = 0;
       for (size_t c = 0; c < 3; ++c) {

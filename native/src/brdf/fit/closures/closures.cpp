@@ -22,7 +22,7 @@ T closure_value(const ClosureCurve<T>& curve, float theta_v) {
   return curve[i] * (1 - t) + curve[i + 1] * t;
 }
 
-LobeShape shape_at(const ClosureLobe& lobe, LobeMasking masking, float theta_v) {
+ClosureLobeShape shape_at(const ClosureLobe& lobe, LobeMasking masking, float theta_v) {
   const float roughness = closure_value(lobe.roughness, theta_v), alpha = roughness * roughness;
   const float stretch = std::exp(closure_value(lobe.anisotropy, theta_v));
   return {.distribution = lobe.distribution,

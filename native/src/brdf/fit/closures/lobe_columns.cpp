@@ -54,7 +54,7 @@ struct LobeAtView {
 };
 
 template <LobeDistribution distribution, LobeMasking masking>
-LobeAtView lobe_at_view(const LobeShape& s, float theta_v) {
+LobeAtView lobe_at_view(const ClosureLobeShape& s, float theta_v) {
   const float x_sq = s.alpha_x * s.alpha_x, y_sq = s.alpha_y * s.alpha_y;
   const float view_x = std::sin(theta_v - s.tilt), view_z = std::max(std::cos(theta_v - s.tilt), 1e-6f);
   const float tangent = view_x / view_z, t = x_sq * tangent * tangent;
@@ -141,7 +141,7 @@ LobeSample lobe_sample(const LobeAtView& lobe, const ClosureLights& lights, size
 }
 
 template <LobeDistribution distribution, LobeMasking masking>
-void FillLobeOf(const ClosureLights& lights, const LobeShape& shape, float* HWY_RESTRICT value) {
+void FillLobeOf(const ClosureLights& lights, const ClosureLobeShape& shape, float* HWY_RESTRICT value) {
   const LobeTag tag;
   const LobeAtView lobe = lobe_at_view<distribution, masking>(shape, lights.theta_v());
   for (size_t i = 0; i < lights.padded(); i += hn::Lanes(tag)) {
@@ -150,7 +150,7 @@ void FillLobeOf(const ClosureLights& lights, const LobeShape& shape, float* HWY_
 }
 
 template <LobeDistribution distribution, LobeMasking masking>
-void FillLobeSlopesOf(const ClosureLights& lights, const LobeShape& shape, const LobeChain& chain,
+void FillLobeSlopesOf(const ClosureLights& lights, const ClosureLobeShape& shape, const LobeChain& chain,
                       float* HWY_RESTRICT out) {
   const LobeTag tag;
   const LobeAtView lobe = lobe_at_view<distribution, masking>(shape, lights.theta_v());
@@ -168,7 +168,7 @@ void FillLobeSlopesOf(const ClosureLights& lights, const LobeShape& shape, const
 
 /// Calls `work` with the distribution and masking of `shape` as constants.
 template <class Work>
-void with_lobe_kind(const LobeShape& shape, const Work& work) {
+void with_lobe_kind(const ClosureLobeShape& shape, const Work& work) {
   using D = LobeDistribution;
   using M = LobeMasking;
   const auto with_masking = [&]<D d>() {
@@ -179,11 +179,11 @@ void with_lobe_kind(const LobeShape& shape, const Work& work) {
                                : with_masking.template operator()<D::beckmann>();
 }
 
-void FillLobe(const ClosureLights& lights, const LobeShape& shape, float* value) {
+void FillLobe(const ClosureLights& lights, const ClosureLobeShape& shape, float* value) {
   with_lobe_kind(shape, [&]<LobeDistribution d, LobeMasking m>() { FillLobeOf<d, m>(lights, shape, value); });
 }
 
-void FillLobeSlopes(const ClosureLights& lights, const LobeShape& shape, const LobeChain& chain, float* out) {
+void FillLobeSlopes(const ClosureLights& lights, const ClosureLobeShape& shape, const LobeChain& chain, float* out) {
   with_lobe_kind(shape,
                  [&]<LobeDistribution d, LobeMasking m>() { FillLobeSlopesOf<d, m>(lights, shape, chain, out); });
 }
@@ -218,11 +218,11 @@ HWY_EXPORT(FillLobeSlopes);
 HWY_EXPORT(FillProducts);
 }  // namespace
 
-void fill_lobe(const ClosureLights& lights, const LobeShape& shape, float* value) {
+void fill_lobe(const ClosureLights& lights, const ClosureLobeShape& shape, float* value) {
   VELOUR_SIMD_DISPATCH(FillLobe)(lights, shape, value);
 }
 
-void fill_lobe_slopes(const ClosureLights& lights, const LobeShape& shape, const LobeChain& chain, float* out) {
+void fill_lobe_slopes(const ClosureLights& lights, const ClosureLobeShape& shape, const LobeChain& chain, float* out) {
   VELOUR_SIMD_DISPATCH(FillLobeSlopes)(lights, shape, chain, out);
 }
 

@@ -16,7 +16,7 @@ enum class LobeMasking {
 };
 
 /// A lobe at a view in the x-z plane.
-struct LobeShape {
+struct ClosureLobeShape {
   LobeDistribution distribution = LobeDistribution::ggx;
   LobeMasking masking = LobeMasking::separable;
   float alpha_x = 1, alpha_y = 1;  // along and across the plane of incidence
@@ -26,7 +26,7 @@ struct LobeShape {
 // Arrays of floats are aligned to cache lines (AlignedArray).
 
 /// D G / (4 wv.N') (1/sr, without the cosine of the light) times root_weight, for each light; 0 behind N'.
-void fill_lobe(const ClosureLights& lights, const LobeShape& shape, float* value);
+void fill_lobe(const ClosureLights& lights, const ClosureLobeShape& shape, float* value);
 
 /// Factors of the derivatives by log(alpha_x), log(alpha_y) and the tilt in those by three other parameters.
 struct LobeChain {
@@ -36,7 +36,7 @@ struct LobeChain {
 };
 
 /// fill_lobe(), and its derivatives by the three parameters of `chain`. Rows of `out` are padded() apart.
-void fill_lobe_slopes(const ClosureLights& lights, const LobeShape& shape, const LobeChain& chain, float* out);
+void fill_lobe_slopes(const ClosureLights& lights, const ClosureLobeShape& shape, const LobeChain& chain, float* out);
 
 /// Dot products of `rows` rows of `count` floats each, a multiple of 16: `gram` gets those of each pair (row-major,
 /// only j <= i is set), `moments` those with each of the four arrays of `fixed`.

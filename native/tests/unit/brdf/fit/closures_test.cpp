@@ -111,8 +111,8 @@ TEST(Closures, SlopesOfALobeAreThoseOfDifferences) {
   for (const LobeDistribution distribution : {kGgx, kBeckmann}) {
     for (const LobeMasking masking : {kSeparable, kCorrelated}) {
       const auto shape = [&](float size, float tilt, float stretch) {
-        return LobeShape{distribution, masking, 0.3f * std::exp(size + stretch), 0.5f * std::exp(size - stretch),
-                         0.1f + tilt};
+        return ClosureLobeShape{distribution, masking, 0.3f * std::exp(size + stretch), 0.5f * std::exp(size - stretch),
+                                0.1f + tilt};
       };
       AlignedArray<float> rows(4 * lights.padded()), up(lights.padded()), down(lights.padded());
       fill_lobe_slopes(lights, shape(0, 0, 0), chain, rows.data());
