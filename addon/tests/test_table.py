@@ -52,6 +52,7 @@ def test_sizes_and_offsets_agree_with_the_compiler(compiler, tmp_path):
         ("VLR_KERNEL_", table.KERNELS),
         ("VLR_MODEL_", table.MODELS),
         ("VLR_PEER_", table.PEERS),
+        ("VLR_MASKING_", table.MASKINGS),
         ("VLR_PLOT_", tuple(name.replace("-", "_") for name in table.PLOTS)),
         ("VLR_LIGHT_", table.LIGHTS),
         ("VLR_CAMERA_", table.CAMERAS),

@@ -7,7 +7,7 @@ import os
 
 import numpy as np
 
-from . import library
+from . import library, structs, table
 from .arrays import checked, directions, pointer, small
 from .handle import Handle, path_bytes
 from .observation import Observation
@@ -45,6 +45,23 @@ class Model(Handle):
     def roughened(self, roughness: float) -> Model:
         """The model of a rougher surface; `roughness`: 0 to 1. Not for models of BTFs."""
         return self._create("vlr_model_roughened", self.pointer, roughness)
+
+    def closures(
+        self, max_lobes: int = 0, tolerance: float = 0.0, masking: str = "separable", threads: int = 0
+    ) -> dict:
+        """Blender's own closures fitted to the model: lobes, diffuse, views, relative_l2, albedo_excess, reason, ...
+
+        Curves have 65 samples over the view angle, 0 to 90 degrees. The keys are those of vlr_model_closures_json.
+        `max_lobes`: 1 to 3 glossy closures; 0: automatic. `tolerance`: mean relative L2 error with which no more
+        are added; 0: automatic. `masking`: "separable" before Blender 3.5, "correlated" since. Not for models of BTFs.
+        """
+        if masking not in table.MASKINGS:
+            raise ValueError(f"masking is {masking!r}, not one of {', '.join(table.MASKINGS)}")
+        options = structs.ClosureOptions()
+        self._lib.vlr_closure_options_init(ctypes.byref(options))
+        options.max_lobes, options.tolerance, options.threads = max_lobes, tolerance, threads
+        options.masking = table.MASKINGS.index(masking)
+        return library.json_of(self._lib.vlr_model_closures_json, self.pointer, ctypes.byref(options))
 
     def out_of_domain(self, frame: Observation) -> float:
         """Share of the usage in `frame` that a scene model was not fitted for; 0 for other models."""

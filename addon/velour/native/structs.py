@@ -54,6 +54,16 @@ class FitOptions(Struct):
     ]
 
 
+class ClosureOptions(Struct):
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("max_lobes", c_uint32),
+        ("tolerance", c_double),
+        ("masking", c_int32),
+        ("threads", c_uint32),
+    ]
+
+
 class BtfOptions(Struct):
     _fields_ = [
         ("struct_size", c_uint32),
@@ -464,6 +474,7 @@ class ImageFrame(Struct):
 STRUCTS = {
     "vlr_job_state": JobStateStruct,
     "vlr_fit_options": FitOptions,
+    "vlr_closure_options": ClosureOptions,
     "vlr_btf_options": BtfOptions,
     "vlr_compress_options": CompressOptions,
     "vlr_microsurface_options": MicrosurfaceOptions,

@@ -31,6 +31,7 @@ BTF_VALUES = ("automatic", "brdf", "reflectance", "radiance")
 BTF_COLORS = ("rec709", "xyz")
 BTF_ANGLES = ("automatic", "degrees", "radians")
 PEERS = ("ggx", "principled", "plain_principled")
+MASKINGS = ("separable", "correlated")
 PLOTS = ("lobes", "order", "view-error", "albedo", "outline")
 LIGHTS = ("sun", "point", "rectangle", "disk", "spot")
 HIDDEN = {"camera": 1, "bounces": 2, "shadows": 4, "holdout": 8}  # VLR_HIDDEN_FROM_*, VLR_HOLDOUT
@@ -248,6 +249,7 @@ STATUS_CALLS = {
     "vlr_model_eval": [_handle, _floats, c_uint64, _floats, _floats, _floats],
     "vlr_model_sample": [_handle, _floats, c_uint64, _floats, _floats, _floats],
     "vlr_model_out_of_domain": [_handle, _handle, POINTER(c_double)],
+    "vlr_model_closures_json": [_handle, POINTER(structs.ClosureOptions), _json],
     "vlr_file_info_json": [c_char_p, _json],
     "vlr_btf_load": [c_char_p, POINTER(structs.BtfOptions), _out_handle],
     "vlr_btf_info_json": [_handle, _json],
@@ -420,6 +422,7 @@ PLAIN_CALLS = {
     "vlr_btf_options_init": (None, [POINTER(structs.BtfOptions)]),
     "vlr_compress_options_init": (None, [POINTER(structs.CompressOptions)]),
     "vlr_fit_options_init": (None, [POINTER(structs.FitOptions)]),
+    "vlr_closure_options_init": (None, [POINTER(structs.ClosureOptions)]),
     "vlr_microsurface_options_init": (None, [POINTER(structs.MicrosurfaceOptions)]),
     "vlr_capture_options_init": (None, [POINTER(structs.CaptureOptions)]),
     "vlr_votf_options_init": (None, [POINTER(structs.VotfOptions)]),

@@ -132,6 +132,27 @@ VLR_API vlr_status vlr_model_eval(const vlr_model* model, const float* wv, uint6
 VLR_API vlr_status vlr_model_sample(const vlr_model* model, const float* wv, uint64_t count, const float* u, float* wl,
                                     float* pdf);
 
+enum {
+  VLR_MASKING_SEPARABLE = 0, /* G1(wv) G1(wl): Cycles before Blender 3.5 */
+  VLR_MASKING_CORRELATED = 1 /* height-correlated: later versions */
+};
+typedef struct vlr_closure_options {
+  uint32_t struct_size;
+  uint32_t max_lobes; /* maximum number of glossy lobes, 1 to 3; 0: automatic */
+  double tolerance;   /* mean relative L2 error with which no more lobes are added; 0: automatic */
+  int32_t masking;    /* VLR_MASKING_* of the closures; VLR_MASKING_SEPARABLE */
+  uint32_t threads;   /* 0: all */
+} vlr_closure_options;
+VLR_API void vlr_closure_options_init(vlr_closure_options* options);
+/* Fits a Diffuse BSDF and the fewest Glossy BSDFs of Blender that will do to a model (docs/engine/closures.md). Curves
+ * over the view angle have 65 samples at theta_v = 0 to pi/2, at equal distances. JSON: lobes [{distribution "GGX" or
+ * "BECKMANN", color (65 x RGB), roughness, tilt (s of the normal N + s (Incoming - N)), anisotropy (65 each)}], diffuse
+ * (65 x RGB), views (degrees), relative_l2 (of the luminance of f cos against the model, a number per view),
+ * relative_l2_mean (of the views up to 75 degrees), albedo_excess (largest share by which an albedo exceeds the
+ * model's), seconds, reason (a sentence if the error is large, otherwise ""). VLR_UNSUPPORTED for models of BTFs. Takes
+ * about half a second. */
+VLR_API vlr_status vlr_model_closures_json(vlr_model* model, const vlr_closure_options* options, const char** json);
+
 /* JSON as from vlr_measurement_info_json, vlr_model_info_json, vlr_observation_info_json or vlr_btf_info_json,
  * depending on the file or folder; the text belongs to the thread until its next call of this function. */
 VLR_API vlr_status vlr_file_info_json(const char* path, const char** json);

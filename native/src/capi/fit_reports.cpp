@@ -70,6 +70,52 @@ std::string peer_json(const PeerFit& fit) {
 
 namespace {
 
+Json curve_json(const ClosureCurve<Rgb>& curve) {
+  Json json = Json::array();
+  for (const Rgb& c : curve) json.push_back(color(c));
+  return json;
+}
+
+/// `input` gives the value at a sample and its theta_v.
+template <class Input>
+Json input_json(const ClosureCurve<float>& curve, const Input& input) {
+  Json json = Json::array();
+  for (size_t i = 0; i < curve.size(); ++i) {
+    json.push_back(input(curve[i], 0.5f * kPi * static_cast<float>(i) / (kClosureSamples - 1)));
+  }
+  return json;
+}
+
+Json lobe_json(const ClosureLobe& lobe) {
+  return {{"distribution", lobe.distribution == LobeDistribution::ggx ? "GGX" : "BECKMANN"},
+          {"color", curve_json(lobe.weight)},
+          {"roughness", lobe.roughness},
+          {"tilt", input_json(lobe.tilt, incoming_factor)},
+          {"anisotropy", input_json(lobe.anisotropy, [](float value, float) { return anisotropy_input(value); })}};
+}
+
+}  // namespace
+
+std::string closures_json(const ModelClosures& closures) {
+  const ClosureFit& fit = closures.fit;
+  Json lobes = Json::array(), views = Json::array(), errors = Json::array();
+  for (const ClosureLobe& lobe : fit.network.lobes) lobes.push_back(lobe_json(lobe));
+  for (const ClosureViewError& e : fit.errors) {
+    views.push_back(e.degrees);
+    errors.push_back(e.luminance);
+  }
+  return text(Json{{"lobes", lobes},
+                   {"diffuse", curve_json(fit.network.diffuse)},
+                   {"views", views},
+                   {"relative_l2", errors},
+                   {"relative_l2_mean", fit.mean_error},
+                   {"albedo_excess", fit.albedo_excess},
+                   {"seconds", closures.seconds},
+                   {"reason", closures.reason}});
+}
+
+namespace {
+
 Json count_json(const PerViewBrdf& brdf) { return {{"lobes", brdf.lobe_count()}}; }
 Json count_json(const ParametricBrdf& brdf) { return {{"lobes", brdf.lobe_count()}}; }
 Json count_json(const FactoredBtf& btf) { return {{"components", btf.components()}}; }

@@ -3,6 +3,7 @@
 
 #include <string>
 #include <vector>
+#include "brdf/fit/closures/model_closures.h"
 #include "brdf/fit/error/compare.h"
 #include "brdf/fit/peer.h"
 #include "capi/json_text.h"
@@ -13,6 +14,8 @@ namespace velour::capi {
 std::string fit_json(const Model& model, uint64_t file_bytes);
 std::string comparison_json(const Comparison& comparison);
 std::string peer_json(const PeerFit& fit);
+/// With the inputs of Blender's nodes (vlr_model_closures_json).
+std::string closures_json(const ModelClosures& closures);
 
 // JSON reports on models, with the keys of the command line's verbs (docs/reference/command_line.md).
 

@@ -45,7 +45,7 @@ struct vlr_btf {
 
 struct vlr_model {
   std::shared_ptr<const velour::Model> model;
-  std::string info;
+  std::string info, closures;
   std::vector<uint8_t> bytes;
 };
 

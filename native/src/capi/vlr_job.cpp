@@ -94,7 +94,7 @@ vlr_status vlr_job_result_model(const vlr_job* job, vlr_model** out) {
     job->job.rethrow();
     const std::lock_guard lock(job->output->mutex);
     if (!job->output->model) throw Error(Status::invalid_state, "This job does not produce a model.");
-    *out = new vlr_model{job->output->model, {}, {}};
+    *out = new vlr_model{job->output->model, {}, {}, {}};
   });
 }
 

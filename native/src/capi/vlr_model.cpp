@@ -10,7 +10,9 @@ using namespace velour::capi;
 
 namespace {
 
-vlr_model* new_handle(Model model) { return new vlr_model{std::make_shared<const Model>(std::move(model)), {}, {}}; }
+vlr_model* new_handle(Model model) {
+  return new vlr_model{std::make_shared<const Model>(std::move(model)), {}, {}, {}};
+}
 
 const std::vector<uint8_t>& encoded(vlr_model& handle) {
   if (handle.bytes.empty()) handle.bytes = encode_model(*handle.model);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <Eigen/Cholesky>
 #include <functional>
 #include <span>
@@ -29,32 +30,48 @@ struct NormalEquations {
     curvature(at, at) = 1;
     slope[at] = 0;
   }
+
+  /// Solution of the equations after the diagonal of the curvature is scaled by 1 + `damping`.
+  Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, kMost, 1> step(double damping) const {
+    auto damped = curvature;
+    damped.diagonal() += damping * curvature.diagonal();
+    damped.diagonal().array() += 1e-12;
+    return -damped.ldlt().solve(slope);
+  }
 };
 
-/// Descends from `p` and calls `check` once per step. A problem has cost(p); normal(p), the NormalEquations at p; and
-/// moved(p, step), the parameters after a step, within their bounds.
+/// How a descent proceeds.
+struct DescentOptions {
+  int steps = 40;
+  double settled = 1e-5;  // relative gain of a step below which the descent ends
+  double damping = 1e-3;  // of the first step
+  bool by_gain = false;   // damping follows the gain of a step over the promised one [Nie99], not its success alone
+};
+
+/// Descends from `p` and calls `check` once per step. A problem has cost(p); normal(p), the NormalEquations at p or a
+/// class with the same `slope` and step(); and moved(p, step), the parameters after a step, within their bounds.
 template <class Problem, class Parameters>
-Parameters descend(const Problem& problem, Parameters p, const std::function<void()>& check) {
-  constexpr int kSteps = 40;
-  constexpr double kSettled = 1e-5;  // relative gain of a step below which the descent ends
-  double now = problem.cost(p), damping = 1e-3;
+Parameters descend(const Problem& problem, Parameters p, const std::function<void()>& check,
+                   const DescentOptions& options = {}) {
+  double now = problem.cost(p), damping = options.damping, growth = options.by_gain ? 2 : 5;
   auto n = problem.normal(p);
-  for (int step = 0; step < kSteps && damping < 1e8; ++step) {
+  for (int step = 0; step < options.steps && damping < 1e8; ++step) {
     check();
-    auto damped = n.curvature;
-    damped.diagonal() += damping * n.curvature.diagonal();
-    damped.diagonal().array() += 1e-12;
-    const Parameters to = problem.moved(p, (-damped.ldlt().solve(n.slope)).eval());
+    const auto by = n.step(damping);
+    const Parameters to = problem.moved(p, by);
     const double then = problem.cost(to);
     if (!(then < now)) {
-      damping *= 5;
+      damping *= growth;
+      if (options.by_gain) growth *= 2;
       continue;
     }
-    const bool settled = now - then < kSettled * now;
+    const bool settled = now - then < options.settled * now;
+    const double surplus = 2 * (now - then) / -n.slope.dot(by) - 1;
     p = to;
     now = then;
     if (settled) break;
-    damping = std::max(0.2 * damping, 1e-9);
+    damping = std::max((options.by_gain ? std::max(1.0 / 3, 1 - std::pow(surplus, 3)) : 0.2) * damping, 1e-9);
+    if (options.by_gain) growth = 2;
     n = problem.normal(p);
   }
   return p;

@@ -1,0 +1,184 @@
+#include "brdf/fit/closures/closure_lights.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include "math/sphere/directions.h"
+#include "math/sphere/sobol.h"
+
+namespace velour {
+
+namespace {
+
+constexpr int kClosureTurns = 8;
+
+Vec3 turned_about_z(const Vec3& w, float phi) {
+  const float c = std::cos(phi), s = std::sin(phi);
+  return {c * w.x - s * w.y, s * w.x + c * w.y, w.z};
+}
+
+}  // namespace
+
+std::vector<ClosureSource> closure_azimuths(const ClosureSource& source) {
+  if (source.isotropic) return {source};
+  std::vector<ClosureSource> azimuths;
+  for (int t = 0; t < kClosureTurns; ++t) {
+    const float phi = 2 * kPi * (static_cast<float>(t) + 0.25f) / kClosureTurns;
+    azimuths.push_back({[f = source.f, phi](const Vec3& wv, std::span<const Vec3> wl, std::span<Rgb> out) {
+      std::vector<Vec3> turned(wl.size());
+      for (size_t i = 0; i < wl.size(); ++i) turned[i] = turned_about_z(wl[i], phi);
+      f(turned_about_z(wv, phi), turned, out);
+    }});
+  }
+  return azimuths;
+}
+
+std::vector<Rgb> source_values(const ClosureSource& source, float theta_v, std::span<const Vec3> wl) {
+  const std::vector<ClosureSource> azimuths = closure_azimuths(source);
+  std::vector<Rgb> mean(wl.size(), Rgb(0)), f(wl.size());
+  for (const ClosureSource& azimuth : azimuths) {
+    azimuth.f(direction(theta_v, 0), wl, f);
+    for (size_t i = 0; i < wl.size(); ++i) {
+      mean[i] += glm::max(f[i], Rgb(0)) * wl[i].z / static_cast<float>(azimuths.size());
+    }
+  }
+  return mean;
+}
+
+namespace {
+
+constexpr HighlightWidths kWidest{0.04f, 0.25f};
+
+/// Smallest angle from `axis` in `angles` at which luminance falls to half, toward either side in the plane of
+/// incidence, divided by that at which a lobe of width 1 does.
+float half_width(const ClosureSource& source, float theta_v, std::span<const float> angles, float per_width,
+                 const auto& light_at) {
+  std::vector<Vec3> wl{light_at(0.0f)};
+  for (const float angle : angles) {
+    wl.push_back(light_at(angle));
+    wl.push_back(light_at(-angle));
+  }
+  const std::vector<Rgb> f_cos = source_values(source, theta_v, wl);
+  const float half = 0.5f * luminance(f_cos[0]);
+  for (size_t i = 0; i < angles.size(); ++i) {
+    if (luminance(f_cos[2 * i + 1]) < half && luminance(f_cos[2 * i + 2]) < half) return angles[i] / per_width;
+  }
+  return 1;
+}
+
+}  // namespace
+
+HighlightWidths highlight_widths(const ClosureSource& source) {
+  constexpr float kGgxHalf = 0.6436f;  // tan(theta_h) / alpha where D falls to half
+  std::array<float, 16> angles{};      // 0.002 to 0.2 radians
+  for (size_t i = 0; i < angles.size(); ++i) angles[i] = 0.002f * std::pow(100.0f, static_cast<float>(i) / 15);
+  HighlightWidths widths = kWidest;
+  for (const float degrees : {12.0f, 32.0f, 52.0f}) {
+    const float theta = radians_from(degrees);
+    const auto mirrored = [&](float angle) { return direction(theta + 2 * angle, kPi); };
+    const auto returned = [&](float angle) { return direction(theta + angle, 0); };
+    widths.mirror = std::min(widths.mirror, half_width(source, theta, angles, kGgxHalf, mirrored));
+    widths.viewer = std::min(widths.viewer, half_width(source, theta, angles, kGgxHalf, returned));
+  }
+  return widths;
+}
+
+namespace {
+
+/// Density of D cos about an axis, GGX of `alpha`, at cosine `c`.
+double axis_density(double c, double alpha) {
+  const double a_sq = alpha * alpha, q = c * c * (a_sq - 1) + 1;
+  return c > 0 ? a_sq * c / (kPiD * q * q) : 0;
+}
+
+/// Direction about +z with axis_density().
+Vec3 about_z(const Vec2& u, float alpha) {
+  const float slope = alpha * std::sqrt(u.x / (1 - u.x));
+  return glm::normalize(Vec3(slope * std::cos(2 * kPi * u.y), slope * std::sin(2 * kPi * u.y), 1));
+}
+
+/// Numbers of lights of the parts of the mixture.
+struct LightMixture {
+  int uniform, mirror, viewer;  // `mirror` lights of each of `alpha`
+  std::array<float, 3> alpha;
+  float viewer_alpha;
+
+  double density(const Vec3& wl, const Vec3& wv) const {
+    const Vec3 h = glm::normalize(wl + wv);
+    double sum = uniform / (2 * kPiD) + viewer * axis_density(glm::dot(wl, wv), viewer_alpha);
+    for (const float a : alpha) sum += mirror * axis_density(h.z, a) / (4 * glm::dot(wv, h));
+    return sum;
+  }
+};
+
+}  // namespace
+
+WeightedLights closure_lights(const HighlightWidths& widths, float theta_v, int count) {
+  constexpr float kWideAlpha = 0.35f;
+  const LightMixture mixture{3 * count / 10,
+                             count / 5,
+                             count / 10,
+                             {widths.mirror, std::sqrt(widths.mirror * kWideAlpha), kWideAlpha},
+                             widths.viewer};
+  const Vec3 wv = direction(theta_v, 0);
+  WeightedLights lights;
+  const auto add = [&](uint64_t key, int n, const auto& direction_of_point) {
+    std::vector<Vec2> points(static_cast<size_t>(n));
+    sobol_points(key, 0, points);
+    for (const Vec2& u : points) {
+      const Vec3 wl = direction_of_point(u);
+      if (wl.z > 1e-4f) lights.wl.push_back(wl);
+    }
+  };
+  add(1, mixture.uniform, [](const Vec2& u) {
+    const float s = std::sqrt(std::max(1 - u.x * u.x, 0.0f)), phi = 2 * kPi * u.y;
+    return Vec3(s * std::cos(phi), s * std::sin(phi), u.x);
+  });
+  for (size_t i = 0; i < mixture.alpha.size(); ++i) {
+    add(2 + i, mixture.mirror, [&](const Vec2& u) {
+      const Vec3 h = about_z(u, mixture.alpha[i]);
+      return glm::dot(wv, h) > 1e-4f ? glm::normalize(2 * glm::dot(wv, h) * h - wv) : Vec3(0);
+    });
+  }
+  add(2 + mixture.alpha.size(), mixture.viewer, [&](const Vec2& u) {
+    const Vec3 d = about_z(u, mixture.viewer_alpha), across(wv.z, 0, -wv.x);
+    return d.x * across + d.y * Vec3(0, 1, 0) + d.z * wv;
+  });
+  for (const Vec3& wl : lights.wl) lights.weight.push_back(1 / mixture.density(wl, wv));
+  return lights;
+}
+
+ClosureLights::ClosureLights(float theta_v, const WeightedLights& lights)
+    : theta_v_(theta_v),
+      padded_((lights.wl.size() + kPadding - 1) / kPadding * kPadding),
+      data_(aligned_zeros(7 * padded_)) {
+  const Vec3 wv = direction(theta_v, 0);
+  for (size_t i = 0; i < padded_; ++i) {
+    const bool padding = i >= lights.wl.size();
+    const Vec3 wl = padding ? Vec3(0, 0, 1) : lights.wl[i], h = glm::normalize(wl + wv);
+    const float weight = padding ? 0.0f : static_cast<float>(std::sqrt(lights.weight[i]));
+    const float values[7] = {wl.x, wl.y, wl.z, h.x, h.y, h.z, weight};
+    for (size_t r = 0; r < 7; ++r) data_.data()[r * padded_ + i] = values[r];
+  }
+}
+
+ClosureTarget closure_target(const ClosureSource& source, const HighlightWidths& widths, float theta_v, int count) {
+  const WeightedLights lights = closure_lights(widths, theta_v, count);
+  const std::vector<Rgb> f_cos = source_values(source, theta_v, lights.wl);
+  ClosureTarget target{.lights = ClosureLights(theta_v, lights), .values = AlignedArray<float>(0)};
+  const size_t padded = target.lights.padded();
+  target.values = aligned_zeros(3 * padded);
+  for (size_t i = 0; i < f_cos.size(); ++i) {
+    const Vec3d value(f_cos[i]);
+    const double bright = luminance(f_cos[i]);
+    target.albedo += lights.weight[i] * value;
+    target.norm_sq += lights.weight[i] * value * value;
+    target.norm_sq_luminance += lights.weight[i] * bright * bright;
+    for (int c = 0; c < 3; ++c) {
+      target.values.data()[static_cast<size_t>(c) * padded + i] = target.lights.root_weight()[i] * f_cos[i][c];
+    }
+  }
+  return target;
+}
+
+}  // namespace velour

@@ -1,0 +1,77 @@
+// Light directions of a fit of closures, and the BRDF there.
+#pragma once
+
+#include <functional>
+#include <span>
+#include <vector>
+#include "base/aligned_array.h"
+#include "brdf/fit/error/compare.h"
+#include "math/sphere/vec.h"
+
+namespace velour {
+
+/// f in 1/sr without cosine for each of `wl`; wv.z > 0. Thread-safe.
+using ClosureFunction = std::function<void(const Vec3& wv, std::span<const Vec3> wl, std::span<Rgb> f)>;
+
+/// The BRDF that closures are fitted to.
+struct ClosureSource {
+  ClosureFunction f;
+  bool isotropic = true;
+};
+
+/// The source seen from each azimuth that stands for all: one of an isotropic source, otherwise eight.
+std::vector<ClosureSource> closure_azimuths(const ClosureSource& source);
+
+/// f cos at a view at `theta_v` (radians) in the x-z plane, not negative; a mean over azimuths.
+std::vector<Rgb> source_values(const ClosureSource& source, float theta_v, std::span<const Vec3> wl);
+
+/// Widths of the sharpest highlights of a BRDF, as alpha of a GGX lobe about the mirror direction and about the viewer.
+/// At most 0.04 and 0.25.
+struct HighlightWidths {
+  float mirror, viewer;
+};
+HighlightWidths highlight_widths(const ClosureSource& source);
+
+/// About `count` light directions above the horizon for the view at `theta_v` (radians), and the solid angles (sr) that
+/// they stand for: 30 % uniform over the hemisphere, 60 % about the mirror direction by GGX half vectors of three
+/// widths, 10 % about the viewer, with the balance heuristic [VG95]. The same on every call.
+WeightedLights closure_lights(const HighlightWidths& widths, float theta_v, int count);
+
+/// Lights of one view, structure of arrays, padded with lights of no weight, so that loops have no tails. Unit
+/// directions in a frame whose +x-z plane holds the viewer.
+class ClosureLights {
+ public:
+  static constexpr size_t kPadding = 16;
+
+  ClosureLights(float theta_v, const WeightedLights& lights);
+
+  float theta_v() const { return theta_v_; }  // radians
+  size_t padded() const { return padded_; }
+  const float* wl_x() const { return row(0); }
+  const float* wl_y() const { return row(1); }
+  const float* wl_z() const { return row(2); }
+  const float* h_x() const { return row(3); }
+  const float* h_y() const { return row(4); }
+  const float* h_z() const { return row(5); }
+  const float* root_weight() const { return row(6); }  // square root of the solid angle
+
+ private:
+  const float* row(size_t i) const { return data_.data() + i * padded_; }
+
+  float theta_v_;
+  size_t padded_;
+  AlignedArray<float> data_;
+};
+
+/// Values of the source at the lights of a view.
+struct ClosureTarget {
+  ClosureLights lights;
+  AlignedArray<float> values;  // f cos times root_weight, a row per channel
+  Vec3d norm_sq{0}, albedo{0};
+  double norm_sq_luminance = 0;
+
+  const float* channel(int c) const { return values.data() + static_cast<size_t>(c) * lights.padded(); }
+};
+ClosureTarget closure_target(const ClosureSource& source, const HighlightWidths& widths, float theta_v, int count);
+
+}  // namespace velour
