@@ -60,7 +60,7 @@ def measured(folder):
     yield 0.3
     velour = scenes.middle(scenes.render(folder))
     np.testing.assert_allclose(scenes.middle(_eevee(folder, "measured")), velour, rtol=0.06)
-    color = _principled(material).inputs["Base Color"]
+    color = _diffuse(material).inputs["Color"]
     for link in list(color.links):
         color.id_data.links.remove(link)
     color.default_value = (0.5, 0.5, 0.5, 1)
@@ -96,7 +96,7 @@ def _is_cut_out(material):
     return material.blend_method in ("HASHED", "CLIP")
 
 
-def _principled(material):
+def _diffuse(material):
     nodes = importlib.import_module(f"{inputs.ADDON}.export.nodes")
     tree = nodes.approximation_node(material).node_tree
-    return next(node for node in tree.nodes if node.bl_idname == "ShaderNodeBsdfPrincipled")
+    return next(node for node in tree.nodes if node.bl_idname == "ShaderNodeBsdfDiffuse")

@@ -33,7 +33,7 @@ def wires(paint):
 @pytest.fixture(scope="module")
 def steps(wires):
     """Run to the end, with what was said meanwhile."""
-    steps, said = Steps(wires, has_layers=True), []
+    steps, said = Steps(wires, has_layers=True, masking=None), []
     while job := steps.next_job():
         job.start().wait(lambda state: said.append((state.stage, state.fraction)))
     return steps.result, said

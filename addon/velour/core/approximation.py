@@ -10,6 +10,7 @@ import numpy as np
 
 from ..native import Job, Model, model_peer_job
 from .approximation_map import map_job, map_of, size_of
+from .closures import closures_of_fit, closures_of_ggx
 from .normal_map import NormalMapJob
 from .read_job import ReadJob
 
@@ -28,8 +29,10 @@ class Approximation(NamedTuple):
     color_map: np.ndarray | None = None  # RGBA of a tile, replaces the base color
     normal_map: np.ndarray | None = None  # unit normals along the tile; None: not worth it
     tile_metres: tuple | None = None
-    relative_l2: float | None = None  # against the model; None: not fitted
+    closures: dict | None = None  # of a BRDF (core/closures.py), which replace the Principled BSDF in nodes
+    relative_l2: float | None = None  # of the nodes, against the model; None: not fitted
     by_view_angle: dict = {}
+    reason: str = ""  # why the error is large
 
     @property
     def color(self):
@@ -56,15 +59,18 @@ UNFITTED = Approximation(
 class Steps:
     """The jobs of an approximation. Run each one before requesting the next."""
 
-    def __init__(self, model: Model, has_layers: bool):
-        """has_layers: this Blender's Principled BSDF has the coat and the tints of the library's."""
+    def __init__(self, model: Model, has_layers: bool, masking: str | None):
+        """has_layers: this Blender's Principled BSDF has the coat and the tints of the library's.
+
+        masking: of the closures of a BRDF, as for Model.closures; None: without them.
+        """
         self.result = None  # the Approximation, after the last job
-        self._jobs = self._run(model, has_layers)
+        self._jobs = self._run(model, has_layers, masking)
 
     def next_job(self) -> Job | None:
         return next(self._jobs, None)
 
-    def _run(self, model: Model, has_layers: bool) -> Iterator[Job]:
+    def _run(self, model: Model, has_layers: bool, masking: str | None) -> Iterator[Job]:
         info = model.info()
         isotropic = info.get("isotropic", True)
         peer = ("principled" if has_layers else "plain_principled") if isotropic else "ggx"
@@ -87,9 +93,15 @@ class Steps:
                 "normal_map": job.result().normals,
                 "tile_metres": info.get("tile_metres"),
             }
-        self.result = Approximation(
-            **values, relative_l2=report["relative_l2"], by_view_angle=report["by_view_angle"]
-        )
+        elif masking is not None:
+            if isotropic:
+                yield (fitting := ReadJob(lambda: model.closures(masking=masking)))
+                report = closures_of_fit(fitting.result())
+            else:
+                report = closures_of_ggx(report)
+            values["closures"] = report
+        errors = {key: report[key] for key in ("relative_l2", "by_view_angle", "reason") if key in report}
+        self.result = Approximation(**values, **errors)
 
 
 def from_ggx(ggx: dict) -> dict:

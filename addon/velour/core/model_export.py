@@ -87,7 +87,7 @@ def _write_gltf(request: Request) -> dict:
 
 
 def _write_cycles(request: Request) -> dict:
-    closures = closures_of(request.model, request.progress)
+    closures = closures_of(request.model, "correlated", request.progress)
     report = {key: closures[key] for key in _ERROR_KEYS}
     write_closures(request.path, request.name, closures, _note(report), request.blender)
     return {"parameters": {"lobes": [lobe["distribution"] for lobe in closures["lobes"]]}, **report}
@@ -102,7 +102,7 @@ TARGETS = {
 
 
 def _approximation(request) -> Approximation:
-    steps = Steps(request.model, has_layers=True)
+    steps = Steps(request.model, has_layers=True, masking=None)
     while job := steps.next_job():
         job.start().wait(request.progress)
     return steps.result

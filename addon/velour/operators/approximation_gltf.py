@@ -14,15 +14,17 @@ def fill(gltf_material, material, export_settings):
     pbr, values = gltf_material.pbr_metallic_roughness, shown(material)
     if values is None or pbr is None or not is_surface(material):
         return
-    node = approximation_node(material)
-    shader = next(each for each in node.node_tree.nodes if each.bl_idname == "ShaderNodeBsdfPrincipled")
-    pictures = images(node.node_tree)
-    color, alpha = shader.inputs["Base Color"], shader.inputs["Alpha"]
+    tree = approximation_node(material).node_tree
+    pictures = images(tree)
     factor = values.gain if pictures else values.principled["base_color"]
     pbr.base_color_factor = [*(min(max(c, 0.0), 1.0) for c in factor), 1.0]
     pbr.metallic_factor = values.principled["metallic"]
     pbr.roughness_factor = values.principled["roughness"]
-    if pictures and not pbr.base_color_texture:
+    if not pictures:
+        return
+    shader = next(each for each in tree.nodes if each.bl_idname == "ShaderNodeBsdfPrincipled")
+    color, alpha = shader.inputs["Base Color"], shader.inputs["Alpha"]
+    if not pbr.base_color_texture:
         pictured = (color, alpha) if alpha.is_linked else (color,)
         pbr.base_color_texture = _texture("gather_texture_info", pictured, export_settings)
     if len(pictures) > 1 and not gltf_material.normal_texture:

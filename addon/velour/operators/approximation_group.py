@@ -2,10 +2,12 @@
 
 import bpy
 
+from ..core.approximation import Steps
 from ..export.nodes import first_input
+from ..export.shaders.readers import SEPARABLE_SHADOWS
 from ..export.uv_maps import placed_by
 from ..properties.approximation_state import VIEW_ANGLES
-from . import approximation_look, group_inputs
+from . import approximation_look, closure_network, group_inputs
 from .approximation_image import add_image, add_mapping, add_normals, add_texture, is_open
 from .look_nodes import LookNodes
 
@@ -15,6 +17,11 @@ FRAME = "Other Engines"  # contains the nodes that are replaced; an artist's own
 def has_layers():
     """Whether the Principled BSDF has the coat and tints that the library fits; no property reveals it."""
     return bpy.app.version >= (4, 0, 0)
+
+
+def steps(model):
+    """The jobs that approximate a model with this Blender's shaders."""
+    return Steps(model, has_layers(), "separable" if SEPARABLE_SHADOWS else "correlated")
 
 
 def is_editable(material):
@@ -28,30 +35,37 @@ def put(node, material, approximation, info=None, model=""):
     info: the model's, None without a model. model: SHA-256 of the model that is approximated.
     """
     tree, colors, normals = node.group.node_tree, None, None
-    _clear(tree)  # first, to free the names of the images
+    fed = _clear(tree)  # first, to free the names of the images
     if approximation.color_map is not None:
         colors = add_image(f"{tree.name} approximation", approximation.color_map)
         if approximation.normal_map is not None:
             normals = add_normals(f"{tree.name} normals", approximation.normal_map)
     _remember(tree.velour, approximation, model)
     shows_behind = colors is not None and is_open(approximation.color_map)
-    build(node, material, info or {}, colors, normals, shows_behind)
+    build(node, material, info or {}, colors, normals, shows_behind, fed)
 
 
-def build(node, material, info, colors=None, normals=None, shows_behind=False):
-    """Builds the nodes from the state of a MeasuredNode's group. `colors` and `normals`: images of a tile."""
+def build(node, material, info, colors=None, normals=None, shows_behind=False, fed=()):
+    """Builds the nodes from the state of a MeasuredNode's group.
+
+    colors, normals: images of a tile. fed: sockets to link to the result, beside those that the former nodes feed.
+    """
     tree = node.group.node_tree
-    _clear(tree)
+    fed = {*fed, *_clear(tree)}
     put_inputs(node, material, info)
     source, sink = _only(tree, "NodeGroupInput", (-1300, 0)), _only(tree, "NodeGroupOutput", (600, 0))
     others = set(tree.nodes)
-    shader = _shader(tree, source, colors, normals, shows_behind)
+    fitted = approximation_look.fitted(tree)
+    if fitted.get("closures"):
+        shader = _network(tree, source, fitted["closures"])
+    else:
+        shader = _principled(tree, source, fitted, colors, normals, shows_behind)
     frame = tree.nodes.new("NodeFrame")
     frame.name = frame.label = FRAME
     for added in set(tree.nodes) - others - {frame}:
-        added.parent = frame
-    if not sink.inputs[0].is_linked:
-        tree.links.new(shader, sink.inputs[0])
+        added.parent = added.parent or frame
+    for socket in fed if sink.inputs[0].is_linked else {*fed, sink.inputs[0]}:
+        tree.links.new(shader, socket)
     if shows_behind and hasattr(material, "shadow_method"):  # EEVEE before 4.2 requires it
         material.blend_method = material.shadow_method = "HASHED"
     approximation_look.follow(material)
@@ -70,9 +84,16 @@ def images(tree):
     return [node.image for node in textures if node.image and not node.velour.enabled]
 
 
-def _shader(tree, source, colors, normals, shows_behind):
-    """Adds the approximation's nodes; returns their output."""
-    fitted, look = approximation_look.fitted(tree), LookNodes(tree, source)
+def _network(tree, source, closures):
+    """Adds the closures of a BRDF; returns their output."""
+    names = {"tint": "Tint", "normal": "Normal", "exposure": "Exposure", "roughness": "Roughness Offset"}
+    controls = {key: source.outputs[name] for key, name in names.items()}
+    return closure_network.build(tree, closures, rotation=source.outputs.get("Rotation"), **controls)
+
+
+def _principled(tree, source, fitted, colors, normals, shows_behind):
+    """Adds a Principled BSDF, and images of a tile; returns their output."""
+    look = LookNodes(tree, source)
     shader, base = tree.nodes.new("ShaderNodeBsdfPrincipled"), None
     shader.distribution = "GGX"  # as fitted: without multiple scattering between facets
     _feed_values(tree, shader, fitted, look)
@@ -176,18 +197,26 @@ def _only(tree, idname, location):
 
 
 def _clear(tree):
-    """Removes the nodes of an approximation, and images that only they use."""
-    found, frames = images(tree), [node for node in tree.nodes if node.name.startswith(FRAME)]
-    for node in [*(node for node in tree.nodes if node.parent in frames), *frames]:
+    """Removes the nodes of an approximation, and images that only they use; returns the sockets they fed."""
+    found, ours = images(tree), {node for node in tree.nodes if _is_built(node)}
+    fed = [link.to_socket for link in tree.links if link.from_node in ours and link.to_node not in ours]
+    for node in ours:
         tree.nodes.remove(node)
     for image in found:
         if image.users == 0:
             bpy.data.images.remove(image)
+    return fed
+
+
+def _is_built(node):
+    while node is not None and not node.name.startswith(FRAME):
+        node = node.parent
+    return node is not None
 
 
 def _remember(state, approximation, model):
     state.is_approximation, state.model = True, model
-    state.fitted = approximation_look.kept(approximation)
+    state.fitted, state.reason = approximation_look.kept(approximation), approximation.reason
     errors = {"": approximation.relative_l2, **approximation.by_view_angle}
     state.relative_l2, *by_angle = (
         -1.0 if errors.get(angle) is None else errors[angle] for angle in ("", *VIEW_ANGLES)

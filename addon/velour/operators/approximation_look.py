@@ -62,6 +62,7 @@ def kept(approximation):
             "anisotropic": approximation.anisotropic,
             "turned": approximation.turned,
             "tile_metres": approximation.tile_metres,
+            "closures": approximation.closures and _rounded(approximation.closures),
         }
     )
 
@@ -179,6 +180,18 @@ def attach():
 def detach():
     changed.uv_map_listeners.remove(_uv_map_changed)
     changed.listeners.remove(_placement_changed)
+
+
+def _rounded(closures):
+    """The curves alone, with as many digits as nodes keep."""
+    lobes = [{key: _digits(value) for key, value in lobe.items()} for lobe in closures["lobes"]]
+    return {"frame": closures["frame"], "diffuse": _digits(closures["diffuse"]), "lobes": lobes}
+
+
+def _digits(values):
+    if isinstance(values, list):
+        return [_digits(value) for value in values]
+    return values if isinstance(values, str) else float(f"{values:.6g}")
 
 
 def _working(color):

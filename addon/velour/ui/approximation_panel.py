@@ -6,7 +6,7 @@ from ..export.nodes import approximation_node, velour_node
 from ..operators.approximate import VELOUR_OT_approximate
 from ..properties.approximation_state import VIEW_ANGLES
 from .material_panel import MaterialPanel
-from .model_panel import VELOUR_MATERIAL_PT_model, draw_error_by_angle, draw_rows
+from .model_panel import VELOUR_MATERIAL_PT_model, draw_error_by_angle
 from .summaries import model_summary
 from .text import draw_sentence
 
@@ -27,9 +27,9 @@ class VELOUR_MATERIAL_PT_approximation(MaterialPanel, bpy.types.Panel):
             return
         state = group.node_tree.velour
         if state.relative_l2 >= 0.0:
-            draw_rows(
-                layout, (("Relative error", f"{state.relative_l2:.3g}, compared with the fitted model"),)
-            )
+            layout.label(text=f"In Cycles and EEVEE: {100 * state.relative_l2:.2g} % off")
+            if state.reason:
+                draw_sentence(context, layout, state.reason)
             errors = (error if error >= 0.0 else None for error in state.by_view_angle)
             draw_error_by_angle(layout.box(), dict(zip(VIEW_ANGLES, errors, strict=True)))
         digest = _digest(velour_node(context.material).image)

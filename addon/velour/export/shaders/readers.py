@@ -29,7 +29,7 @@ _IGNORED = (
     "Thin Film Thickness",
 )
 # No property reveals the masking-shadowing function.
-_SEPARABLE_SHADOWS = bpy.app.version < (3, 5)
+SEPARABLE_SHADOWS = bpy.app.version < (3, 5)
 # No property reveals it: since 4.5, coats conserve energy and attenuate the base accordingly.
 _COAT_LOBE = "whole" if bpy.app.version >= (4, 5) else "single"
 # No property reveals it: rough diffuse conserves energy since Principled has a diffuse roughness.
@@ -103,7 +103,7 @@ def _lobe(plug, reader):
         reader.note(
             plug, f"its distribution '{_label(plug.node, 'distribution')}' is not supported; rendered as GGX."
         )
-    return "separable" if _SEPARABLE_SHADOWS else "single"
+    return "separable" if SEPARABLE_SHADOWS else "single"
 
 
 def _specular(plug, reader):

@@ -49,7 +49,7 @@ def _approximate(material, path):
     """Creates the approximation, always with a normal map. Returns its own error estimates and seconds."""
     decided, normal_map._LEAST_GAIN = normal_map._LEAST_GAIN, -math.inf
     opened = Model.load(path)
-    steps = Steps(opened, approximation_group.has_layers())
+    steps = approximation_group.steps(opened)
     seconds = dict.fromkeys(("fit", "colors", "normals"), 0.0)
     # The fit and the colors take two jobs each: the first tabulates the model.
     for step in ("fit", "fit", "colors", "colors", "normals"):
