@@ -15,7 +15,7 @@ def texels_per_pixel(depsgraph, obj, texels_per_unit):
     `texels_per_unit`: per face, texels per Blender unit in world space; NaN: face of another material.
     Surfaces are assumed to face the camera; tilted ones have more. Raises ExportError without a camera.
     """
-    view = final_view(depsgraph, Notes(), whole=True)
+    view = final_view(depsgraph, whole=True)
     found = []
     for x in _places(view, obj):
         ray = _ray(view, x)
