@@ -4,7 +4,6 @@ import numpy as np
 from mathutils import Vector
 
 from .camera import final_view
-from .notes import Notes
 
 _RAYS = 32  # per axis, over the image region that may contain the object
 
