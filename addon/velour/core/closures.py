@@ -39,7 +39,7 @@ def closures_of_fit(fit: dict) -> dict:
 
 
 def closures_of_ggx(report: dict) -> dict:
-    """One GGX lobe in the frame of the surface; its color rises toward grazing views as its Fresnel term does.
+    """One GGX lobe in the frame of the surface; its color rises toward grazing views as Fresnel terms do.
 
     report: of the peer "ggx".
     """
