@@ -49,7 +49,7 @@ class Model(Handle):
     def closures(
         self, max_lobes: int = 0, tolerance: float = 0.0, masking: str = "separable", threads: int = 0
     ) -> dict:
-        """Blender's closures fitted to the model: lobes, diffuse, views, relative_l2, albedo_excess, reason...
+        """Blender's closures fitted to the model: lobes, diffuse, views, relative_l2, albedo_excess, ...
 
         Curves have 65 samples over the view angle, 0 to 90 degrees. The keys are those of
         vlr_model_closures_json. `max_lobes`: 1 to 3 glossy closures; 0: automatic. `tolerance`: mean relative
