@@ -100,6 +100,14 @@ Rgb Environment::radiance(const Vec3& world) const {
   return radiance.get(0);
 }
 
+float Environment::pdf(const Vec3& world) const {
+  if (!image_) return kUniformPdf;
+  RgbBatch radiance;
+  ScalarBatch pdf;
+  image_->look_up(placement_, single(world), radiance, pdf);
+  return pdf.v[0];
+}
+
 void Environment::sample(std::span<const Vec2> u, DirectionBatch& world) const {
   if (image_) return image_->sample(placement_, u, world);
   world.count = 0;

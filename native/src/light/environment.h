@@ -55,6 +55,7 @@ class Environment {
   /// black().
   void sample(std::span<const Vec2> u, DirectionBatch& world) const;
   Vec3 sample(const Vec2& u) const;
+  float pdf(const Vec3& world) const;
 
   bool black() const { return !(mean_luminance_ > 0.0f); }
   /// Mean over the sphere.

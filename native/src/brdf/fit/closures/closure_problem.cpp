@@ -40,8 +40,6 @@ ClosureProblem::ClosureProblem(const std::vector<ClosureView>& views, std::vecto
 
 namespace {
 
-constexpr double kLuminance[3] = {0.2126, 0.7152, 0.0722};
-
 /// Colors of the lobes at a view: the diffuse one, then the others.
 struct LobeColors {
   int count;
