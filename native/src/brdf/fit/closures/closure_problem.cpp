@@ -5,6 +5,7 @@
 #include <cmath>
 #include <Eigen/Cholesky>
 #include "brdf/fit/closures/view_products.h"
+#include "math/sphere/vec.h"
 
 namespace velour {
 
