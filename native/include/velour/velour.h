@@ -988,8 +988,9 @@ VLR_API vlr_status vlr_scene_add_shader_material(vlr_scene* scene, const vlr_sha
 /* ---- tiles: procedural mesostructure ------------------------------------------------------------------------- */
 
 /* One period of a small structure, repeated infinitely in x and y: weaves, knit, net, chain mail, gravel, corduroy,
- * velvet, leather (vlr_tile_kinds_json). The cell is [0, period x] x [0, period y], meters, +z up. Parts that cross its border are there once,
- * whole, and stick out; copies shifted by the period complete the structure. The same options give the same arrays.
+ * velvet, leather (vlr_tile_kinds_json). The cell is [0, period x] x [0, period y], meters, +z up. Parts that cross its
+ * border are there once, whole, and stick out; copies shifted by the period complete the structure. The same options
+ * give the same arrays.
  *
  * The pitch, size / count, is the distance between neighboring yarns, cords, rings or wales (for pebbles, about). */
 typedef struct vlr_tile_options {

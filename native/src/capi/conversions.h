@@ -54,7 +54,8 @@ TextureSlot<Rgb> color_slot(const vlr_texture* texture, const float* map, uint32
 TextureSlot<float> number_slot(const vlr_texture* texture, const float* map, uint32_t set, const char* field);
 PrincipledTextures converted_textures(const vlr_principled_textures& textures);
 MeshSets sets_of(const PrincipledTextures& textures);
-/// Sets of a mesh and program of a material. `opacity_outputs`: outputs of the program that opacity depends on, as bits.
+/// Sets of a mesh and program of a material. `opacity_outputs`: outputs of the program that opacity depends on, as
+/// bits.
 void use_sets(SurfaceMaterial& surface, const MeshSets& sets, uint32_t opacity_outputs);
 
 /// These throw Error(invalid_argument) for values outside their enums.

@@ -60,7 +60,7 @@ struct vlr_scene {
 struct vlr_texture {
   std::shared_ptr<const velour::Texture<velour::Rgb>> color;
   std::shared_ptr<const velour::Texture<float>> number;
-  std::optional<uint32_t> corner_colors;  // index of the mesh's set of corner colors
+  std::optional<uint32_t> corner_colors;           // index of the mesh's set of corner colors
   std::shared_ptr<const velour::Program> program;  // whose output `output` it is
   uint32_t output = 0;
 };
@@ -76,7 +76,7 @@ struct vlr_shader {
   std::shared_ptr<const velour::ShellField> shell;  // of a measured layer with a silhouette; null: none
   bool shell_shaded = false;                        // as in SurfaceMaterial
   velour::MeshSets sets;
-  velour::MeshSets opacity;  // sets of slots that opacity depends on
+  velour::MeshSets opacity;             // sets of slots that opacity depends on
   velour::LayerWeight* last = nullptr;  // of the layer added last; null: no layer
 };
 

@@ -60,7 +60,8 @@ TEST(CTile, DefaultsAreAWeave) {
 TEST(CTile, ListsTheKinds) {
   const char* json = nullptr;
   ASSERT_EQ(VLR_OK, vlr_tile_kinds_json(&json));
-  for (const char* kind : {"weave", "twill", "net", "chainmail", "gravel", "corduroy", "satin", "knit", "velvet", "leather"}) {
+  for (const char* kind :
+       {"weave", "twill", "net", "chainmail", "gravel", "corduroy", "satin", "knit", "velvet", "leather"}) {
     EXPECT_NE(std::string(json).find('"' + std::string(kind) + '"'), std::string::npos) << kind;
   }
 }

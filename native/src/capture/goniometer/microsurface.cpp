@@ -287,8 +287,8 @@ constexpr RefractiveIndex kAluminium[] = {{0.31474, 3.9165}, {0.39877, 4.3957}, 
                                           {1.5724, 7.7354},  {1.8301, 8.0601},  {2.1606, 8.3565},  {2.6154, 8.4914},
                                           {2.7675, 8.3866},  {2.7668, 8.2573},  {2.6945, 8.1878}};
 
-// Yellow brass. Not a measurement: rounded values of the usual shape for copper with a third of zinc, which give a normal
-// reflectance near linear Rec. 709 (0.87, 0.70, 0.41).
+// Yellow brass. Not a measurement: rounded values of the usual shape for copper with a third of zinc, which give a
+// normal reflectance near linear Rec. 709 (0.87, 0.70, 0.41).
 constexpr double kBrassWavelengths[] = {380, 450, 500, 550, 600, 650, 700, 780};
 constexpr RefractiveIndex kBrass[] = {{1.45, 1.7},  {1.45, 1.85}, {1.0, 1.95},  {0.55, 2.45},
                                       {0.42, 3.05}, {0.42, 3.55}, {0.42, 3.95}, {0.43, 4.55}};

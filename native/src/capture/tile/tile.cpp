@@ -46,8 +46,8 @@ constexpr std::array kKinds = {
              true, make_knit},
     TileKind{"velvet", "upright fibers on a ground", shape_of(2e-3, 28, 8, 6, 0.35, 0.3), 1, 0.2, 20.0, true,
              make_velvet},
-    TileKind{"leather", "grained leather: cushions between creases", shape_of(8e-3, 7, 16, 0.2, 0.7, 0.8), 1, 0.05,
-             1.0, true, make_leather},
+    TileKind{"leather", "grained leather: cushions between creases", shape_of(8e-3, 7, 16, 0.2, 0.7, 0.8), 1, 0.05, 1.0,
+             true, make_leather},
 };
 
 template <typename T>
