@@ -146,7 +146,7 @@ std::vector<HostileCase> hostile_cases() {
       sound("albedo above 1", too_bright_at_grazing, {"albedo_above_one"}),
       sound("non-reciprocal", non_reciprocal, {"not_reciprocal"}),
       with_holes("holes at grazing angles", glossy, away_from_grazing,
-                 {R"("views_not_covered","values":{"views":\[85)", R"("partial_coverage"[^}]*75.0\],"share":0.8)"}),
+                 {R"("views_not_covered","values":\{"views":\[85)", R"("partial_coverage"[^}]*75.0\],"share":0.8)"}),
       with_holes("4 light directions", glossy, near_four_lights, {"no_view_covered"}),
       {"no light direction", covered(glossy, nowhere), glossy, {}, "no view direction with at least 8"},
       sound("huge values", scaled(glossy, 1e6f), {"implausible_albedo|dark_measurement|black_model"}),
