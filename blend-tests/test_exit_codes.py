@@ -1,5 +1,6 @@
 """A render that fails exits non-zero and leaves no picture: every cause, format and way to render."""
 
+import importlib
 import os
 import unittest
 from pathlib import Path
@@ -85,9 +86,10 @@ class ExitCodes(BlenderTest):
         self._all_fail(["paint.velour", "has changed", "Accept Changed File"], formats=("OPEN_EXR",))
 
     def test_corrupt_packed_model(self):
-        data = bytearray(inputs.model_bytes(inputs.lambert_measurement()))
-        del data[len(data) // 2 :]
-        self._scene(scenes.measured_material(bytes(data)))
+        data = inputs.model_bytes(inputs.lambert_measurement())
+        self._scene(material := scenes.measured_material(data))
+        measured = importlib.import_module(f"{inputs.ADDON}.operators.measured")
+        scenes.velour_node(material).image = measured.packed_model(data[: len(data) // 2], "Paint")
         self._all_fail(["Material 'Paint'"], **_FEW)
 
     def test_no_model(self):

@@ -101,7 +101,7 @@ class Snippets(SnippetTest):
 
     def test_no_page_is_left_out(self):
         run = {"first_material.md", "library.md", "tolerance.md", "scene_model.md", "cloth.md", "farm.md"}
-        run |= {"batch.md"}
+        run |= {"batch.md", "preset.md"}
         self.assertEqual({page.name for page in guide.PAGES if guide.snippets(page)}, run)
 
     def test_a_wrong_snippet_is_seen(self):

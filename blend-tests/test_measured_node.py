@@ -1,6 +1,5 @@
 """The node of a measured material: its inputs, materials that share its group, and where it is in a tree."""
 
-import unittest
 from unittest import mock
 
 import bpy
@@ -235,17 +234,18 @@ class Mixed(NodeTest):
         )
         self.assertEqual(notes, [])
 
-    @unittest.skipUnless(
-        hasattr(inputs.native().structs, "MeasuredLayerDesc"), "the library has no such layers"
-    )
     def test_half_emission_makes_the_mean_of_both(self):
         glow = self._picture_of(self._mixed(1.0), "glow")
         model = self._picture_of(self._mixed(0.0), "model")
         mixed = self._picture_of(self._mixed(0.5), "mixed")
-        np.testing.assert_allclose(mixed, (model + glow) / 2, rtol=1e-3)
+        np.testing.assert_allclose(mixed, (model + glow) / 2, rtol=1e-2)
+        np.testing.assert_allclose(mixed.mean(), (model + glow).mean() / 2, rtol=1e-3)
         self.assertGreater(np.abs(model - glow).max(), 0.1)
 
     def _picture_of(self, material, name):
+        bpy.context.scene.velour.samples = (
+            4096  # the surface itself is a light, which takes samples from others
+        )
         picture = self._picture(name)
         bpy.data.objects.remove(bpy.context.object)
         bpy.data.materials.remove(material)

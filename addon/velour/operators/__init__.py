@@ -105,7 +105,7 @@ def _draw_import(menu, _context):
 
 def _draw_new(menu, _context):
     menu.layout.separator()
-    menu.layout.operator(VELOUR_OT_new_look.bl_idname, icon="MATSPHERE")
+    menu.layout.operator(VELOUR_OT_new_look.bl_idname, text=VELOUR_OT_new_look.bl_label, icon="MATSPHERE")
 
 
 def _draw_add_mesh(menu, _context):
