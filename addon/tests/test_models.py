@@ -94,12 +94,10 @@ def test_tables_name_every_material_and_model(pages):
     for line in (
         "| nickel | noise |  | - | - | 0.0500 | - | - |",
         "| nickel | scattered | 0.0200 | **0.0100** | **0.0200** | **0.0300** | 0.0400 | - |",
-        "| nickel | measurement |  | 35000000 |  |  | 40 | - | 30 | - |",
-        "| nickel | scattered | 7 | 4000 | 44 | 1.00 | 50 | 100 | 10 | 20 |",
         "| scattered | 0.0200 | 6 of 8 | 4 | 44 | 2.00 | 50 | 100 | 10 | 20 |",
     ):
         assert f"\n{line}\n" in shown
-    assert shown.count("\n| paper | ggx |") == 2
+    assert shown.count("\n| paper | ") == 2
     assert "commit c" in shown
     assert "other programs kept 1.2 processors busy" in shown
     assert "| paper | 0.250 | 0.0200 |" in pages("ggx")

@@ -99,15 +99,15 @@ def table(results: Results, faults: list[Fault]) -> str:
     """Markdown: a row per fault, including results of older commits, and a list of the commits."""
     rows = [_row(fault, results.faults.get(fault.name)) for fault in faults]
     commits = sorted({found["commit"][:8] for found in results.faults.values()})
-    header = ["Fault", "Folder", "What is wrong then", "Seen by", "Seconds"]
+    header = ["Fault", "Folder", "Seen by", "Seconds"]
     lines = [f"| {' | '.join(row)} |" for row in (header, ["---"] * len(header), *rows)]
     return "\n".join([*lines, "", f"Commit: {', '.join(commits) or 'no results yet'}", ""])
 
 
 def _row(fault: Fault, found: dict | None) -> list[str]:
     if found is None or found["digest"] != fault.digest:
-        return [fault.name, fault.folder, fault.planted, "not tried", ""]
+        return [fault.name, fault.folder, "not tried", ""]
     seen = ", ".join(filter(None, (found["by"], found["case"]))) if found["by"] else found["state"]
     if found["state"] == LONG:
         seen = f"{LONG}: {found['case']}"
-    return [fault.name, fault.folder, fault.planted, seen, f"{found['seconds']:.0f}"]
+    return [fault.name, fault.folder, seen, f"{found['seconds']:.0f}"]

@@ -34,7 +34,7 @@ struct BtfLoadOptions {
 };
 
 /// Loads one of: a Velour BTF folder or its btf.json; a folder of images named by their angles; a CSV index of images,
-/// or a folder that contains one as btf.csv; a .btf file of Bonn (docs/engine/btf_models.md). Throws Error(io,
+/// or a folder that contains one as btf.csv; a .btf file of Bonn (docs/reference/btf_formats.md). Throws Error(io,
 /// bad_data, unsupported) with one sentence that names the file and the remedy.
 std::shared_ptr<const BtfMeasurement> load_btf(const std::string& path, const BtfLoadOptions& options = {});
 

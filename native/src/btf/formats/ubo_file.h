@@ -1,4 +1,4 @@
-// BTFs of Bonn's UBO2014 database: factorized .btf files, decoded pair by pair (docs/engine/btf_models.md).
+// BTFs of Bonn's UBO2014 database: factorized .btf files, decoded pair by pair (docs/reference/btf_formats.md).
 #pragma once
 
 #include <memory>

@@ -1,5 +1,5 @@
-// Header and structure of Bonn's .btf files (UBO2014), as in public readers (docs/engine/btf_models.md). Internal to
-// btf/.
+// Header and structure of Bonn's .btf files (UBO2014), as in public readers (docs/reference/btf_formats.md). Internal
+// to btf/.
 #pragma once
 
 #include <array>

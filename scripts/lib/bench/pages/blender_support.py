@@ -9,6 +9,7 @@ import json
 import os
 import re
 import subprocess
+from collections.abc import Iterator
 
 from .. import blender, page, provenance
 from ..run import Run
@@ -53,15 +54,17 @@ def _export(run: Run, name: str, task: dict) -> dict:
 def write(run: Run, found: dict) -> None:
     rows = found["parity"]
     sentence = f"{provenance.sentence(found['conditions'])} Blender and Cycles {rows[0]['blender']}."
-    for row in rows:  # pictures without noise have no z
-        row["errors"] = (
-            None if row["z"] is None else f"{row['z']:.1f}" if row["z"] < 100 else f"{row['z']:.0f}"
-        )
-    parity = page.table(
-        rows,
+    agreeing = page.table(
+        _groups([row for row in rows if row["verdict"] == "honored"]),
+        "honored | features | largest block difference, % | in standard errors",
+        "{group} | {features} | {percent:.2f} | {errors:s}",
+    )
+    others = page.table(
+        (row | {"errors": _errors([row])} for row in rows if row["verdict"] != "honored"),
         "feature | verdict | largest block difference, % | in standard errors",
         "{feature} | {verdict} | {percent:.2f} | {errors:s}",
     )
+    parity = f"{agreeing}\n{others}"
     export = page.table(
         found["export"],
         "scene | export, s | Cycles' synchronisation, s | ratio | hierarchies for tracing, s | MiB",
@@ -70,3 +73,20 @@ def write(run: Run, found: dict) -> None:
     for name, text in (("parity", parity), ("export", export)):
         part = {name: f"\n{sentence}\n\n{text}\n"}
         page.write_parts(run.output, f"blender_{name}.md", "blender_support", **part)
+
+
+def _groups(rows: list[dict]) -> Iterator[dict]:
+    """A row per group of features, which is named before the colon; the largest differences of the group."""
+    groups: dict[str, list[dict]] = {}
+    for row in rows:
+        groups.setdefault(row["feature"].partition(": ")[0], []).append(row)
+    for group, own in groups.items():
+        features = "; ".join(filter(None, (row["feature"].partition(": ")[2] for row in own)))
+        percent = max(row["percent"] for row in own)
+        yield {"group": group, "features": features, "percent": percent, "errors": _errors(own)}
+
+
+def _errors(rows: list[dict]) -> str | None:
+    """The largest difference in standard errors; None for pictures without noise."""
+    found = [row["z"] for row in rows if row["z"] is not None]
+    return f"{max(found):.{0 if max(found) >= 100 else 1}f}" if found else None

@@ -485,7 +485,6 @@ def _tile(results: Results, tile: str, speed_ratio: int, interpolated: Mapping) 
         "itself": itself if tile in interpolated else "",
         "flip_words": " / mean FLIP" if has_flip else "",
         "psnr": _by_ratio(results, tile, "psnr", "psnr_unseen", ".2f"),
-        "ser": _by_ratio(results, tile, "ser", "ser_unseen", ".4f"),
         "picture": _by_ratio(results, tile, "picture", "flip", ".3f"),
     }
     return page.text("btf_chart_tile", values)

@@ -334,15 +334,15 @@ def write(run: Run, found: dict) -> None:
     values = {
         "scenes": "\n".join(map(_scene_text, results)),
         "targets": page.table(
-            targets, "target | where | measured | ", "{target} | {where} | {measured} | {word}"
+            (target for target in targets if not target["met"]),
+            "target | where | measured | ",
+            "{target} | {where} | {measured} | {word}",
         ),
         "met": sum(target["met"] is True for target in targets),
         "judged": len(targets),
-        "equal_error": _by_curve(results, "relmse", Result.seconds_to_level, Result.time_ratio),
-        "equal_time": _by_curve(results, "seconds", Result.error_at_equal_time, Result.error_ratio),
+        "equal_error": _equal_error(results),
         "equal_samples": _equal_samples(results, equal_spp, bounded),
         "bound": _BOUND.format(conditions["bound_hits"]) if bounded else _NO_BOUND,
-        "ggx": _ggx(results),
         "sun": sun,
         "sun_share": 100 * sun["energy"],
         "sun_gain": _gain(results[-1].gain("product", DEFAULT, most_spp)),
@@ -383,16 +383,15 @@ def _gain(gain: tuple[float, float]) -> str:
     return f"{gain[0]:.2f} ± {gain[1]:.2f}"
 
 
-def _by_curve(results: list[Result], level: str, value, compared) -> str:
-    """A table with a column per curve. `level`: what is equal, relmse or seconds."""
+def _equal_error(results: list[Result]) -> str:
+    """A table with a column per curve."""
     names, rows = list(results[0].points), []
     for result in results:
-        at = f"{result.level:.2e}" if level == "relmse" else f"{result.level_seconds:.2f}"
-        cells = [*(value(result, name) for name in names), compared(result, "uniform", DEFAULT)]
-        rows.append({"name": result.about["name"], "at": at, "cells": " | ".join(map(shown, cells))})
-    return page.table(
-        rows, f"scene | {level} | {' | '.join(names)} | `uniform` / `mis`", "{name} | {at} | {cells}"
-    )
+        cells = [*map(result.seconds_to_level, names), result.time_ratio("uniform", DEFAULT)]
+        texts = " | ".join(map(shown, cells))
+        rows.append({"name": result.about["name"], "level": result.level, "cells": texts})
+    titles = f"scene | relmse | {' | '.join(names)} | `uniform` / `mis`"
+    return page.table(rows, titles, "{name} | {level:.2e} | {cells}")
 
 
 def _equal_samples(results: list[Result], equal_spp: int, bounded: bool) -> str:
@@ -411,16 +410,6 @@ def _equal_samples(results: list[Result], equal_spp: int, bounded: bool) -> str:
         titles += " | exact / `mis`, variance | `product` / `mis`, variance | share of the gain"
         cells += " | {exact:.3f} | {product:.3f} | {share:.0f} %"
     return page.table(rows, titles, cells)
-
-
-def _ggx(results: list[Result]) -> str:
-    rows = [
-        {"name": r.about["name"], "error": r.about["ggx"], "ratio": shown(r.time_ratio(DEFAULT, "mis-ggx"))}
-        | {name.replace("-", "_"): shown(r.seconds_to_level(name)) for name in (DEFAULT, "mis-ggx")}
-        for r in results
-    ]
-    titles = "scene | GGX's relative L2 | `mis` | `mis-ggx` | `mis` / `mis-ggx`"
-    return page.table(rows, titles, "{name} | {error:.4f} | {mis} | {mis_ggx} | {ratio}")
 
 
 def _mitsuba(found: Mapping, peers: list[Mapping], conditions: Mapping) -> str:

@@ -100,11 +100,6 @@ def write(run: Run, found: dict) -> None:
             "{reduced_lobes} | {reduced_seconds:.1f} | {full_relmse:.1e} +- {full_error:.0e} | "
             "{reduced_relmse:.1e} +- {reduced_error:.0e}",
         ),
-        "shares": page.table(
-            rows,
-            f"material | {' | '.join(OUTSIDE)}",
-            "{material} | " + " | ".join(f"{{{name}:.2%}}" for name in OUTSIDE),
-        ),
     }
     part = page.text("for_scene", found["conditions"] | parts)
     page.write_parts(run.output, "for_scene.md", "for_scene", for_scene=part)

@@ -96,7 +96,6 @@ def write(run: Run, found: dict) -> None:
             "value"
         ]
     fits = cases["fits"]
-    missed = [f"- {r['case']}: {r[key]}" for r in fits.values() for key in r if key.startswith("warning ")]
     (render,) = cases["render"].values()
     stages = {key.removeprefix("stages_"): s for key, s in render.items() if key.startswith("stages_")}
     angles = [f"{{by_view_angle_{angle}:.4f}}" for angle in ANGLES]
@@ -107,7 +106,6 @@ def write(run: Run, found: dict) -> None:
             + " | ".join(f"{angle}°" for angle in ANGLES),
             "{case} | {seconds:.1f} | {lobes} | {bytes} | {relative_l2:.4f} | " + " | ".join(angles),
         ),
-        "missed": "\n".join(missed) or "No view misses the tolerance.",
         "render": _render(render),
         "stages": ", ".join(f"{name} {seconds:.2f} s" for name, seconds in stages.items()),
         "lobes": page.table(
@@ -117,7 +115,7 @@ def write(run: Run, found: dict) -> None:
             "{case} | {fit_seconds:.1f} | {fit_bytes} | {fit_relative_l2:.4f} | {relmse:.2e} | {rmse:.2e} | "
             "{seconds:.1f} | {reference_seconds:.1f}",
         ),
-        "strategies": "\n".join(_strategy_tables(list(cases["strategies"].values()))),
+        "strategies": _strategies(list(cases["strategies"].values())),
     }
     page.write(run.output, "measurements.md", page.text("measure", found["conditions"] | parts))
     errors = {
@@ -140,14 +138,14 @@ def _render(report: dict) -> str:
     return page.table([report], "quantity | measured | target", " |\n| ".join(lines))
 
 
-def _strategy_tables(rows: list[dict]) -> Iterator[str]:
-    for start in range(0, len(rows), len(STRATEGIES)):
-        scene = rows[start : start + len(STRATEGIES)]
-        name, mis = scene[0]["case"].rsplit(", ", 1)[0], scene[STRATEGIES.index("mis")]["relmse"]
-        for strategy, row in zip(STRATEGIES, scene, strict=True):
-            row |= {"name": strategy, "gain": mis / row["relmse"], "cost": row["relmse"] * row["seconds"]}
-        yield f"{name}:\n\n" + page.table(
-            scene,
-            "strategy | seconds | relmse | relmse of mis / its own | relmse x seconds | ray_share",
-            "{name} | {seconds:.2f} | {relmse:.2e} | {gain:.2f} | {cost:.2e} | {ray_share:.2f}",
-        )
+def _strategies(rows: list[dict]) -> str:
+    """relmse x seconds: a row per strategy, a column per scene."""
+    costs: dict[str, dict[str, float]] = {}
+    for row in rows:
+        scene, strategy = row["case"].rsplit(", ", 1)
+        costs.setdefault(strategy, {})[scene] = row["relmse"] * row["seconds"]
+    lines = [
+        {"name": name, "cells": " | ".join(f"{cost:.1e}" for cost in own.values())}
+        for name, own in costs.items()
+    ]
+    return page.table(lines, f"strategy | {' | '.join(costs['mis'])}", "{name} | {cells}")

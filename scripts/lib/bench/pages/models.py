@@ -129,7 +129,6 @@ def write(run: Run, found: dict) -> None:
         "count": len(materials),
         "summary": _summary(materials) + TARGETS,
         "errors": _errors(materials),
-        "costs": _costs(materials),
         "neighbors": _neighbors(float(conditions["load"])),
         "floor": _floor(floor),
     }
@@ -150,6 +149,8 @@ def _models(own: Mapping) -> list[dict]:
 _COST_TITLES = " | ".join(COSTS.values())
 _COST_CELLS = " | ".join(f"{{{name}:.0f}}" for name in COSTS)
 _ANGLE_TITLES = " | ".join(f"{angle}°" for angle in ANGLES)
+# Pages of their own have the errors of the peers.
+_WITH_ERRORS = ("noise", "scattered", "parametric")
 _ANGLE_CELLS = " | ".join(f"{{error_{angle}:.4f}}" for angle in ANGLES)
 
 
@@ -184,20 +185,9 @@ def _errors(materials: Mapping) -> str:
         whole = "" if row is noise else f"{row['relative_l2']:.4f}"
         return {**row, "whole": whole, "angles": " | ".join(marked)}
 
-    rows = [cells(r, own["noise"]) for own in materials.values() for r in (own["noise"], *_models(own))]
+    rows = [cells(own[m], own["noise"]) for own in materials.values() for m in _WITH_ERRORS if m in own]
     return page.table(
         rows, f"material | model | relative_l2 | {_ANGLE_TITLES}", "{material} | {model} | {whole} | {angles}"
-    )
-
-
-def _costs(materials: Mapping) -> str:
-    rows = [row for own in materials.values() for row in (own["measurement"], *_models(own))]
-    for row in rows:
-        row["fit"] = "" if row["seconds"] is None else f"{row['seconds']:.2f}"
-    return page.table(
-        (dict.fromkeys(COSTS) | row for row in rows),
-        f"material | model | lobes | bytes | parameter bytes | seconds | {_COST_TITLES}",
-        f"{{material}} | {{model}} | {{lobes}} | {{bytes}} | {{parameter_bytes}} | {{fit}} | {_COST_CELLS}",
     )
 
 

@@ -217,21 +217,27 @@ def shell_errors(picture: np.ndarray, truth: np.ndarray) -> ShellErrors:
 
 
 def write(run: Run, found: dict) -> None:
-    values = {}
-    for look in ("BRDF", "BTF"):
-        rows = [row for row in found["rows"] if row["look"] == look]
-        names = dict.fromkeys(row["tile"] for row in rows)
-        sheets = (f"![{name}](images/{_sheet_name(name, look)})\n" for name in names)
-        values |= {f"{look}_ratios": _ratios(rows), f"{look}_sheets": "\n".join(sheets)}
-        values[f"{look}_rows"] = page.table(
-            rows,
-            "tile | surface | pixels a tile | outline: smooth / shell | alpha: smooth / shell | "
-            "light: smooth / shell | seconds: geometry / smooth / shell | MB: geometry / smooth / shell",
-            "{tile} | {surface} | {tile_pixels} | {smooth[outline]:.3f} / **{shell[outline]:.3f}** | "
-            "{smooth[alpha]:.3f} / **{shell[alpha]:.3f}** | {smooth[light]:.2f} / **{shell[light]:.2f}** | "
-            "{geometry[seconds]:.1f} / {smooth[seconds]:.1f} / {shell[seconds]:.1f} | "
-            "{geometry[bytes]:M.1f} / {smooth[bytes]:M.1f} / {shell[bytes]:M.1f}",
-        )
+    looks = {look: [row for row in found["rows"] if row["look"] == look] for look in ("BTF", "BRDF")}
+    both = [row | {"plain": plain} for row, plain in zip(looks["BTF"], looks["BRDF"], strict=True)]
+    pixels = [row["tile_pixels"] for row in both]
+    table = page.table(
+        (row for row in both if row["tile_pixels"] in (min(pixels), max(pixels))),
+        "tile | surface | pixels a tile | outline: smooth / shell | alpha: smooth / shell | "
+        "light, BTF: smooth / shell | light, BRDF: smooth / shell | seconds: geometry / smooth / shell | "
+        "MB: geometry / shell",
+        "{tile} | {surface} | {tile_pixels} | {smooth[outline]:.3f} / {shell[outline]:.3f} | "
+        "{smooth[alpha]:.3f} / {shell[alpha]:.3f} | {smooth[light]:.2f} / {shell[light]:.2f} | "
+        "{plain[smooth][light]:.2f} / {plain[shell][light]:.2f} | "
+        "{geometry[seconds]:.1f} / {smooth[seconds]:.1f} / {shell[seconds]:.1f} | "
+        "{geometry[bytes]:M.1f} / {shell[bytes]:M.1f}",
+    )
+    sheets = [
+        f"![{name}, {look}](images/{_sheet_name(name, look)})\n"
+        for look in looks
+        for name in dict.fromkeys(row["tile"] for row in both)
+    ]
+    values = {"rows": table, "sheets": "\n".join(sheets)}
+    values |= {f"{look}_ratios": _ratios(rows) for look, rows in looks.items()}
     page.write(run.output, "votf_numbers.md", page.text("votf", found["conditions"] | values))
 
 
@@ -245,5 +251,5 @@ def _ratios(rows: list[dict]) -> str:
     for pixels in dict.fromkeys(row["tile_pixels"] for row in rows):
         own = [row for row in rows if row["tile_pixels"] == pixels]
         ratios = [row["shell"]["seconds"] / row["smooth"]["seconds"] for row in own]
-        parts.append(f"{min(ratios):.1f} to {max(ratios):.1f} times with {pixels} pixels a tile")
-    return f"The shell takes as long as the smooth surface {', '.join(parts)}."
+        parts.append(f"{min(ratios):.1f} to {max(ratios):.1f} with {pixels} pixels a tile")
+    return ", ".join(parts)

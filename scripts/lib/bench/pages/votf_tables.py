@@ -81,43 +81,26 @@ def _section(result: dict) -> str:
     irregular = f", irregularity {result['irregularity']:g}" if result["irregularity"] else ""
     rows = page.table(
         result["candidates"],
-        "kept | wrong: stored / unseen | border, texels: stored / unseen | kB: as bytes / deflated | "
-        "ns: stored view / any view / in order | seconds",
+        "kept | wrong: stored / unseen | border, texels: stored / unseen | kB, deflated | "
+        "ns, any view | seconds",
         "{name} | {stored[wrong]:p} / {unseen[wrong]:p} | {stored[border]:.2f} / {unseen[border]:.2f} | "
-        "{bytes:k,.0f} / {packed:k,.0f} | {nanoseconds[stored]:.0f} / {nanoseconds[any]:.0f} / "
-        "{nanoseconds[in_order]:.0f} | {seconds:.1f}",
-    )
-    made = (
-        page.filled(
-            _GENERATION, c | {"capital": c["name"].capitalize(), "grid": " x ".join(map(str, c["points"]))}
-        )
-        for c in result["candidates"]
-        if "points" in c
+        "{packed:k,.0f} | {nanoseconds[any]:.0f} | {seconds:.1f}",
     )
     return page.filled(
         _SECTION,
         result
         | {"title": result["tile"].capitalize() + irregular, "rows": rows}
-        | {"targets": _targets(result), "made": "".join(made)},
+        | {"targets": _targets(result)},
     )
 
 
 _SECTION = """## {title}
 
-{texels} x {texels} texels, {views} views, {unseen} unseen ones; mean V {mean:.2f}. The rays of the
-table took {ray_seconds:.1f} seconds of processor time.
+{texels} x {texels} texels, {views} views, {unseen} unseen ones; mean V {mean:.2f}.
 
 {rows}
-Distances, {texels} a tile, against the targets:
-
-{targets}
-{made}
+Distances, {texels} a tile: {targets}
 """
-_GENERATION = (
-    "- {capital} ({grid} points): {wall_seconds:.1f} seconds to make, {wall_seconds_checked:.1f} with the "
-    "same number of views checked by rays. Its rays reach, the checks' included, {ray_share:.2f} of Embree's "
-    "bare rate.\n"
-)
 
 
 def _targets(result: dict) -> str:
@@ -130,7 +113,7 @@ def _targets(result: dict) -> str:
         f"{ours['packed'] / 1e6:.2f} MB deflated (under 1)": ours["packed"] < 1e6,
         f"{100 * wrong:.2f} % wrong (at most 1 %)": wrong <= 0.01,
         f"borders {border:.2f} texels apart (at most 0.5)": border <= 0.5,
-        f"{share:.2f} of what linear interpolation gets wrong at unseen views (at most 0.5)": share <= 0.5,
+        f"{share:.2f} of the errors of linear interpolation at unseen views (at most 0.5)": share <= 0.5,
         f"{look_ups:.1f} million look-ups a second and core (at least 20)": look_ups >= 20,
     }
-    return "".join(f"- {text}: {'met' if met else '**missed**'}.\n" for text, met in targets.items())
+    return ", ".join(f"{text} {'met' if met else '**missed**'}" for text, met in targets.items()) + ".\n"
