@@ -114,7 +114,7 @@ def test_damaged_sets_are_one_sentence(named_set):
 
 
 def bonn_file(width=2, height=1) -> bytes:
-    """Two views, one light, one component a channel; the layout of docs/engine/btf_models.md."""
+    """Two views, one light, one component a channel; the layout of docs/reference/btf_formats.md."""
     description = struct.pack("<I80s80s80sf3fI", 2, b"dome", b"camera", b"lamp", 4.0, 1, 1, 1, 0)
     sampling = struct.pack("<I", 2)
     for theta in (0.0, 0.5):

@@ -9,7 +9,11 @@ import bpy
 
 from .inputs import ADDON
 
-_MENUS = {"File > Import": "TOPBAR_MT_file_import", "Add > Mesh": "VIEW3D_MT_mesh_add"}
+_MENUS = {
+    "File > Import": "TOPBAR_MT_file_import",
+    "File > New": "TOPBAR_MT_file_new",
+    "Add > Mesh": "VIEW3D_MT_mesh_add",
+}
 _PACKAGES = ("ui", "operators", "properties", "engine", "export")
 
 

@@ -1,4 +1,4 @@
-// A writer of .btf files by the layout of docs/engine/btf_models.md: no file of Bonn's own is at hand.
+// A writer of .btf files by the layout of docs/reference/btf_formats.md: no file of Bonn's own is at hand.
 #pragma once
 
 #include <array>
