@@ -36,10 +36,7 @@ def link(picture: Path) -> None:
 
 def _taken(facts: dict) -> str:
     c = conditions(0, 0)
-    return (
-        f"Taken on {c['date']}, commit {c['commit']}, with\n"
-        f"Blender {facts['blender']} on {c['machine']}.\n"
-    )
+    return f"Taken on {c['date']}, commit {c['commit']}, Blender {facts['blender']}.\n"
 
 
 def _first_material(facts: dict) -> str:
