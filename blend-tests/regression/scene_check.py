@@ -11,7 +11,7 @@ from .case import Case, Outcome, Settings
 from .scene import Scene
 
 MOST_BYTES = 100_000  # of a reference with its error
-EXIT_STATUS = 1  # of Blender where Velour refuses to render, as docs/reference/panels.md says
+EXIT_STATUS = 1  # of Blender where Velour refuses to render
 
 
 def run(scene: Scene, blender: Installation, work: Path, pictures: int, update: bool) -> list[Outcome]:

@@ -73,7 +73,13 @@ class _Recorder:
         self.texts, self.layout = [], self
 
     def __getattr__(self, _name):
-        return lambda *_arguments, text="", **_keywords: self.texts.append(text)
+        return lambda *names, text="", **_keywords: self.texts.append(text or _operator_label(*names))
+
+
+def _operator_label(name="", *_):
+    """Label of `velour.name`, which a menu shows without a text of its own."""
+    group, _, operator = name.partition(".")
+    return getattr(getattr(bpy.ops, group), operator).get_rna_type().name if operator else ""
 
 
 def _types():

@@ -1,7 +1,7 @@
 """Estimates the time of a BTF fit from fits that were made on this machine.
 
 A small trial fit would mislead: it looks at fewer places and tries other shapes. Recorded times are scaled
-with texels and pairs to powers that were measured (docs/reference/panels.md).
+with texels and pairs to powers that were measured.
 """
 
 from __future__ import annotations

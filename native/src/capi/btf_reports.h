@@ -1,4 +1,4 @@
-// JSON reports on BTFs, with the keys of the command line's verbs (docs/reference/command_line.md).
+// JSON reports on BTFs, with the keys of the command line's verbs (docs/reference/cli_btf.md).
 #pragma once
 
 #include <string>
@@ -19,12 +19,12 @@ std::string btf_export_json(const BtfExportReport& report);
 std::string compression_json(const Model& model, uint64_t file_bytes);
 std::string btf_errors_json(const BtfErrors& errors, double p99);
 
-// JSON reports on virtual measurements, with the keys of the command line's verbs (docs/reference/command_line.md).
+// JSON reports on virtual measurements, with the keys of the command line's verbs (docs/reference/cli_btf.md).
 
 std::string capture_json(const BtfCaptureReport& report);
 std::string microsurface_json(const MicrosurfaceReport& report);
 
-// JSON reports on procedural mesostructure, with the keys of the command line's verbs (docs/reference/command_line.md).
+// JSON reports on procedural mesostructure, with the keys of the command line's verbs (docs/reference/cli_btf.md).
 
 std::string tile_json(const Tile& tile);
 std::string tile_kinds_json();

@@ -1,4 +1,4 @@
-// JSON reports on fits and their errors, with the keys of the command line's verbs (docs/reference/command_line.md).
+// JSON reports on fits and their errors, with the keys of the verbs (docs/reference/cli_measurements.md).
 #pragma once
 
 #include <string>
@@ -17,7 +17,7 @@ std::string peer_json(const PeerFit& fit);
 /// With the inputs of Blender's nodes (vlr_model_closures_json).
 std::string closures_json(const ModelClosures& closures);
 
-// JSON reports on models, with the keys of the command line's verbs (docs/reference/command_line.md).
+// JSON reports on models, with the keys of the command line's verbs (docs/reference/cli_files.md).
 
 /// Number of lobes or components of a model, and its sizes in bytes.
 Json size_json(const Model& model, uint64_t file_bytes);

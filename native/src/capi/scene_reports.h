@@ -21,7 +21,7 @@ std::string observation_json(const SceneObservation& observation);
 /// Report of the job that made the observation, which took `seconds`.
 std::string observe_json(const SceneObservation& observation, double seconds);
 
-// JSON reports on scenes and renders, with the keys of the command line's verbs (docs/reference/command_line.md).
+// JSON reports on scenes and renders, with the keys of the command line's verbs (docs/reference/cli_render.md).
 
 std::string scene_json(const Scene& scene);
 std::string render_json(const RenderReport& report);

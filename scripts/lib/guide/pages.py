@@ -36,10 +36,7 @@ def link(picture: Path) -> None:
 
 def _taken(facts: dict) -> str:
     c = conditions(0, 0)
-    return (
-        f"Pictures and numbers of this page were taken on {c['date']}, commit {c['commit']}, in\n"
-        f"Blender {facts['blender']} on {c['machine']}.\n"
-    )
+    return f"Taken on {c['date']}, commit {c['commit']}, Blender {facts['blender']}.\n"
 
 
 def _first_material(facts: dict) -> str:
@@ -70,7 +67,7 @@ def _tile(facts: dict) -> str:
     )
 
 
-_PAGES = {"tile": "cloth"}  # page of a chapter that has none of its own
+_PAGES = {"install": "preset", "tile": "cloth"}  # pages of chapters that have none of their own
 _PARTS = {
     "first_material": {"fit": _first_material},
     "tolerance": {"tolerances": _tolerances},

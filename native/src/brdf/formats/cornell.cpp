@@ -15,8 +15,7 @@
 namespace velour {
 namespace {
 
-/// Fine enough that the table adds less than the interpolation's own error; docs/reference/measurement_formats.md has
-/// the numbers.
+/// Fine enough that the table adds less than the interpolation's own error.
 constexpr BrdfTableLayout kCornellLayout{.theta_h = 90, .phi_h = 1, .theta_d = 60, .phi_d = 60};
 constexpr double kMaxWavelengths = 10000;
 constexpr std::string_view kUtf8Mark = "\xef\xbb\xbf";

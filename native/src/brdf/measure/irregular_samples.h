@@ -16,7 +16,7 @@ namespace velour {
 /// power spreads a highlight over several samples. Each channel is fitted as asinh(f / 0.01 sr^-1), nearly logarithmic
 /// for highlights and linear about 0, with Gaussian weights over the 16 nearest samples and a light ridge on the
 /// slopes. The result never falls below those samples; it may rise above them by their range, because a highlight's top
-/// mostly lies between samples. docs/reference/measurement_formats.md compares the alternatives.
+/// mostly lies between samples.
 class IrregularInterpolant {
  public:
   /// Copies what it needs. Throws Error(invalid_argument) for fewer than kNeighbors samples.

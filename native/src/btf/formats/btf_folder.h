@@ -1,5 +1,5 @@
 // Velour's own BTF format: a folder with an index, btf.json, and one image file per view
-// (docs/reference/btf_formats.md).
+// (docs/reference/measurement_formats.md).
 #pragma once
 
 #include <memory>

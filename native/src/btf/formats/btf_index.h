@@ -1,4 +1,4 @@
-// The index of Velour's own BTF format, btf.json (docs/reference/btf_formats.md).
+// The index of Velour's own BTF format, btf.json (docs/reference/measurement_formats.md).
 #pragma once
 
 #include <optional>

@@ -1,5 +1,5 @@
 """The demo's scene with few samples, the same denoised by the compositor's Denoise node with Velour's two
-passes, and with many samples: docs/guide/images/denoise.png, and the errors in docs/reference/panels.md.
+passes, and with many samples: docs/guide/images/denoise.png, and their errors.
 
 Uses the module bpy of Blender 4.5 (scripts/blenders), because Debian's Blenders have no OpenImageDenoise.
 """

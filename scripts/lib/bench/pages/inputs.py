@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import subprocess
+import textwrap
 import xml.etree.ElementTree as ET
 
 from .. import page
@@ -21,15 +22,23 @@ _MARK = "input|"
 
 
 def measure(run: Run) -> None:
-    found: dict[tuple[str, ...], str] = {}
+    found: dict[str, dict[str, str]] = {}
     for program in _PROGRAMS:
         report = run.work / "report.xml"
         command = [BUILT / "tests/unit" / program, f"--gtest_output=xml:{report}"]
         subprocess.run(command, check=True, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
         for each in ET.parse(report).getroot().iter("property"):
             if each.get("name").startswith(_MARK):
-                variant = each.get("name").removeprefix(_MARK).split("|", 1)
-                found[tuple(variant)] = each.get("value")
-    rows = [{"format": f, "variant": v, "verdict": verdict} for (f, v), verdict in sorted(found.items())]
-    text = page.table(rows, "format | variant | verdict", "{format} | {variant} | {verdict}")
-    page.write(ROOT / "docs/reference", "inputs.md", page.text("inputs", {"table": text}))
+                file_format, variant = each.get("name").removeprefix(_MARK).split("|", 1)
+                found.setdefault(file_format, {})[variant] = each.get("value")
+    page.write(ROOT / "docs/reference", "inputs.md", page.text("inputs", {"formats": _lists(found)}))
+
+
+def _lists(found: dict[str, dict[str, str]]) -> str:
+    """A heading per format, with a line per variant: what Velour does with it."""
+    parts = []
+    for file_format, variants in sorted(found.items()):
+        lines = (f"- {variant}: {verdict}" for variant, verdict in sorted(variants.items()))
+        wrapped = (textwrap.fill(line, 120, subsequent_indent="  ", break_on_hyphens=False) for line in lines)
+        parts.append("\n".join((f"## {file_format}\n", *wrapped)) + "\n")
+    return "\n".join(parts)
