@@ -115,7 +115,7 @@ def write(run: Run, found: dict) -> None:
             "{case} | {fit_seconds:.1f} | {fit_bytes} | {fit_relative_l2:.4f} | {relmse:.2e} | {rmse:.2e} | "
             "{seconds:.1f} | {reference_seconds:.1f}",
         ),
-        "strategies": _strategies(list(cases["strategies"].values())),
+        "strategies": _strategy_table(list(cases["strategies"].values())),
     }
     page.write(run.output, "measurements.md", page.text("measure", found["conditions"] | parts))
     errors = {
@@ -138,7 +138,7 @@ def _render(report: dict) -> str:
     return page.table([report], "quantity | measured | target", " |\n| ".join(lines))
 
 
-def _strategies(rows: list[dict]) -> str:
+def _strategy_table(rows: list[dict]) -> str:
     """relmse x seconds: a row per strategy, a column per scene."""
     costs: dict[str, dict[str, float]] = {}
     for row in rows:
