@@ -120,15 +120,6 @@ def test_models(campaign, capsys):
     assert campaign.page("models.md") == page
 
 
-def test_measurements(campaign, capsys):
-    small = ("--size=16x12", "--small-size=8x6", "--converged-spp=16")
-    assert campaign.run("measure", *small) == 0
-    page = campaign.page("measurements.md")
-    assert "16x12, 16 light directions a pixel" in page
-    assert "| product | " in page
-    assert _kept(campaign, "measure", capsys, *small)
-
-
 def test_perceptual(campaign, capsys):
     try:
         flip_metric._flip()
