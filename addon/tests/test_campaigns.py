@@ -74,7 +74,7 @@ def test_chart(campaign, capsys):
     small = ("--size=16x12", "--bound-hits=2")
     assert campaign.run("chart", *small) == 0
     page = campaign.page("chart/README.md")
-    for heading in ("Targets", "Equal error", "Equal time", "Equal samples", "Mitsuba", "Cycles"):
+    for heading in ("Targets", "Equal error", "Equal time", "Equal samples", "Mitsuba"):
         assert f"\n## {heading}\n" in page
     assert "Mitsuba is left out" in page
     assert "seconds of `mis` to equal error at most 1/5 of `uniform`" in page

@@ -52,14 +52,6 @@ def camera(location, towards=(0, 0, 0), **settings):
     return found
 
 
-def framed_camera(text):
-    """The camera of the command line's option: eye, target, and the vertical field of view in degrees."""
-    *places, fov = map(float, text.split(","))
-    found = camera(places[:3], places[3:], sensor_fit="VERTICAL")
-    found.data.angle = math.radians(fov)
-    return found
-
-
 def lamp(kind, energy, location=(0, 0, 0), towards=None, **settings):
     """`settings`: properties of the light's data."""
     data = bpy.data.lights.new("Lamp", kind)
