@@ -24,7 +24,7 @@ class Needs(NamedTuple):
 
 # Name and first sentence of each page.
 PAGES = {
-    path.stem: re.split(r"\.\s", ast.get_docstring(ast.parse(path.read_text(encoding="utf-8"))))[0]
+    path.stem: re.split(r"\.(?:\s|$)", ast.get_docstring(ast.parse(path.read_text(encoding="utf-8"))))[0]
     for path in sorted(Path(__file__).with_name("pages").glob("[!_]*.py"))
 }
 NEEDS = {

@@ -4,7 +4,6 @@ import math
 
 import bpy
 import numpy as np
-from mathutils import Vector
 
 from . import scene as build
 
@@ -104,15 +103,9 @@ def _pedestal(place):
 
 
 def _monkey(place, size, turn):
-    bpy.ops.mesh.primitive_monkey_add(size=size * 2, rotation=(math.radians(-24), 0, math.radians(turn)))
-    obj = bpy.context.object
-    smooth = obj.modifiers.new("Smooth", "SUBSURF")
-    smooth.levels = smooth.render_levels = 3
-    bpy.ops.object.shade_smooth()
-    evaluated = obj.evaluated_get(bpy.context.evaluated_depsgraph_get())
-    lowest = min((evaluated.matrix_world @ vertex.co).z for vertex in evaluated.data.vertices)
-    obj.location = Vector(place) - Vector((0, 0, lowest))
-    return obj
+    obj = build.monkey(2 * size, (-24, turn))
+    obj.location = place
+    return build.set_down(obj)
 
 
 def _knot(place, size, turn=20):

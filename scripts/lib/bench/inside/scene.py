@@ -78,6 +78,24 @@ def material(name="Material", shader="Principled BSDF", **inputs):
     return found
 
 
+def monkey(size=2.0, turned=(0, 0), levels=3):
+    """Suzanne, smooth. `turned`: degrees about x and about z."""
+    rotation = (math.radians(turned[0]), 0, math.radians(turned[1]))
+    bpy.ops.mesh.primitive_monkey_add(size=size, rotation=rotation)
+    found = bpy.context.object
+    smooth = found.modifiers.new("Smooth", "SUBSURF")
+    smooth.levels = smooth.render_levels = levels
+    bpy.ops.object.shade_smooth()
+    return found
+
+
+def set_down(obj):
+    """Makes an object stand on the plane z = 0."""
+    shaped = obj.evaluated_get(bpy.context.evaluated_depsgraph_get())
+    obj.location.z -= min((shaped.matrix_world @ vertex.co).z for vertex in shaped.data.vertices)
+    return obj
+
+
 def world(picture=None, strength=1.0, color=(0, 0, 0), rotation=0.0):
     """`picture`: the path of an environment map, or the name of one that comes with Blender. `rotation`:
     about z, in degrees."""
