@@ -60,8 +60,8 @@ def in_window(
     options: Sequence[str] = (),
     files: Sequence[Path] = (),
     seconds: float = 3600,
-) -> str:
-    """Calls start(folder) of a script in a window of `screen` pixels. Returns the output after its report.
+) -> None:
+    """Calls start(folder) of a script in a window of `screen` pixels, and waits for the report of its steps.
 
     The folder is new, with copies of `files` and the task as task.json. `program`: Blender's name or path.
     """
@@ -82,7 +82,6 @@ def in_window(
     found = report.read(folder)
     if status != 0 or not found or any(test.outcome == report.FAILED for test in found):
         raise BlenderError(f"{folder.name} failed in Blender; {_ending(log)}")
-    return log.read_text(errors="replace")
 
 
 def _ending(log: Path) -> str:

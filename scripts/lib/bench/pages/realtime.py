@@ -1,8 +1,11 @@
-"""Scenes of blend-tests in the real-time viewport on a virtual screen: frames per second, and the error
-against the ray tracer. The picture shows the ray tracer's image, the real-time image, and ten times their
-difference about gray. Frames per second are valid only on an idle machine."""
+"""A net in the real-time viewport on a virtual screen, beside the ray tracer's picture, with the error.
+
+The third picture shows ten times their difference about gray. scripts/viewport measures the speed.
+"""
 
 from __future__ import annotations
+
+import json
 
 import numpy as np
 
@@ -16,8 +19,7 @@ _SHOWN = 0.82  # share of the height: above it is the shell's hem, which has no 
 
 def measure(run: Run) -> dict:
     folder = run.work / "blender"
-    text = blender.in_window(blender.INSIDE / "realtime.py", {}, folder, run.settings.screen_size)
-    said = [line for line in text.splitlines() if line.startswith("real time")]
+    blender.in_window(blender.INSIDE / "realtime.py", {}, folder, run.settings.screen_size)
     traced, drawn = np.load(folder / "net.npy")[..., :3]
     white, rows = np.percentile(traced, 99.5), round(_SHOWN * traced.shape[0])
     pictures = {
@@ -27,8 +29,9 @@ def measure(run: Run) -> dict:
     }
     cells = [(title, charts.display(pixels[:rows])) for title, pixels in pictures.items()]
     charts.sheet(run.output / "images/realtime.png", [cells], (2.9, 2.9 * rows / traced.shape[1] + 0.25))
-    return {"conditions": run.conditions(), "said": said}
+    result = json.loads((folder / "result.json").read_text())
+    return {"conditions": run.conditions(), **result}
 
 
 def write(run: Run, found: dict) -> None:
-    print("\n".join(found["said"]))
+    print(f"relative L2 {found['relative_l2']:.4f}")
