@@ -11,17 +11,17 @@ from pathlib import Path
 
 import mutant_tests
 from checks import running
-from mutant_tests import PRESET, Outcome, Run
+from mutant_tests import PRESET, MutantsError, Outcome, Run
 
 PLANTED = "VELOUR_MUTANT"  # the fault's name in the environment of its tests
 _BUILD_SECONDS = 7200
 
 
-class TreeError(RuntimeError):
-    """Its message says in one sentence why the copy cannot be used."""
+class TreeError(MutantsError):
+    """The copy cannot be used."""
 
 
-class BuildError(RuntimeError):
+class BuildError(MutantsError):
     """The fault, or the commit without one, does not compile; the log says why."""
 
 
@@ -46,11 +46,6 @@ class Tree:
         tools.parent.mkdir(exist_ok=True)
         if shared.is_dir() and not tools.exists():
             tools.symlink_to(shared)
-
-    def takes(self, patch: Path) -> bool:
-        """Whether the fault can be planted."""
-        command = ["git", "apply", "--check", str(patch)]
-        return subprocess.run(command, cwd=self.folder, capture_output=True, check=False).returncode == 0
 
     @contextlib.contextmanager
     def planted(self, patch: Path) -> Iterator[None]:

@@ -13,7 +13,7 @@ _CLOTH_FRAMES = 70
 
 
 def main(task):
-    """Renders one scene into `folder`; returns the engine's report."""
+    """Renders one scene as NAME.png into the folder; returns the engine's report."""
     scene = build.empty(task["size"], task["samples"], _BOUNCES)
     scene.view_settings.view_transform = _display_transform(scene)
     scene.velour.use_noise_target, scene.velour.noise_target = True, task["noise"]
@@ -25,7 +25,7 @@ def main(task):
     bpy.context.window.scene = scene
     bpy.data.scenes.remove(studio)
     SCENES[task["scene"]]()
-    return build.render(task["folder"], task["scene"])
+    return build.render(task["folder"], task["name"])
 
 
 def _display_transform(scene):
