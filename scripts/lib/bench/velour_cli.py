@@ -11,5 +11,9 @@ ROOT = Path(__file__).resolve().parents[3]
 
 def velour(*arguments) -> dict:
     """Returns the report of a call. Messages go to the terminal. Raises CalledProcessError on failure."""
-    command = [ROOT / "scripts/velour", *map(str, arguments), "--log-level", "error", "--json"]
-    return json.loads(subprocess.run(command, check=True, stdout=subprocess.PIPE).stdout)
+    return json.loads(_run(*arguments, "--json").stdout)
+
+
+def _run(*arguments) -> subprocess.CompletedProcess:
+    command = [ROOT / "scripts/velour", *map(str, arguments), "--log-level", "error"]
+    return subprocess.run(command, check=True, stdout=subprocess.PIPE)
