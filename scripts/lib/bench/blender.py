@@ -68,6 +68,7 @@ def in_window(
     for tool in ("xvfb-run", program):
         if not shutil.which(tool):
             raise BlenderError(f"{tool} is not installed; run scripts/setup")
+    folder = folder.resolve()
     shutil.rmtree(folder, ignore_errors=True)
     folder.mkdir(parents=True)
     for file in files:
