@@ -9,6 +9,7 @@ import numpy as np
 
 from support import blender, scenes
 from support.blender import BlenderTest
+from support.geometry_error import geometry_error
 
 LONG = "captures a BTF of 6561 pairs; test_compress_btf captures and places smaller ones"
 
@@ -30,10 +31,9 @@ class RealGeometry(BlenderTest):
             folder.mkdir()
             scripts = str(Path(__file__).resolve().parents[1] / "scripts/lib")
             with unittest.mock.patch.object(sys, "path", [scripts, *sys.path]):
-                scene = importlib.import_module("bench.inside.real_geometry")
-                error = importlib.import_module("bench.geometry_error").geometry_error
+                scene = importlib.import_module("support.real_geometry")  # uses bench
             report = scene.main({**TASK, "samples": 64, "shots": SHOTS, "folder": str(folder)})
-            type(self).taken = folder, error, report
+            type(self).taken = folder, geometry_error, report
         return self.taken
 
     def _pictures(self, shot):

@@ -5,8 +5,7 @@ from __future__ import annotations
 import os
 
 import pytest
-from conftest import ROOT  # noqa: F401 - puts scripts/lib on the path
-from farm import command, job
+from velour.farm import command, job
 
 # It is asked what a .blend holds, and is told that by nobody.
 _BLENDER = """#!/usr/bin/python3

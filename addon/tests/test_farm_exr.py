@@ -7,8 +7,7 @@ import struct
 import subprocess
 
 import pytest
-from conftest import ROOT  # noqa: F401 - puts scripts/lib on the path
-from farm import exr
+from velour.farm import exr
 
 COMPRESSIONS = ["none", "rle", "zips", "zip", "piz", "pxr24", "b44", "b44a", "dwaa", "dwab"]
 pytestmark = pytest.mark.skipif(not shutil.which("oiiotool"), reason="oiiotool is not installed")

@@ -10,13 +10,13 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from conftest import ROOT
-from farm import blender, frame, job, sources, status
+from conftest import ADDONS
+from velour.farm import blender, frame, job, sources, status
 
 _STAMPS = {"velour.version": "0.1.0", "velour.blender": "3.4.1", "velour.models": "{}"}
 # What a Blender does that is none: out is where its picture goes, without number and extension.
 _OUT = 'while [ $# -gt 0 ]; do [ "$1" = -o ] && out=${2%%#*}; shift; done\n'
-_PROGRAM = "import sys; from farm import frame; sys.exit(frame.main(sys.argv[1:]))"
+_PROGRAM = "import sys; from velour.farm import frame; sys.exit(frame.main(sys.argv[1:]))"
 
 
 @pytest.fixture
@@ -82,7 +82,7 @@ def test_an_error_after_the_time_limit_has_failed(task):
 # A batch engine that ends the program right after it has started Blender.
 _ENGINE = """
 import os, signal, subprocess, sys
-from farm import frame
+from velour.farm import frame
 
 start = subprocess.Popen
 
@@ -102,7 +102,7 @@ def test_ended_while_blender_starts(task):
     _blender_that(task, "exec sleep 60")
     done = subprocess.run(
         [sys.executable, "-c", _ENGINE, task.folder / "job.json", "--frames", "1-2"],
-        env={**os.environ, "PYTHONPATH": str(ROOT / "scripts/lib")},
+        env={**os.environ, "PYTHONPATH": str(ADDONS)},
         capture_output=True,
         text=True,
     )
@@ -179,7 +179,7 @@ def test_ended_while_blender_writes(task, good):
     _blender_that(task, f'{_OUT}cp "{good}" "$out"0001.exr; kill -TERM $PPID; exec sleep 60')
     done = subprocess.run(
         [sys.executable, "-c", _PROGRAM, task.folder / "job.json", "--frames", "1-2"],
-        env={**os.environ, "PYTHONPATH": str(ROOT / "scripts/lib")},
+        env={**os.environ, "PYTHONPATH": str(ADDONS)},
         capture_output=True,
         text=True,
     )

@@ -9,8 +9,8 @@ import sys
 
 import pytest
 from conftest import ROOT
-from farm import blender, flamenco, frame, openjd, program, ranges, slurm, sources, status
-from farm.job import Job, JobError, Unit, load
+from velour.farm import blender, flamenco, frame, openjd, program, ranges, slurm, sources, status
+from velour.farm.job import Job, JobError, Unit, load
 
 TOOLS = ROOT / "build/tools/bin/python"
 

@@ -4,15 +4,11 @@ from __future__ import annotations
 
 import argparse
 import contextlib
-import hashlib
-import json
-import os
 import shutil
 import sys
 import time
 from collections.abc import Callable, Iterator
 from pathlib import Path
-from typing import NamedTuple
 
 import numpy as np
 from bench import blender, charts, tiles
@@ -39,6 +35,12 @@ from velour.native import (
 )
 
 OUT = ROOT / "out/demo"
+CAPTURE = Part(
+    "capture",
+    "the default measurement",
+    {"capturing the default measurement": 7},
+    ("microsurface.binary",),
+)
 _PICTURES = tuple(f"{n}.{suffix}" for n in ("model", "reference", "difference") for suffix in ("exr", "png"))
 _START, _DRAW = "starting Blender", "drawing the difference and the plot"
 MATERIAL = Part(
@@ -81,18 +83,16 @@ def main() -> int:
     parts = Parts(Progress(rate=1.0), args.fresh)
     tasks = _tasks(args.files)
     has_btf = not args.files and not args.votf
-    if not args.files:
-        parts.progress.expect(CAPTURE_COST)
-    for part in [VOTF if args.votf else MATERIAL] * len(tasks) + [BTF] * has_btf:
+    found = [VOTF if args.votf else MATERIAL] * len(tasks)
+    for part in [CAPTURE] * (not args.files) + found + [BTF] * has_btf:
         part.announce(parts.progress)
     try:
-        measured = None if args.files else default_measurement(parts)
+        default, capture = (None, {}) if args.files else default_measurement(parts)
         for source, folder in tasks:
-            capture = measured or Capture(source)
             if args.votf:
-                _show_votf(folder / "votf", capture.path, parts)
+                _show_votf(folder / "votf", source or default, parts)
             else:
-                _show_material(folder, capture, parts)
+                _show_material(folder, source or default, capture, parts)
         if has_btf:
             _show_btf(OUT / "btf", parts)
     except KeyboardInterrupt:
@@ -121,34 +121,18 @@ def _tasks(given: list[Path]) -> list[tuple[Path | None, Path]]:
     return list(zip(given, folders, strict=True))
 
 
-# The default measurement: a rough metal under a virtual goniometer, made once for its settings and kept.
-CAPTURE_SETTINGS = {"seed": 1}  # the rest are the library's defaults
-CAPTURE_COST = 7  # seconds on two cores
+def default_measurement(parts: Parts) -> tuple[Path, dict]:
+    """A rough metal under a virtual goniometer; and what its capture took."""
+    path = OUT / "microsurface.binary"
 
+    def make(steps: Steps) -> dict:
+        steps.begin(*CAPTURE.steps)
+        with microsurface_job(path, seed=1) as job:  # the rest are the library's defaults
+            return job.run()
 
-class Capture(NamedTuple):
-    path: Path
-    seconds: float | None = None  # duration of the original capture; None: the user's own file
-    cached: bool = False
-
-
-def default_measurement(parts: Parts) -> Capture:
-    step, folder = (
-        "capturing the default measurement",
-        Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache"),
-    )
-    # Another build of the library may measure another surface.
-    known = json.dumps([CAPTURE_SETTINGS, hashlib.sha256(library.library_path().read_bytes()).hexdigest()])
-    stem = folder / f"velour/microsurface-{hashlib.sha256(known.encode()).hexdigest()[:16]}"
-    path, note = stem.with_suffix(".binary"), stem.with_suffix(".json")
-    if not parts.fresh and path.is_file() and note.is_file():
-        parts.progress.skip(step, CAPTURE_COST)
-        return Capture(path, json.loads(note.read_text())["seconds"], True)
-    path.parent.mkdir(parents=True, exist_ok=True)
-    with parts.progress.work(step, CAPTURE_COST), microsurface_job(path, **CAPTURE_SETTINGS) as job:
-        report = job.run()
-    files.write_json(note, report)
-    return Capture(path, report["seconds"], False)
+    OUT.mkdir(parents=True, exist_ok=True)
+    report = parts.make(CAPTURE, OUT, {}, make)
+    return path, {"capture_seconds": report["seconds"], "cached": report["kept"]}
 
 
 def _report(folder: Path, report: dict) -> None:
@@ -177,16 +161,12 @@ def save_fit(measurement_file: Path, model_file: Path) -> dict:
     return report
 
 
-def _show_material(folder: Path, capture: Capture, parts: Parts) -> None:
-    """A model of a measurement, renders of both in Blender, and a plot."""
+def _show_material(folder: Path, measurement: Path, capture: dict, parts: Parts) -> None:
+    """A model of a measurement, renders of both in Blender, and a plot. `capture`: what measuring took."""
     folder.mkdir(parents=True, exist_ok=True)
-    make = lambda steps: _make_material(folder, capture.path, steps)  # noqa: E731
-    made = parts.make(MATERIAL, folder, {"measurement": capture.path}, make)
-    report = made["numbers"] | {
-        "capture_seconds": capture.seconds,
-        "cached": capture.cached,
-        "kept": made["kept"],
-    }
+    make = lambda steps: _make_material(folder, measurement, steps)  # noqa: E731
+    made = parts.make(MATERIAL, folder, {"measurement": measurement}, make)
+    report = made["numbers"] | {"capture_seconds": None, "cached": False, **capture, "kept": made["kept"]}
     errors = ", ".join(f"{a} deg {e:.3f}" for a, e in report["by_view_angle"].items() if e is not None)
     print(f"fit     {report['lobes']} lobes, {report['bytes']} bytes, {report['fit_seconds']:.1f} s")
     print(f"        error {errors}")

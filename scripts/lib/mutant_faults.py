@@ -9,7 +9,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
-from mutant_tests import GROUPS, Entry, UnknownTestError, entries, run_of
+from mutant_tests import GROUPS, Entry, MutantsError, UnknownTestError, entries, run_of
 
 LEAST_FAULTS = 40
 _KEYS = ("Fault", "Reason", "Nearest")
@@ -17,8 +17,8 @@ _CODE = {"native/src": (".cpp", ".h"), "addon/velour": (".py",)}  # every folder
 _CHANGED = re.compile(r"^\+\+\+ b/(\S+)$", re.MULTILINE)
 
 
-class FaultError(ValueError):
-    """Its message says in one sentence what is wrong with the file of a fault."""
+class FaultError(MutantsError):
+    """Something is wrong with the file of a fault."""
 
 
 @dataclass(frozen=True)
@@ -82,7 +82,8 @@ def problems(root: Path, folder: Path) -> Iterator[str]:
         except FaultError as error:
             yield str(error)
     for fault in faults:
-        yield from _does_not_apply(root, fault)
+        if why := refusal(root, fault.patch):
+            yield f"{fault.patch.name} does not apply: {why}"
         yield from _unknown_tests(root, fault)
     if len(faults) < LEAST_FAULTS:
         yield f"there are {len(faults)} faults, and {LEAST_FAULTS} are needed"
@@ -91,11 +92,11 @@ def problems(root: Path, folder: Path) -> Iterator[str]:
         yield f"no fault is planted in {missing}"
 
 
-def _does_not_apply(root: Path, fault: Fault) -> Iterator[str]:
-    command = ["git", "apply", "--check", str(fault.patch)]
+def refusal(root: Path, patch: Path) -> str:
+    """Why a fault cannot be planted in a tree, or ""."""
+    command = ["git", "apply", "--check", str(patch)]
     done = subprocess.run(command, cwd=root, capture_output=True, text=True, check=False)
-    if done.returncode:
-        yield f"{fault.patch.name} does not apply: {' '.join(done.stderr.split())}"
+    return " ".join(done.stderr.split()) if done.returncode else ""
 
 
 def _unknown_tests(root: Path, fault: Fault) -> Iterator[str]:

@@ -26,8 +26,12 @@ _SUITE = re.compile(r"^\s*(?:TYPED_)?TEST(?:_[FP])?\(\s*(\w+)\s*,", re.MULTILINE
 _BEGUN = re.compile(r"^\[ RUN      \] (\S+)", re.MULTILINE)  # GoogleTest's start of a case
 
 
-class UnknownTestError(ValueError):
-    """Its message says in one sentence which test does not exist."""
+class MutantsError(RuntimeError):
+    """Its message says in one sentence why something cannot be done."""
+
+
+class UnknownTestError(MutantsError):
+    """A test does not exist."""
 
 
 class Entry(NamedTuple):
@@ -73,10 +77,6 @@ def run_of_group(group: str) -> Run:
     is_long = group == LONG_SUITE
     seconds = _LONG_SECONDS if is_long else _GROUP_SECONDS
     return Run((), ("scripts/test", group), _GROUP_REPORTS, seconds, is_judged_by_status=not is_long)
-
-
-def has_long_suite(root: Path) -> bool:
-    return LONG_SUITE in (root / "scripts/test").read_text(encoding="utf-8")
 
 
 def _native(root: Path, what: str) -> Run:

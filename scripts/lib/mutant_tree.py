@@ -5,24 +5,23 @@ from __future__ import annotations
 import contextlib
 import os
 import shutil
-import signal
 import subprocess
 from collections.abc import Iterator
 from pathlib import Path
 
 import mutant_tests
-from mutant_tests import PRESET, Outcome, Run
+from checks import running
+from mutant_tests import PRESET, MutantsError, Outcome, Run
 
 PLANTED = "VELOUR_MUTANT"  # the fault's name in the environment of its tests
 _BUILD_SECONDS = 7200
-_PATIENCE_SECONDS = 20
 
 
-class TreeError(RuntimeError):
-    """Its message says in one sentence why the copy cannot be used."""
+class TreeError(MutantsError):
+    """The copy cannot be used."""
 
 
-class BuildError(RuntimeError):
+class BuildError(MutantsError):
     """The fault, or the commit without one, does not compile; the log says why."""
 
 
@@ -48,11 +47,6 @@ class Tree:
         if shared.is_dir() and not tools.exists():
             tools.symlink_to(shared)
 
-    def takes(self, patch: Path) -> bool:
-        """Whether the fault can be planted."""
-        command = ["git", "apply", "--check", str(patch)]
-        return subprocess.run(command, cwd=self.folder, capture_output=True, check=False).returncode == 0
-
     @contextlib.contextmanager
     def planted(self, patch: Path) -> Iterator[None]:
         """Within this context, the copy has the fault."""
@@ -72,28 +66,35 @@ class Tree:
     def build(self, targets: tuple[str, ...], log: Path) -> None:
         """Raises BuildError."""
         command = ("scripts/build", PRESET, *targets)
-        if _execute(command, self.folder, dict(os.environ), log, _BUILD_SECONDS) != 0:
+        if self._execute(command, log, _BUILD_SECONDS)[0] != 0:
             raise BuildError(f"{' '.join(command)} failed; {log} has what it said.")
 
     def run(self, run: Run, log: Path, fault: str = "") -> Outcome:
         """Builds the targets of the run and runs it; appends all output to `log`. Raises BuildError."""
         if run.targets:
             self.build(run.targets, log)
-        report, own_log = self.folder / run.report, log.with_suffix(".last")
-        _remove(report)  # report of an earlier run
+        report = self.folder / run.report
+        if report.is_dir():  # of an earlier run
+            shutil.rmtree(report)
+        report.unlink(missing_ok=True)
         report.parent.mkdir(parents=True, exist_ok=True)
-        own_log.unlink(missing_ok=True)
-        status = _execute(run.command, self.folder, self._environment(fault), own_log, run.seconds)
-        found = mutant_tests.outcome(self.folder, run, status, own_log)
+        status, own_log = self._execute(run.command, log, run.seconds, **self._variables(fault))
+        return mutant_tests.outcome(self.folder, run, status, own_log)
+
+    def _execute(
+        self, command: tuple[str, ...], log: Path, seconds: float, **variables: str
+    ) -> tuple[int | None, Path]:
+        """The exit status (None: it took too long), and the file of the output, which `log` receives, too."""
+        own_log = log.with_suffix(".last")
+        status = running.run(command, own_log, folder=self.folder, seconds=seconds, **variables)
         with log.open("ab") as whole:
             whole.write(own_log.read_bytes())
-        own_log.unlink()
-        return found
+        return status, own_log
 
-    def _environment(self, fault: str) -> dict[str, str]:
-        found = {**os.environ, "VELOUR_STAGE": str(self.folder / f"build/{PRESET}/blender")}
+    def _variables(self, fault: str) -> dict[str, str]:
+        found = {"VELOUR_STAGE": str(self.folder / f"build/{PRESET}/blender")}
         data = self.root.parent / "shared/data"
-        if "VELOUR_DATA" not in found and data.is_dir():
+        if "VELOUR_DATA" not in os.environ and data.is_dir():
             found["VELOUR_DATA"] = str(data)  # is beside the repository, but not beside its copy
         return {**found, PLANTED: fault} if fault else found
 
@@ -107,44 +108,3 @@ def _git(folder: Path, *arguments: str) -> str:
     if done.returncode:
         raise TreeError(f"git {arguments[0]} failed in {folder}: {' '.join(done.stderr.split())}")
     return done.stdout.strip()
-
-
-def _remove(path: Path) -> None:
-    if path.is_dir():
-        shutil.rmtree(path)
-    else:
-        path.unlink(missing_ok=True)
-
-
-def _execute(
-    command: tuple[str, ...], folder: Path, variables: dict[str, str], log: Path, seconds: float
-) -> int | None:
-    """Returns the exit status, or None after `seconds`. No started process outlives this call."""
-    log.parent.mkdir(parents=True, exist_ok=True)
-    with log.open("ab") as output:
-        process = subprocess.Popen(
-            command,
-            cwd=folder,
-            env=variables,
-            stdin=subprocess.DEVNULL,
-            stdout=output,
-            stderr=subprocess.STDOUT,
-            start_new_session=True,
-        )
-        try:
-            return process.wait(seconds)
-        except subprocess.TimeoutExpired:
-            return None
-        finally:
-            _end(process)
-
-
-def _end(process: subprocess.Popen) -> None:
-    """Interrupts, then kills: blend-tests/run ends its Blenders at Ctrl-C, but cannot if killed at once."""
-    with contextlib.suppress(ProcessLookupError, subprocess.TimeoutExpired):
-        if process.poll() is None:
-            os.killpg(process.pid, signal.SIGINT)
-            process.wait(_PATIENCE_SECONDS)
-    with contextlib.suppress(ProcessLookupError):
-        os.killpg(process.pid, signal.SIGKILL)  # its remaining children
-    process.wait()

@@ -21,7 +21,7 @@ import mutant_tests
 import mutant_tree
 from mutant_faults import Fault
 from mutant_results import Results
-from mutant_tests import LONG_SUITE, Run
+from mutant_tests import LONG_SUITE, MutantsError, Run
 from mutant_tree import Tree
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -33,10 +33,6 @@ DONE, FAILED, UNFINISHED, INTERRUPTED = 0, 1, 3, 130  # exit statuses
 
 class TimeOverError(Exception):
     """The time is over: no further fault is started."""
-
-
-class MutantsError(RuntimeError):
-    """Its message says in one sentence why nothing can be done."""
 
 
 class Pass(NamedTuple):
@@ -58,10 +54,8 @@ class Campaign:
 
     def run(self) -> None:
         """Raises TimeOverError."""
-        has_long = mutant_tests.has_long_suite(self._tree.folder)
-        missed = mutant_results.SHORT_MISSED if has_long else mutant_results.MISSED
         self._pass(None, Pass(self._nearest, mutant_results.SEEN, mutant_results.UNSEEN))
-        self._pass(mutant_results.UNSEEN, Pass(_groups, mutant_results.SEEN, missed))
+        self._pass(mutant_results.UNSEEN, Pass(_groups, mutant_results.SEEN, mutant_results.SHORT_MISSED))
         self._pass(mutant_results.SHORT_MISSED, Pass(_long, mutant_results.LONG, mutant_results.MISSED))
 
     def _nearest(self, fault: Fault) -> dict[str, Run]:
@@ -100,7 +94,7 @@ class Campaign:
     def _met(self, fault: Fault, tests: Pass) -> tuple[str, str, str]:
         """The state of the fault, and the tests and the case that detected it."""
         log = self._logs / f"{fault.name}.txt"
-        if not self._tree.takes(fault.patch):
+        if mutant_faults.refusal(self._tree.folder, fault.patch):
             return mutant_results.UNPLANTED, "", ""
         try:
             with self._tree.planted(fault.patch):
@@ -147,18 +141,9 @@ def main(arguments: list[str] | None = None) -> int:
     except KeyboardInterrupt:
         print("mutants: interrupted; the next run continues from here.", file=sys.stderr)
         return INTERRUPTED
-    except _ERRORS as error:
+    except MutantsError as error:
         print(f"mutants: {error}", file=sys.stderr)
         return FAILED
-
-
-_ERRORS = (
-    MutantsError,
-    mutant_faults.FaultError,
-    mutant_tests.UnknownTestError,
-    mutant_tree.BuildError,
-    mutant_tree.TreeError,
-)
 
 
 def _parse(arguments: list[str] | None) -> argparse.Namespace:

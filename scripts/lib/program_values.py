@@ -16,32 +16,15 @@ VERSION = bpy.app.version
 NEW, NEWEST = VERSION >= (4, 1), VERSION >= (5, 0)
 POINTS = np.array([(0.13, 0.72, 0.41), (-2.31, 0.58, -0.17), (3.74, 2.26, -1.93)], np.float32)
 _USUAL = {"Detail": 0.0, "Roughness": 0.5, "Lacunarity": 2.0, "Offset": 0.0, "Gain": 1.0, "Distortion": 0.0}
-_NOISE = ("Vector", "W", "Scale", "Detail", "Roughness", "Lacunarity", "Offset", "Gain", "Distortion")
-_VORONOI = (
-    "Vector",
-    "W",
-    "Scale",
-    "Detail",
-    "Roughness",
-    "Lacunarity",
-    "Smoothness",
-    "Exponent",
-    "Randomness",
-)
-_WAVE = ("Vector", "Scale", "Distortion", "Detail", "Detail Scale", "Detail Roughness", "Phase Offset")
-_BRICK = (
-    "Vector",
-    "Color1",
-    "Color2",
-    "Mortar",
-    "Scale",
-    "Mortar Size",
-    "Mortar Smooth",
-    "Bias",
-    "Brick Width",
-)
-_FRACTALS = ("FBM", "MULTIFRACTAL", "HYBRID_MULTIFRACTAL", "RIDGED_MULTIFRACTAL", "HETERO_TERRAIN")
 _COLORS = {"Color1": (0.1, 0.2, 0.3, 1), "Color2": (0.6, 0.5, 0.4, 1), "Mortar": (0.9, 0.1, 0.5, 1)}
+_OCTAVES = ("Detail", "Roughness", "Lacunarity")
+_NOISE = ("Vector", "W", "Scale", *_OCTAVES, "Offset", "Gain", "Distortion")
+_VORONOI = ("Vector", "W", "Scale", *_OCTAVES, "Smoothness", "Exponent", "Randomness")
+_WAVE = ("Vector", "Scale", "Distortion", "Detail", "Detail Scale", "Detail Roughness", "Phase Offset")
+_BRICK = ("Vector", *_COLORS, "Scale", "Mortar Size", "Mortar Smooth", "Bias", "Brick Width", "Row Height")
+_PLACE = {"W": 0.37, "Scale": 1.7}
+_BOTH = {"Fac": 0, "Color": 1}  # outputs
+_FRACTALS = ("FBM", "MULTIFRACTAL", "HYBRID_MULTIFRACTAL", "RIDGED_MULTIFRACTAL", "HETERO_TERRAIN")
 
 
 def cases():
@@ -61,33 +44,18 @@ def cases():
 
 
 def _noise():
-    both = {"Fac": 0, "Color": 1}
     for d in range(4):
         place = {"noise_dimensions": f"{d + 1}D"}
-        for detail, rough, dist in ((0.0, 0.5, 0.0), (2.6, 0.4, 0.0), (1.0, 0.7, 0.8)):
-            inputs = {"W": 0.37, "Scale": 1.7, "Detail": detail, "Roughness": rough, "Distortion": dist}
-            yield "noise", (d, 0, 1, 1), "TexNoise", place, {**inputs, "Lacunarity": 2.0}, _NOISE, both
+        for octaves in ((0.0, 0.5, 2.0, 0.0), (2.6, 0.4, 2.0, 0.0), (1.0, 0.7, 2.0, 0.8)):
+            inputs = _PLACE | dict(zip((*_OCTAVES, "Distortion"), octaves, strict=True))
+            yield "noise", (d, 0, 1, 1), "TexNoise", place, inputs, _NOISE, _BOTH
         for kind, name in enumerate(_FRACTALS):
-            inputs = {
-                "W": 0.37,
-                "Scale": 1.7,
-                "Detail": 2.6,
-                "Roughness": 0.6,
-                "Lacunarity": 1.9,
-                "Offset": 0.4,
-            }
-            inputs |= {"Gain": 1.3, "Distortion": 0.2}
+            inputs = _PLACE | dict(zip(_OCTAVES, (2.6, 0.6, 1.9), strict=True))
+            inputs |= {"Offset": 0.4, "Gain": 1.3, "Distortion": 0.2}
             properties = {**place, "noise_type": name, "normalize": False}
-            yield "noise", (d, kind, 0, 1), "TexNoise", properties, inputs, _NOISE, both
-        yield (
-            "white_noise",
-            (d,),
-            "TexWhiteNoise",
-            place,
-            {"W": 0.37},
-            ("Vector", "W"),
-            {"Value": 0, "Color": 1},
-        )
+            yield "noise", (d, kind, 0, 1), "TexNoise", properties, inputs, _NOISE, _BOTH
+        outputs = {"Value": 0, "Color": 1}
+        yield "white_noise", (d,), "TexWhiteNoise", place, {"W": 0.37}, ("Vector", "W"), outputs
 
 
 def _musgrave():
@@ -95,20 +63,12 @@ def _musgrave():
     for d in range(4):
         for kind, name in enumerate(_FRACTALS):
             for detail in (2.6, 0.4):
-                inputs = {"W": 0.37, "Scale": 1.7, "Detail": detail, "Dimension": 0.8, "Lacunarity": 1.9}
-                inputs |= {"Offset": 0.4, "Gain": 1.3}
+                inputs = {**_PLACE, "Detail": detail, "Lacunarity": 1.9, "Offset": 0.4, "Gain": 1.3}
+                ours = inputs | {"Detail": detail - 1, "Roughness": 1.9**-0.8}
+                inputs["Dimension"] = 0.8
                 properties = {"musgrave_dimensions": f"{d + 1}D", "musgrave_type": name}
-                ours = {
-                    "Detail": detail - 1,
-                    "Roughness": 1.9**-0.8,
-                    "Lacunarity": 1.9,
-                    "Offset": 0.4,
-                    "Gain": 1.3,
-                }
-                yield (
-                    *("noise", (d, kind, 0, 0), "TexMusgrave", properties, inputs, _NOISE, {"Fac": 0}),
-                    {**inputs, **ours},
-                )
+                case = ("noise", (d, kind, 0, 0), "TexMusgrave", properties, inputs, _NOISE, {"Fac": 0})
+                yield *case, ours
 
 
 def _voronoi():
@@ -120,7 +80,7 @@ def _voronoi():
                 shown = ["Distance", "Color", "Position", "W"] if feature < 3 else ["Distance"]
                 shown = ["Radius"] if feature == 4 else [n for n in shown if _has(d, n)]
                 for detail, normal in ((0.0, False), (1.6, True)) if feature < 4 else ((0.0, False),):
-                    inputs = {"W": 0.37, "Scale": 1.7, "Smoothness": 0.6, "Exponent": 0.7, "Randomness": 0.9}
+                    inputs = {**_PLACE, "Smoothness": 0.6, "Exponent": 0.7, "Randomness": 0.9}
                     inputs |= {"Detail": detail, "Roughness": 0.6, "Lacunarity": 1.9}
                     properties = {"voronoi_dimensions": f"{d + 1}D", "feature": name, "normalize": normal}
                     properties["distance"] = metrics[metric]
@@ -134,36 +94,30 @@ def _has(d, name):
 
 
 def _patterns():
-    both = {"Fac": 0, "Color": 1}
     for kind, name in enumerate(("BANDS", "RINGS")):
         for axis in range(4):
             properties = {"wave_type": name, "wave_profile": ("SIN", "SAW", "TRI")[axis % 3]}
             properties["bands_direction"] = ("X", "Y", "Z", "DIAGONAL")[axis]
             properties["rings_direction"] = ("X", "Y", "Z", "SPHERICAL")[axis]
-            inputs = {
-                "Scale": 0.7,
-                "Distortion": 0.0 if axis == 1 else 2.0,
-                "Detail": 1.5,
-                "Detail Scale": 1.3,
-            }
-            inputs |= {"Detail Roughness": 0.4, "Phase Offset": 0.6}
+            inputs = {"Scale": 0.7, "Detail": 1.5, "Detail Scale": 1.3, "Detail Roughness": 0.4}
+            inputs |= {"Distortion": 0.0 if axis == 1 else 2.0, "Phase Offset": 0.6}
             yield "wave", (kind, axis, axis % 3), "TexWave", properties, inputs, _WAVE, {"Fac": 0}
     kinds = ("LINEAR", "QUADRATIC", "EASING", "DIAGONAL", "SPHERICAL", "QUADRATIC_SPHERE", "RADIAL")
     for number, kind in enumerate(kinds):
         yield "gradient", (number,), "TexGradient", {"gradient_type": kind}, {}, ("Vector",), {"Fac": 0}
     names = ("Vector", "Color1", "Color2", "Scale")
     inputs = {"Color1": _COLORS["Color1"], "Color2": _COLORS["Color2"], "Scale": 1.3}
-    yield "checker", (), "TexChecker", {}, inputs, names, both
+    yield "checker", (), "TexChecker", {}, inputs, names, _BOTH
     for smooth in (0.0, 0.3):
         properties = {"offset": 0.3, "squash": 1.4, "offset_frequency": 2, "squash_frequency": 3}
         inputs = {"Scale": 1.3, "Mortar Size": 0.2, "Mortar Smooth": smooth, "Bias": 0.1, "Brick Width": 0.8}
         inputs |= {**_COLORS, "Row Height": 0.6}
-        names, ours = (*_BRICK, "Row Height", "offset", "squash"), {**inputs, "offset": 0.3, "squash": 1.4}
-        yield "brick", (2, 3), "TexBrick", properties, inputs, names, both, ours
+        names, ours = (*_BRICK, "offset", "squash"), {**inputs, "offset": 0.3, "squash": 1.4}
+        yield "brick", (2, 3), "TexBrick", properties, inputs, names, _BOTH, ours
     for depth in (0, 2, 7, 10):
         inputs = {"Scale": 1.7, "Distortion": 0.8}
         properties = {"turbulence_depth": depth}
-        yield "magic", (depth,), "TexMagic", properties, inputs, ("Vector", "Scale", "Distortion"), both
+        yield "magic", (depth,), "TexMagic", properties, inputs, ("Vector", "Scale", "Distortion"), _BOTH
 
 
 def _numbers():
@@ -262,21 +216,14 @@ def _number(value):
 
 def main():
     rows = []
-    for turn, case in enumerate(cases()):
-        operation, choices, idname, properties, inputs, names, outputs = case[:7]
-        ours = case[7] if len(case) > 7 else inputs
-        found = evaluated(idname, properties, inputs, names, outputs)
-        for number, point in enumerate(POINTS):
-            if number != turn % len(POINTS):
-                continue
-            given = ", ".join(_number(v) for v in registers(point, names, ours))
-            for name, first in outputs.items():
-                values = ", ".join(_number(v) for v in found[name][number])
-                chosen = ", ".join(str(int(c)) for c in choices)
-                rows.append(
-                    f'{{"{bpy.app.version_string[:3]}", Operation::{operation}, {{{chosen}}}, {{{given}}}'
-                )
-                rows[-1] += f", {first}, {{{values}}}}},"
+    for turn, (operation, choices, idname, properties, inputs, names, outputs, *ours) in enumerate(cases()):
+        found, number = evaluated(idname, properties, inputs, names, outputs), turn % len(POINTS)
+        given = ", ".join(map(_number, registers(POINTS[number], names, *(ours or [inputs]))))
+        chosen = ", ".join(str(int(choice)) for choice in choices)
+        start = f'{{"{bpy.app.version_string[:3]}", Operation::{operation}, {{{chosen}}}, {{{given}}}'
+        for name, first in outputs.items():
+            values = ", ".join(map(_number, found[name][number]))
+            rows.append(f"{start}, {first}, {{{values}}}}},")
     with open(sys.argv[-1], "w") as file:
         file.write("\n".join(rows) + "\n")
 

@@ -3,10 +3,13 @@
 from __future__ import annotations
 
 import argparse
+import ast
 import importlib
 import json
+import re
 import subprocess
 import sys
+import textwrap
 from pathlib import Path
 from types import SimpleNamespace
 from typing import NamedTuple
@@ -14,58 +17,46 @@ from typing import NamedTuple
 ROOT = Path(__file__).resolve().parents[3]
 
 
-class Page(NamedTuple):
-    about: str
+class Needs(NamedTuple):
     targets: tuple[str, ...] = ()  # of the build, besides the library
     tools: str = ""  # option of scripts/setup
 
 
+# Name and first sentence of each page.
 PAGES = {
-    "blender_support": Page("features that render as in Cycles, and seconds of the export of large scenes"),
-    "btf_chart": Page("methods of BTF compression at equal bytes, on tiles and measured sets", (), "metrics"),
-    "chart": Page(
-        "error against time of every strategy, beside other renderers", ("product_bound",), "peers"
-    ),
-    "denoise": Page("the compositor's Denoise node with Velour's passes"),
-    "equal_noise": Page("processor time of Cycles and Velour at the same noise"),
-    "failure_modes": Page("errors of models of hostile measurements", ("test_failure_modes",)),
-    "figures": Page("the dissertation's figures 7.11 to 7.13, with its strategy, beside references"),
-    "figures_check": Page("the references of the figures beside uniform samples", ("uniform_moments",)),
-    "for_scene": Page("what scene models save and cost, and what is reported outside of their scene"),
-    "gallery": Page("pictures of presets for README, with their times"),
-    "inputs": Page("files of other programs", ("test_image", "test_mesh", "test_brdf", "test_btf")),
-    "measure": Page("fits and renders of the test scenes"),
-    "mesostructures": Page("pictures of the procedural tiles"),
-    "models": Page("every model of every material beside GGX and Principled", ("evaluation_cost",)),
-    "normal_maps": Page("approximations in Cycles with and without their normal maps"),
-    "perceptual": Page("what a tolerance of the fit looks like: FLIP against the tolerance", (), "metrics"),
-    "performance": Page("where the time of a render goes, and the speed of kernels"),
-    "real_geometry": Page("objects with a tile's geometry beside the same objects with its BTF"),
-    "realtime": Page("frames per second and errors of the real-time viewport"),
-    "test_times": Page("seconds of the last run of scripts/test"),
-    "viewport": Page("how long the rendered viewport takes to show a change"),
-    "votf": Page("silhouettes, light and time of VOTFs beside real geometry"),
-    "votf_tables": Page("ways to store which texels are covered in each view", ("occlusion_tables",)),
+    path.stem: re.split(r"\.(?:\s|$)", ast.get_docstring(ast.parse(path.read_text(encoding="utf-8"))))[0]
+    for path in sorted(Path(__file__).with_name("pages").glob("[!_]*.py"))
+}
+NEEDS = {
+    "btf_chart": Needs(tools="metrics"),
+    "chart": Needs(("product_bound",), "peers"),
+    "failure_modes": Needs(("test_failure_modes",)),
+    "figures_check": Needs(("uniform_moments",)),
+    "inputs": Needs(("test_image", "test_mesh", "test_brdf", "test_btf")),
+    "models": Needs(("evaluation_cost",)),
+    "perceptual": Needs(tools="metrics"),
+    "votf_tables": Needs(("occlusion_tables",)),
 }
 
 
 def main(words: list[str]) -> int:
     if words[:1] in (["--list"], ["-h"], ["--help"], []):
         print("scripts/bench NAME [--help | OPTION...]: measures a page of docs/results. NAME is one of")
-        print(*(f"  {name:16} {page.about}" for name, page in PAGES.items()), sep="\n")
+        for page, about in PAGES.items():
+            print(textwrap.fill(f"  {page:16} {about}", 110, subsequent_indent=19 * " "))
         return 0
     name, *words = words
     if name not in PAGES:
         print(f"bench: there is no page {name!r}; scripts/bench --list names them.", file=sys.stderr)
         return 2
     if "--built" not in words and not {"-h", "--help"} & set(words):
-        _build(PAGES[name])
+        _build(NEEDS.get(name, Needs()))
     return run(name, words)
 
 
-def _build(page: Page) -> None:
-    subprocess.run([ROOT / "scripts/setup", *([f"--{page.tools}"] if page.tools else [])], check=True)
-    targets = [name for name in page.targets if name.startswith("test_") or _is_here(name)]
+def _build(needs: Needs) -> None:
+    subprocess.run([ROOT / "scripts/setup", *([f"--{needs.tools}"] if needs.tools else [])], check=True)
+    targets = [name for name in needs.targets if name.startswith("test_") or _is_here(name)]
     subprocess.run([ROOT / "scripts/build", "release", "velour", *targets], check=True)
 
 
@@ -99,8 +90,7 @@ def run(name: str, words: list[str]) -> int:
 def _arguments(module, name: str, words: list[str]) -> argparse.Namespace:
     from velour.core.machine import threads
 
-    about = f"{PAGES[name].about}. {(module.__doc__ or '').partition(chr(10))[2]}"
-    parser = argparse.ArgumentParser(prog=f"scripts/bench {name}", description=about)
+    parser = argparse.ArgumentParser(prog=f"scripts/bench {name}", description=module.__doc__)
     add = parser.add_argument
     add("--quick", action="store_true", help="a small version, to try the script; its page stays in build")
     add(

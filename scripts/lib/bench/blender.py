@@ -1,4 +1,4 @@
-"""Runs a script inside Blender without a window, with the staged add-on."""
+"""Runs scripts inside Blender with the staged add-on, with and without a window."""
 
 from __future__ import annotations
 
@@ -6,12 +6,19 @@ import json
 import os
 import shutil
 import subprocess
-from collections.abc import Callable
+import sys
+from collections.abc import Callable, Sequence
 from pathlib import Path
 
 from .velour_cli import ROOT
 
+sys.path.append(str(ROOT / "blend-tests"))
+
+from support import process, report
+
 STAGE = Path(os.environ.get("VELOUR_STAGE", ROOT / "build/release/blender"))
+INSIDE = Path(__file__).with_name("inside")
+_HARNESS = ROOT / "blend-tests/support/harness.py"
 
 
 class BlenderError(RuntimeError):
@@ -31,19 +38,56 @@ def run(
     `options`: further options for Blender. `hear` is called with each line that Blender or the script prints.
     `version`: a version of scripts/blenders, with the packaged add-on.
     """
-    report = log.with_suffix(".report.json")
-    report.unlink(missing_ok=True)
-    done = f"bench.inside.start({script!r}, {json.dumps(task)!r}, {str(report)!r})"
+    found = log.with_suffix(".report.json")
+    found.unlink(missing_ok=True)
+    done = f"bench.inside.start({script!r}, {json.dumps(task)!r}, {str(found)!r})"
     path = [str(ROOT / "scripts/lib"), str(ROOT / "blend-tests")]
     code = f"import sys; sys.path[:0] = {path!r}; import bench.inside; {done}"
     command = [*_blender(version), "-b", "--factory-startup", "-noaudio"]
     # The order matters: --python-exit-code applies only to the arguments after it.
     command += ["--python-exit-code", "7", *options, "--python-expr", code]
-    status = _run(command, log, hear)
-    if status:
-        lines = [line for line in log.read_text(errors="replace").splitlines() if line.strip()]
-        raise BlenderError(f"Blender failed with status {status}; {log} ends: {' / '.join(lines[-3:])}")
-    return json.loads(report.read_text(encoding="utf-8")) if report.is_file() else None
+    if status := _run(command, log, hear):
+        raise BlenderError(f"Blender failed with status {status}; {_ending(log)}")
+    return json.loads(found.read_text(encoding="utf-8")) if found.is_file() else None
+
+
+def in_window(
+    script: Path,
+    task: dict,
+    folder: Path,
+    screen: tuple[int, int],
+    program: str = "blender",
+    options: Sequence[str] = (),
+    files: Sequence[Path] = (),
+    seconds: float = 3600,
+) -> None:
+    """Calls start(folder) of a script in a window of `screen` pixels, and waits for the report of its steps.
+
+    The folder is new, with copies of `files` and the task as task.json. `program`: Blender's name or path.
+    """
+    for tool in ("xvfb-run", program):
+        if not shutil.which(tool):
+            raise BlenderError(f"{tool} is not installed; run scripts/setup")
+    folder = folder.resolve()
+    shutil.rmtree(folder, ignore_errors=True)
+    folder.mkdir(parents=True)
+    for file in files:
+        shutil.copy(file, folder)
+    (folder / "task.json").write_text(json.dumps(task))
+    program, size, log = shutil.which(program), [str(side) for side in screen], folder / "log.txt"
+    command = ["env", "-C", folder, f"BLENDER_USER_CONFIG={folder / 'config'}"]
+    command += ["xvfb-run", "-a", "-s", f"-screen 0 {'x'.join(size)}x24 -fbdir . -nocursor"]
+    command += [program, "--factory-startup", "-noaudio", *options, "--window-geometry", "0", "0", *size]
+    command += ["--python-exit-code", "1", "--python", _HARNESS, "--", script, folder]
+    status = process.execute(list(map(str, command)), process.environment(program, STAGE), log, seconds)
+    found = report.read(folder)
+    if status != 0 or not found or any(test.outcome == report.FAILED for test in found):
+        raise BlenderError(f"{folder.name} failed in Blender; {_ending(log)}")
+
+
+def _ending(log: Path) -> str:
+    lines = [line for line in log.read_text(errors="replace").splitlines() if line.strip()]
+    return f"{log} ends: {' / '.join(lines[-3:])}"
 
 
 def _blender(version: str | None) -> list[str]:
@@ -53,24 +97,23 @@ def _blender(version: str | None) -> list[str]:
     found = shutil.which("blender")
     if not found:
         raise BlenderError("blender is not installed; run scripts/setup")
-    # A distribution's Blender looks for its Python along PATH and must not find that of a version manager.
-    path = os.pathsep.join((str(Path(found).resolve().parent), os.environ["PATH"]))
-    return ["env", f"BLENDER_USER_SCRIPTS={STAGE}", f"PATH={path}", found]
+    return [found]
 
 
 def _run(command: list[str], log: Path, hear: Callable[[str], None]) -> int:
     """Returns the exit status. Kills Blender on any exception: Ctrl-C itself ends only its current render."""
     pipes = {"stdin": subprocess.DEVNULL, "stdout": subprocess.PIPE, "stderr": subprocess.STDOUT}
+    pipes |= {"env": process.environment(command[0], STAGE)}
     with (
         open(log, "w") as file,
-        subprocess.Popen(command, text=True, errors="replace", **pipes) as process,
+        subprocess.Popen(command, text=True, errors="replace", **pipes) as child,
     ):
         try:
-            for line in process.stdout:
+            for line in child.stdout:
                 file.write(line)
                 file.flush()
                 hear(line)
         except BaseException:
-            process.kill()
+            child.kill()
             raise
-    return process.returncode
+    return child.returncode

@@ -26,7 +26,7 @@ from velour.native import images
 from . import data_files, provenance
 from .progress import Progress
 from .scenes import Scene
-from .velour_cli import ROOT, velour_to_file
+from .velour_cli import ROOT, velour
 
 BUILT = ROOT / "build/release/native"
 _LIBRARY = Path(addon.__file__).with_name("lib") / "libvelour.so"
@@ -128,14 +128,13 @@ class Run:
         ends with status 1."""
 
         def run() -> dict:
-            before, beside = processor_seconds(), self.stem(name, parameters).with_suffix(".partial")
+            before = processor_seconds()
             try:
-                found = velour_to_file(beside, *words)
+                found = velour(*words, "--quiet")
             except subprocess.CalledProcessError as error:
                 if error.returncode != 1 or not refusable:
                     raise
                 found = {"refused": True}
-            beside.unlink(missing_ok=True)
             return found | {"processor_seconds": processor_seconds() - before}
 
         return self.keep(label, name, parameters, run, cost)

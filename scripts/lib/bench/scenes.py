@@ -101,20 +101,14 @@ def write_grid(path: Path, points: np.ndarray, normals: np.ndarray, uvs: np.ndar
         for kind, array in parts.items()
         for row in array.reshape(rows * columns, -1)
     ]
-    flat = points.reshape(-1, 3)
-    for row in range(rows - 1):
-        for column in range(columns - 1):
-            a = row * columns + column
-            for corners in ((a, a + columns, a + columns + 1), (a, a + columns + 1, a + 1)):
-                p, q, r = flat[list(corners)]
-                if np.linalg.norm(np.cross(q - p, r - p)) > 1e-12:
-                    lines.append("f " + " ".join(_corner(c + 1, uvs is not None) for c in corners))
+    first = (np.arange(rows - 1)[:, None] * columns + np.arange(columns - 1)).reshape(-1, 1)
+    corners = (first + np.array([0, columns, columns + 1, 0, columns + 1, 1])).reshape(-1, 3)
+    p, q, r = points.reshape(-1, 3)[corners].swapaxes(0, 1)
+    corners = corners[np.linalg.norm(np.cross(q - p, r - p), axis=1) > 1e-12] + 1
+    middle = "/{0}/" if uvs is not None else "//"
+    lines += ["f " + " ".join(f"{c}{middle.format(c)}{c}" for c in triangle) for triangle in corners]
     files.write_text(path, "\n".join(lines) + "\n")
     return path
-
-
-def _corner(number: int, has_uvs: bool) -> str:
-    return f"{number}/{number if has_uvs else ''}/{number}"
 
 
 def write_sphere(path: Path, rings: int = 128, sectors: int = 256) -> Path:

@@ -22,7 +22,6 @@ PAGES = {
     "docs/results/fit.md": _FITS,
     "docs/results/for_scene.md": (*_FITS, *_PICTURES, "usage"),
     "docs/results/ggx.md": _FITS,
-    "docs/results/measurements.md": ("brdf",),
     "docs/results/models.md": _FITS,
     "docs/results/perceptual.md": _FITS + _PICTURES,
     "docs/results/performance.md": _PICTURES,

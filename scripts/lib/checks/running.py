@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import os
 import re
 import signal
@@ -13,6 +14,7 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 
 _SAY_SECONDS = 15  # between two lines of progress
+_PATIENCE_SECONDS = 20
 _END_LINES = 100  # maximum number of a log's last lines that are shown after a failure
 
 
@@ -21,14 +23,22 @@ def say(text: str) -> None:
 
 
 def run(
-    command: Sequence[str | Path], log: Path, progress: Callable[[str], str] | None = None, **variables: str
-) -> int:
-    """Returns the exit status. `progress` makes a message from the log so far; Ctrl-C ends the command's
-    children as well."""
+    command: Sequence[str | Path],
+    log: Path,
+    progress: Callable[[str], str] | None = None,
+    folder: Path | None = None,
+    seconds: float | None = None,
+    **variables: str,
+) -> int | None:
+    """Returns the exit status, or None after `seconds`. `progress` makes a message from the log so far.
+
+    No started process outlives this call, Ctrl-C included.
+    """
     log.parent.mkdir(parents=True, exist_ok=True)
     with log.open("wb") as output:
         child = subprocess.Popen(
             [str(part) for part in command],
+            cwd=folder,
             env={**os.environ, **variables},
             stdin=subprocess.DEVNULL,
             stdout=output,
@@ -40,29 +50,26 @@ def run(
     if progress:
         watcher.start()
     try:
-        return child.wait()
+        return child.wait(seconds)
+    except subprocess.TimeoutExpired:
+        return None
     finally:
         ended.set()
         _end(child)
 
 
 def _end(child: subprocess.Popen) -> None:
-    """Ends the remaining processes of its group. It has ten seconds to end those that it started in groups of
-    their own.
+    """Ends the remaining processes of its group. It has some seconds to end what it started in other groups.
 
     Does not use SIGINT, which processes started from a shell's background ignore.
     """
-    if child.poll() is not None:
-        return
-    for number, patience in ((signal.SIGTERM, 10), (signal.SIGKILL, None)):
-        try:
-            os.killpg(child.pid, number)
-            child.wait(patience)
-            return
-        except ProcessLookupError:
-            return
-        except subprocess.TimeoutExpired:
-            continue
+    with contextlib.suppress(ProcessLookupError, subprocess.TimeoutExpired):
+        if child.poll() is None:
+            os.killpg(child.pid, signal.SIGTERM)
+            child.wait(_PATIENCE_SECONDS)
+    with contextlib.suppress(ProcessLookupError):
+        os.killpg(child.pid, signal.SIGKILL)
+    child.wait()
 
 
 def _watch(log: Path, progress: Callable[[str], str], ended: threading.Event) -> None:

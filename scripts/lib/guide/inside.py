@@ -1,4 +1,4 @@
-"""Runs a chapter inside Blender's window: `--python inside.py -- FOLDER`; FOLDER/task.json names it."""
+"""A chapter inside Blender's window; task.json names it."""
 
 import importlib
 import json
@@ -7,24 +7,16 @@ import sys
 from pathlib import Path
 
 import bpy
+from support import window
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
-sys.path.insert(0, str(Path(__file__).resolve().parents[3] / "blend-tests"))
-
-from support import blender, window
 
 from guide.desk import Desk
 
 
-def main():
-    folder = Path(sys.argv[sys.argv.index("--") + 1])
+def start(folder):
+    """Called by the harness when the window exists."""
     task = json.loads((folder / "task.json").read_text())
-    # The window must exist first.
-    bpy.app.timers.register(lambda: _start(folder, task), first_interval=1.0)
-
-
-def _start(folder, task):
-    blender.enable_addon()
     bpy.context.preferences.view.show_tooltips = False  # they would appear in pictures at random
 
     def steps(folder):
@@ -38,6 +30,3 @@ def _start(folder, task):
         (folder / "facts.json").write_text(json.dumps(facts))
 
     window.run(folder, (steps,), seconds=math.inf)
-
-
-main()

@@ -1,13 +1,9 @@
 """The scene of the guide's pictures: a monkey, or a cloth, under an environment that comes with Blender."""
 
 import math
-import os
 
 import bpy
-from mathutils import Vector
-
-WORLD = "courtyard.exr"
-_ROTATION = 250.0  # degrees: the sun comes from the left
+from bench.inside import scene as build
 
 
 def start(samples: int = 128, size: tuple[int, int] = (640, 420)) -> bpy.types.Scene:
@@ -30,24 +26,14 @@ def add_monkey() -> bpy.types.Object:
 
 
 def add_world() -> None:
-    world = bpy.context.scene.world
-    world.use_nodes = True
-    nodes, links = world.node_tree.nodes, world.node_tree.links
-    picture, mapping, place = (
-        nodes.new(f"ShaderNode{name}") for name in ("TexEnvironment", "Mapping", "TexCoord")
-    )
-    folder = os.path.join(bpy.utils.system_resource("DATAFILES"), "studiolights", "world")
-    picture.image = bpy.data.images.load(os.path.join(folder, WORLD))
-    mapping.inputs["Rotation"].default_value[2] = math.radians(_ROTATION)
-    links.new(place.outputs["Generated"], mapping.inputs["Vector"])
-    links.new(mapping.outputs["Vector"], picture.inputs["Vector"])
-    links.new(picture.outputs["Color"], nodes["Background"].inputs["Color"])
+    """A courtyard whose sun comes from the left."""
+    build.world("courtyard", rotation=250.0)
 
 
 def look_at(target: tuple[float, float, float], origin: tuple[float, float, float], lens: float) -> None:
     camera = bpy.context.scene.camera
     camera.location, camera.data.lens = origin, lens
-    camera.rotation_euler = (Vector(target) - camera.location).to_track_quat("-Z", "Y").to_euler()
+    build.turn(camera, target)
 
 
 def render(folder, name: str, size: tuple[int, int] | None = None) -> None:

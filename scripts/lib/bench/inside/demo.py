@@ -1,8 +1,6 @@
 """The demo's scene, rendered with a model and with its measurement or BTF itself, and the points of the plot
 of error against time."""
 
-import math
-
 import bpy
 import numpy as np
 from velour.native import images, render_job
@@ -65,14 +63,7 @@ def _btf(task):
 
 def furnish():
     """Adds the subject, a ground, the camera and a world. Returns the subject."""
-    rotation = (math.radians(-25), 0, math.radians(30))
-    bpy.ops.mesh.primitive_monkey_add(size=2.0, rotation=rotation)
-    subject = bpy.context.object
-    smooth = subject.modifiers.new("Smooth", "SUBSURF")
-    smooth.levels = smooth.render_levels = 3
-    bpy.ops.object.shade_smooth()
-    shaped = subject.evaluated_get(bpy.context.evaluated_depsgraph_get())
-    subject.location.z = -min((shaped.matrix_world @ vertex.co).z for vertex in shaped.data.vertices)
+    subject = build.set_down(build.monkey(turned=(-25, 30)))
     bpy.ops.mesh.primitive_circle_add(vertices=128, radius=9.0, fill_type="NGON")
     ground = {"Base_Color": (0.18, 0.17, 0.16), "Roughness": 0.6}
     bpy.context.object.data.materials.append(build.material("Ground", **ground))

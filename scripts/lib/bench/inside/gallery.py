@@ -4,7 +4,6 @@ import math
 
 import bpy
 import numpy as np
-from mathutils import Vector
 
 from . import scene as build
 
@@ -14,7 +13,7 @@ _CLOTH_FRAMES = 70
 
 
 def main(task):
-    """Renders one scene into `folder`; returns the engine's report."""
+    """Renders one scene as NAME.png into the folder; returns the engine's report."""
     scene = build.empty(task["size"], task["samples"], _BOUNCES)
     scene.view_settings.view_transform = _display_transform(scene)
     scene.velour.use_noise_target, scene.velour.noise_target = True, task["noise"]
@@ -26,7 +25,7 @@ def main(task):
     bpy.context.window.scene = scene
     bpy.data.scenes.remove(studio)
     SCENES[task["scene"]]()
-    return build.render(task["folder"], task["scene"])
+    return build.render(task["folder"], task["name"])
 
 
 def _display_transform(scene):
@@ -104,15 +103,9 @@ def _pedestal(place):
 
 
 def _monkey(place, size, turn):
-    bpy.ops.mesh.primitive_monkey_add(size=size * 2, rotation=(math.radians(-24), 0, math.radians(turn)))
-    obj = bpy.context.object
-    smooth = obj.modifiers.new("Smooth", "SUBSURF")
-    smooth.levels = smooth.render_levels = 3
-    bpy.ops.object.shade_smooth()
-    evaluated = obj.evaluated_get(bpy.context.evaluated_depsgraph_get())
-    lowest = min((evaluated.matrix_world @ vertex.co).z for vertex in evaluated.data.vertices)
-    obj.location = Vector(place) - Vector((0, 0, lowest))
-    return obj
+    obj = build.monkey(2 * size, (-24, turn))
+    obj.location = place
+    return build.set_down(obj)
 
 
 def _knot(place, size, turn=20):

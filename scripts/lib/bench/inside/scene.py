@@ -52,14 +52,6 @@ def camera(location, towards=(0, 0, 0), **settings):
     return found
 
 
-def framed_camera(text):
-    """The camera of the command line's option: eye, target, and the vertical field of view in degrees."""
-    *places, fov = map(float, text.split(","))
-    found = camera(places[:3], places[3:], sensor_fit="VERTICAL")
-    found.data.angle = math.radians(fov)
-    return found
-
-
 def lamp(kind, energy, location=(0, 0, 0), towards=None, **settings):
     """`settings`: properties of the light's data."""
     data = bpy.data.lights.new("Lamp", kind)
@@ -84,6 +76,24 @@ def material(name="Material", shader="Principled BSDF", **inputs):
         color = (*value, 1) if isinstance(value, tuple) else value
         node.inputs[socket.replace("_", " ")].default_value = color
     return found
+
+
+def monkey(size=2.0, turned=(0, 0), levels=3):
+    """Suzanne, smooth. `turned`: degrees about x and about z."""
+    rotation = (math.radians(turned[0]), 0, math.radians(turned[1]))
+    bpy.ops.mesh.primitive_monkey_add(size=size, rotation=rotation)
+    found = bpy.context.object
+    smooth = found.modifiers.new("Smooth", "SUBSURF")
+    smooth.levels = smooth.render_levels = levels
+    bpy.ops.object.shade_smooth()
+    return found
+
+
+def set_down(obj):
+    """Makes an object stand on the plane z = 0."""
+    shaped = obj.evaluated_get(bpy.context.evaluated_depsgraph_get())
+    obj.location.z -= min((shaped.matrix_world @ vertex.co).z for vertex in shaped.data.vertices)
+    return obj
 
 
 def world(picture=None, strength=1.0, color=(0, 0, 0), rotation=0.0):

@@ -1,7 +1,6 @@
 """Measures in Blender's window the seconds until the rendered viewport shows a change.
 
-`--python viewport.py -- FOLDER`. FOLDER/task.json names the scene, and how often the viewport is
-switched off and on; the results go to FOLDER/result.json.
+task.json names the scene, and how often the viewport is switched off and on; the results go to result.json.
 """
 
 import json
@@ -11,13 +10,11 @@ import time
 from pathlib import Path
 
 import bpy
+from support import viewport, window
 
-_ROOT = Path(__file__).resolve().parents[4]
-sys.path[:0] = [str(_ROOT / "scripts/lib"), str(_ROOT / "blend-tests")]
+sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
 
-from support import blender, viewport, window  # noqa: E402
-
-from bench.inside import viewport_scenes  # noqa: E402
+from bench.inside import viewport_scenes
 
 SAMPLES = 8
 PICTURE = (1280, 720)  # size in real time
@@ -66,14 +63,9 @@ class Stopwatch:
         return {"seen": self.seen, "export": self.export, "held": self.held}
 
 
-def main():
-    folder = Path(sys.argv[sys.argv.index("--") + 1])
+def start(folder):
+    """Called by the harness when the window exists."""
     task = json.loads((folder / "task.json").read_text())
-    bpy.app.timers.register(lambda: _start(folder, task), first_interval=1.0)  # once the window exists
-
-
-def _start(folder, task):
-    blender.enable_addon()
 
     def steps(folder):
         result = {"blender": bpy.app.version_string, "samples": SAMPLES}
@@ -160,6 +152,3 @@ def _real_time():
 def _resident_mib():
     lines = Path("/proc/self/status").read_text(encoding="ascii").splitlines()
     return next(int(line.split()[1]) for line in lines if line.startswith("VmRSS")) / 1024
-
-
-main()

@@ -5,6 +5,7 @@ import math
 import bpy
 from guide import scene as guide_scene
 from mathutils import Euler, Quaternion
+from support import viewport
 
 from ..velour_cli import ROOT
 from . import large_scenes
@@ -18,7 +19,7 @@ INSTANCES = 100_000
 def monkey():
     """One smooth object in a measured paint under an environment map and a light."""
     guide_scene.add_world()
-    with _viewport():
+    with viewport.override():
         subject = guide_scene.add_monkey()
         bpy.ops.velour.load_material(filepath=str(PAINT), pack=False)
     subject.name = "Subject"
@@ -26,7 +27,7 @@ def monkey():
 
 def objects():
     """Five million triangles in 500 objects, each with a mesh of its own."""
-    with _viewport():
+    with viewport.override():
         first = _grid(FACES, 0.9)
     first.data.materials.append(_gray())
     side = math.ceil(math.sqrt(OBJECTS))
@@ -37,7 +38,7 @@ def objects():
 
 def instances():
     """100,000 instances of a sphere of 992 triangles, at the vertices of a plane."""
-    with _viewport():
+    with viewport.override():
         sphere, _ = large_scenes.instances(INSTANCES)
     sphere.data.materials.append(_gray())
     sphere.name = "Subject"
@@ -50,12 +51,12 @@ def start(name):
     """Builds the scene in Blender's startup file, without its cube."""
     bpy.data.objects.remove(bpy.data.objects["Cube"])
     SCENES[name]()
-    view = _area().spaces.active.region_3d
+    view = viewport.space().region_3d
     view.view_rotation, view.view_distance = Euler((0.9, 0, 0.6)).to_quaternion(), 14
 
 
 def turn_view(_time):
-    view = _area().spaces.active.region_3d
+    view = viewport.space().region_3d
     view.view_rotation = Quaternion((0, 0, 1), 0.05) @ view.view_rotation
 
 
@@ -97,16 +98,6 @@ CHANGES = {
     "an object moves": move_object,
     "a mesh is edited": edit_mesh,
 }
-
-
-def _area():
-    return next(area for area in bpy.context.window_manager.windows[0].screen.areas if area.type == "VIEW_3D")
-
-
-def _viewport():
-    area = _area()
-    region = next(region for region in area.regions if region.type == "WINDOW")
-    return bpy.context.temp_override(window=bpy.context.window_manager.windows[0], area=area, region=region)
 
 
 def _grid(faces, size):

@@ -1,23 +1,21 @@
-"""Error against seconds for every strategy on seven scenes, beside Mitsuba and Cycles."""
+"""Error against seconds for every strategy on seven scenes, beside Mitsuba."""
 
 from __future__ import annotations
 
 import functools
 import subprocess
 from collections.abc import Iterator, Mapping
-from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 from velour.native import images
 from velour.native.table import STRATEGIES
 
-from .. import blender, charts, mitsuba, page
+from .. import charts, mitsuba, page
 from ..curve import Curve, Reading, ratio, shown
 from ..reference import Reference, points
 from ..run import BUILT, Run
 from ..scenes import (
-    BUNNY_CAMERA,
     STUDIO,
     SUN,
     SUN_DIAMETER,
@@ -46,7 +44,6 @@ SETTINGS = {
     "peer_size": ((160, 120), (32, 24)),
     "peer_rays": ((8, 32, 128), (2, 4)),  # camera rays per pixel, with eight light directions each
     "peer_reference_rays": (256, 8),
-    "cycles_rays": ((64, 512), (1, 512)),
 }
 SKY = "synthetic sky"
 DEFAULT, DISSERTATION = "mis", "mis-dissertation"
@@ -84,7 +81,6 @@ def measure(run: Run) -> dict:
         "rows": rows,
         "scenes": found,
         "mitsuba": mitsuba.compare(run),
-        "cycles": _cycles(run, bunny, scenes[0][2]),
         "sun": _sun_lobes(run, scenes[-1][2]),
     }
 
@@ -126,38 +122,6 @@ def _bound(run: Run, scene: Scene) -> dict | None:
     words = [word for name, value in options.items() for word in (f"--{name}", value)]
     found = run.program(f"{scene.name}, bound", BUILT / "bench/product_bound", *words)
     return found and found["variance"]
-
-
-def _cycles(run: Run, bunny: Subject, scene: Scene) -> dict | str:
-    """Camera rays per second of Cycles with the closest Principled material and of Velour, each with one
-    direction of the material and one of the light; a sentence if that is impossible."""
-    (fewer, more), size = run.settings.cycles_rays, run.settings.size
-    lobe = run.compare_peer(bunny.measurement, "ggx")["ggx"]
-    look = {
-        "color": [min(max(value, 0.0), 1.0) for value in lobe["f0"]],
-        "roughness": max(lobe["alpha"]) ** 0.5,  # Principled squares it
-        "rays": [fewer, more],
-        "size": list(size),
-        "threads": run.threads,
-        "camera": BUNNY_CAMERA,
-    }
-    files = {"mesh": scene.mesh, "world": scene.world}
-    task = look | {name: str(path) for name, path in files.items()}
-    make = lambda: blender.run("cycles", task, run.kept / "cycles.log")  # noqa: E731
-    try:
-        program = Path(blender.__file__).parent / "inside/cycles.py"
-        report = run.keep("Cycles, bunny", "cycles", look | files | {"program": program}, make)
-    except blender.BlenderError as error:
-        return f"Cycles is left out: {error}"
-    ours = run.render(replace(scene, camera=BUNNY_CAMERA), 2 * more, split=2, strategy="mis").report
-    # The difference of two renders excludes the work of each before its first sample.
-    seconds = report["seconds"][1] - report["seconds"][0]
-    if seconds <= 0:
-        return (
-            "Cycles is left out: its two renders are too short to tell their samples from their preparation."
-        )
-    rays = size[0] * size[1] * (more - fewer) / seconds
-    return {"version": report["version"], "cycles": rays, "ours": ours["samples_per_second"] / 2}
 
 
 def _sun_lobes(run: Run, scene: Scene) -> dict:
@@ -330,7 +294,7 @@ def write(run: Run, found: dict) -> None:
     targets = list(verdicts(results, sun, peers, equal_spp))
     for target in targets:
         target["word"] = page.verdict(target["met"])
-    bounded, cycles = all(result.about["bound"] for result in results), found["cycles"]
+    bounded = all(result.about["bound"] for result in results)
     values = {
         "scenes": "\n".join(map(_scene_text, results)),
         "targets": page.table(
@@ -348,7 +312,6 @@ def write(run: Run, found: dict) -> None:
         "sun_gain": _gain(results[-1].gain("product", DEFAULT, most_spp)),
         "most_spp": most_spp,
         "mitsuba": _mitsuba(found["mitsuba"], peers, conditions) if peers else f"{found['mitsuba']}\n",
-        "cycles": cycles if isinstance(cycles, str) else page.text("chart_cycles", conditions | cycles),
     }
     page.write(run.output, "chart/README.md", page.text("chart", conditions | values))
 

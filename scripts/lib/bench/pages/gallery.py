@@ -1,14 +1,8 @@
-"""Pictures of presets for README and docs/results/gallery.md, in Blender, with their times.
-
---only renders some of the scenes; the others keep their pictures and numbers.
-"""
+"""Pictures of presets for README and docs/results/gallery.md, in Blender, with their times."""
 
 from __future__ import annotations
 
-import json
 import shutil
-
-from velour.core import files
 
 from .. import blender, page
 from ..run import Run
@@ -21,33 +15,25 @@ SETTINGS = {
     "size": ((1600, 900), (320, 180)),
     "samples": (4096, 64),  # maximum number of light directions per pixel
     "noise": (0.012, 0.1),
-    "only": (tuple(SCENES), tuple(SCENES)),
 }
 
 
 def measure(run: Run) -> dict:
-    own = run.settings
-    unknown = set(own.only) - set(SCENES)
-    if unknown:
-        raise SystemExit(f"There is no scene {', '.join(sorted(unknown))}; there are {', '.join(SCENES)}.")
-    for _ in own.only:
-        run.progress.expect(1)
-    for name in own.only:
-        with run.progress.work(name, 1):
-            _render(run, name)
-    kept = {name: run.work / f"{name}.json" for name in SCENES}
-    rows = [json.loads(path.read_text(encoding="utf-8")) for path in kept.values() if path.is_file()]
-    return {"conditions": run.conditions(), "rows": rows}
+    run.progress.expect(1, len(SCENES))
+    return {"conditions": run.conditions(), "rows": [_row(run, name) for name in SCENES]}
 
 
-def _render(run: Run, name: str) -> None:
-    task = {"scene": name, "folder": str(run.work), "size": run.settings.size}
-    task |= {"samples": run.settings.samples, "noise": run.settings.noise}
-    report = blender.run("gallery", task, run.work / f"{name}.log", ("-t", str(run.threads)))
-    row = {"scene": name, "seconds": report["seconds"], "directions": report["spp"]}
-    files.write_json(run.work / f"{name}.json", row)
+def _row(run: Run, name: str) -> dict:
+    """Renders a scene, unless its picture is kept, and copies the picture beside the page."""
+    settings = {"scene": name, **vars(run.settings)}
+    parameters = settings | {"program": blender.INSIDE / "gallery.py"}
+    stem = run.stem(name, parameters)
+    task, options = settings | {"folder": str(stem.parent), "name": stem.name}, ("-t", str(run.threads))
+    make = lambda: blender.run("gallery", task, stem.with_suffix(".log"), options)  # noqa: E731
+    report = run.keep(name, name, parameters, make, 1)
     (run.output / "images").mkdir(parents=True, exist_ok=True)
-    shutil.copy(run.work / f"{name}.png", run.output / f"images/gallery_{name}.png")
+    shutil.copy(stem.with_suffix(".png"), run.output / f"images/gallery_{name}.png")
+    return {"scene": name, "seconds": report["seconds"], "directions": report["spp"]}
 
 
 def write(run: Run, found: dict) -> None:

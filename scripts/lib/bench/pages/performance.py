@@ -87,20 +87,9 @@ def _profile(run: Run, scene: Mapping, strategy: str) -> dict[str, float]:
     """Share of each part in the processor time of all parts of a render, by perf's samples."""
     words = _words(scene, run.settings.small_size, run.settings.profile_spp, strategy=strategy, threads=1)
     data = run.work / f"{strategy}.perf"
-    record = [
-        "perf",
-        "record",
-        "-q",
-        "-e",
-        "cpu-clock",
-        "-F",
-        "1999",
-        "-o",
-        data,
-        "--",
-        ROOT / "scripts/velour",
-    ]
-    subprocess.run([*record, "render", *words, "--quiet"], check=True, stdout=subprocess.DEVNULL)
+    record = ["perf", "record", "-q", "-e", "cpu-clock", "-F", "1999", "-o", data, "--"]
+    command = [*record, ROOT / "scripts/velour", "render", *words, "--quiet"]
+    subprocess.run(command, check=True, stdout=subprocess.DEVNULL)
     report = ["perf", "report", "-i", data, "-g", "none", "--percent-limit", "0"]
     fields = ["--field-separator", "\t", "--sort", "dso,symbol"]
     text = subprocess.run([*report, *fields], check=True, capture_output=True, text=True).stdout

@@ -7,17 +7,10 @@ Only a run of all scenes writes the page.
 from __future__ import annotations
 
 import json
-import shutil
 import statistics
-import sys
 
 from .. import blender, page, provenance
 from ..run import Run
-from ..velour_cli import ROOT
-
-sys.path.insert(0, str(ROOT / "blend-tests"))
-
-from support import process
 
 SCENES = {
     "monkey": "a monkey of 31 thousand triangles in a measured paint, under a picture of a sky",
@@ -30,14 +23,11 @@ SETTINGS = {
     "scenes": (tuple(SCENES), ("monkey",)),
 }
 SEEN, EXPORT, HELD = 0.2, 3.0, 0.05  # targets in seconds
-SCREEN, SECONDS = ("1400", "1000"), 3600
+SCREEN = (1400, 1000)
 
 
 def measure(run: Run) -> dict:
     own = run.settings
-    for tool in ("xvfb-run", own.blender):
-        if not shutil.which(tool):
-            raise blender.BlenderError(f"{tool} is not installed; run scripts/setup")
     if len(own.scenes) < len(SCENES):
         run.output = run.work / "part"  # it must not replace the page
     load, results = provenance.busy_threads(), {}
@@ -49,30 +39,8 @@ def measure(run: Run) -> dict:
 
 def _measured(run: Run, scene: str) -> dict:
     folder = run.work / scene
-    shutil.rmtree(folder, ignore_errors=True)
-    folder.mkdir(parents=True)
     task = {"scene": scene, "restarts": run.settings.restarts if scene == "monkey" else 0}
-    (folder / "task.json").write_text(json.dumps(task))
-    log, program = folder / "log.txt", shutil.which(run.settings.blender)
-    screen = f"-screen 0 {'x'.join(SCREEN)}x24 -fbdir . -nocursor"
-    command = [
-        "env",
-        "-C",
-        str(folder),
-        "xvfb-run",
-        "-a",
-        "-s",
-        screen,
-        program,
-        "--factory-startup",
-        "-noaudio",
-    ]
-    command += ["--window-geometry", "0", "0", *SCREEN, "--python-exit-code", "1", "--python"]
-    command += [str(ROOT / "scripts/lib/bench/inside/viewport.py"), "--", str(folder)]
-    status = process.execute(command, process.environment(program, blender.STAGE), log, SECONDS)
-    if status or not (folder / "result.json").is_file():
-        last = [line for line in log.read_text(errors="replace").splitlines() if line.strip()][-3:]
-        raise blender.BlenderError(f"the scene {scene} failed; {log} ends: {' / '.join(last)}")
+    blender.in_window(blender.INSIDE / "viewport.py", task, folder, SCREEN, run.settings.blender)
     return json.loads((folder / "result.json").read_text())
 
 

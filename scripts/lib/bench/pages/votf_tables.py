@@ -5,13 +5,11 @@ from __future__ import annotations
 import json
 import subprocess
 import zlib
-from collections.abc import Mapping
 from typing import NamedTuple
 
 from .. import page
 from ..run import BUILT, Run
 
-CSV = "votf_tables.csv"
 SETTINGS = {"texels": (256, 64), "views": (300, 100), "unseen": (64, 16)}
 _PROGRAM = BUILT / "bench/occlusion_tables"
 
@@ -34,12 +32,7 @@ def measure(run: Run) -> dict:
         parameters = {"case": case, "seed": run.seed, "program": _PROGRAM}
         make = lambda case=case: _compared(run, case)  # noqa: E731
         results.append(run.keep(label, "tables", parameters, make, case.texels**2 * case.views))
-    rows = [
-        {"tile": r["tile"], "irregularity": r["irregularity"], "kept": c["name"], **_numbers(c)}
-        for r in results
-        for c in r["candidates"]
-    ]
-    return {"conditions": run.conditions(), "rows": rows, "results": results}
+    return {"conditions": run.conditions(), "results": results}
 
 
 def _compared(run: Run, case: Case) -> dict:
@@ -51,23 +44,6 @@ def _compared(run: Run, case: Case) -> dict:
         candidate["packed"] = len(zlib.compress(stored.read_bytes(), 9))
         stored.unlink()
     return result
-
-
-def _numbers(c: Mapping) -> dict:
-    errors = {
-        f"{what}, {views} views": c[views][what]
-        for views in ("stored", "unseen")
-        for what in ("wrong", "border")
-    }
-    times = {"stored view": "stored", "any view": "any", "any view, texels in order": "in_order"}
-    nanoseconds = {f"ns, {name}": c["nanoseconds"][key] for name, key in times.items()}
-    return {
-        **errors,
-        "bytes": c["bytes"],
-        "bytes, deflated": c["packed"],
-        **nanoseconds,
-        "seconds": c["seconds"],
-    }
 
 
 def write(run: Run, found: dict) -> None:

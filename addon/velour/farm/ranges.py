@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import argparse
 import re
 
 LAST = 1048574  # Blender's last frame
@@ -20,6 +21,14 @@ def parse(text: str) -> list[int]:
             raise ValueError(f"{part.strip()!r} holds no frame that Blender has")
         found.update(range(first, last + 1, step))
     return sorted(found)
+
+
+def argument(text: str) -> list[int]:
+    """parse() for an option of argparse, which shows the message."""
+    try:
+        return parse(text)
+    except ValueError as error:
+        raise argparse.ArgumentTypeError(str(error)) from error
 
 
 def words(numbers: list[int], steps: bool = False) -> str:

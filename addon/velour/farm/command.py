@@ -32,7 +32,7 @@ def _parse(arguments: list[str] | None) -> argparse.Namespace:
     add = parser.add_argument
     add("path", type=Path, metavar="BLEND", help="the .blend; with --status the folder of pictures")
     add("--output", type=Path, metavar="FOLDER", help="of the pictures (frames, beside the .blend)")
-    add("--frames", type=_frames, metavar="LIST", help="such as 1-10,15,20-30:2 (those of the scene)")
+    add("--frames", type=ranges.argument, metavar="LIST", help="such as 1-10,15,20-30:2 (those of the scene)")
     add("--format", choices=("OPEN_EXR", "OPEN_EXR_MULTILAYER"), default="OPEN_EXR", help="(OPEN_EXR)")
     add("--threads", type=_count, default=0, metavar="N", help="of a task (all that its node has)")
     add("--memory", type=_memory, default=0, metavar="SIZE", help="of a task, such as 8G (what Slurm gives)")
@@ -81,13 +81,6 @@ def _say_status(found: job.Job) -> int:
     now = status.look(found)
     print("\n".join(now.lines()))
     return now.code
-
-
-def _frames(text: str) -> list[int]:
-    try:
-        return ranges.parse(text)
-    except ValueError as error:
-        raise argparse.ArgumentTypeError(str(error)) from error
 
 
 def _count(text: str) -> int:

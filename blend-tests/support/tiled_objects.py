@@ -9,9 +9,8 @@ from typing import NamedTuple
 
 import bpy
 import numpy as np
+from bench.inside import scene as build
 from mathutils import Matrix, Vector
-
-from . import scene as build
 
 _REACH = 6  # tiles on each side of the center
 _STEPS = 8  # facets of the smooth cylinder per tile

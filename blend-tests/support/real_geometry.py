@@ -6,9 +6,9 @@ import math
 import os
 
 import bpy
+from bench.inside import scene as build
 from mathutils import Vector
 
-from . import scene as build
 from .tiled_objects import Cylinder, Plane, add_smooth, add_tiles
 
 PERIOD = 1.0
@@ -17,7 +17,6 @@ SUN, SKY = 2.5, 0.25  # irradiance on a facing surface, radiance
 # Those of "captured" belong to the sets of 81 and of 105 directions, so that nothing is interpolated.
 SHOTS = {
     "captured": {"shape": "plane", "view": (45, 40), "sun": (30, 60), "sky": 0.0, "tiles": 2.5},
-    "plane": {"shape": "plane", "view": (52, 250), "sun": (50, 10), "sky": SKY, "tiles": 3.0},
     "cylinder": {"shape": "cylinder", "view": (25, 0), "sun": (40, 120), "sky": SKY, "tiles": 7.2},
 }
 AROUND = 20  # tiles around the cylinder

@@ -43,18 +43,11 @@ def _parse(arguments: list[str] | None) -> argparse.Namespace:
     parser.add_argument("job", type=Path, metavar="JOB", help="job.json")
     what = parser.add_mutually_exclusive_group(required=True)
     what.add_argument("--task", type=int, metavar="N", help="the frames of a task, counted from 0")
-    what.add_argument("--frames", type=_frames, metavar="LIST", help="such as 1-10,15")
+    what.add_argument("--frames", type=ranges.argument, metavar="LIST", help="such as 1-10,15")
     parser.add_argument("--part", type=int, metavar="K", help="of --frames only this part, from 1 on")
     parser.add_argument("--blend", metavar="PATH", help="the .blend, where this node has it elsewhere")
     parser.add_argument("--blender", metavar="PATH", help="the Blender, where this node has it elsewhere")
     return parser.parse_args(arguments)
-
-
-def _frames(text: str) -> list[int]:
-    try:
-        return ranges.parse(text)
-    except ValueError as error:
-        raise argparse.ArgumentTypeError(str(error)) from error
 
 
 def _units(task: job.Job, given: argparse.Namespace) -> list[job.Unit]:
@@ -81,23 +74,21 @@ def _run(task: job.Job, unit: job.Unit) -> int:
         print(f"frame {unit.frame}: is done", flush=True)
         return DONE
     if not unit.part:
-        return _attempt(task, unit, _render)
-    if not task.part_done(unit).is_file():
-        status = _attempt(task, unit, _render_part)
-        if status:
-            return status
+        return _attempt(task, unit)
+    if not task.part_done(unit).is_file() and (status := _attempt(task, unit)):
+        return status
     if all(task.part_done(part).is_file() for part in task.parts_of(unit.frame)):
-        return _attempt(task, job.Unit(unit.frame), _render)
+        return _attempt(task, job.Unit(unit.frame))
     return DONE
 
 
-def _attempt(task: job.Job, unit: job.Unit, render: Callable[[job.Job, job.Unit, Path], str]) -> int:
-    """Returns the exit status. `render` makes its picture in a folder that nobody else writes to."""
+def _attempt(task: job.Job, unit: job.Unit) -> int:
+    """Returns the exit status. The picture is made in a folder that nobody else writes to."""
     folder = task.partial(unit.frame) / job.nobody_elses_name()
     left = sentence = ""
     try:
         folder.mkdir(parents=True, exist_ok=True)
-        sentence = render(task, unit, folder / "picture_")
+        sentence = _render(task, unit, folder / "picture_")
     except UnfinishedError as why:
         left = str(why)
     except OSError as error:
@@ -127,29 +118,18 @@ def _note(path: Path, sentence: str) -> None:
 
 
 def _render(task: job.Job, unit: job.Unit, path: Path) -> str:
-    """Returns what went wrong, or ""."""
-    picture = Path(f"{path}{unit.frame:04d}.exr")
-    wrong = _blender(task, unit, path, lambda: not problem(task, picture))
-    if wrong:
+    """Returns what went wrong, or "". Of a part the result is the film; its picture is only checked."""
+    picture, check = Path(f"{path}{unit.frame:04d}.exr"), _problem if unit.part else problem
+    if wrong := _blender(task, unit, path, lambda: not check(task, picture)):
         return wrong
-    wrong = problem(task, picture)
-    if wrong:
-        return f"the picture is not counted as done: {wrong}; {task.log(unit)} has what Blender said."
+    if wrong := check(task, picture):
+        what = "part" if unit.part else "picture"
+        return f"the {what} is not counted as done: {wrong}; {task.log(unit)} has what Blender said."
+    if unit.part:
+        task.part_done(unit).touch()
+        return ""
     os.replace(picture, task.picture(unit.frame))
     shutil.rmtree(task.partial(unit.frame), ignore_errors=True)  # including files of killed runs
-    return ""
-
-
-def _render_part(task: job.Job, unit: job.Unit, path: Path) -> str:
-    """Returns what went wrong, or "". The result is the film; the picture is only checked, like others."""
-    picture = Path(f"{path}{unit.frame:04d}.exr")
-    wrong = _blender(task, unit, path, lambda: not _problem(task, picture))
-    if wrong:
-        return wrong
-    wrong = _problem(task, picture)
-    if wrong:
-        return f"the part is not counted as done: {wrong}; {task.log(unit)} has what Blender said."
-    task.part_done(unit).touch()
     return ""
 
 
