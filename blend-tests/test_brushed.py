@@ -54,7 +54,7 @@ class Brushed(BlenderTest):
         export = importlib.import_module(f"{inputs.ADDON}.export")
         camera = importlib.import_module(f"{inputs.ADDON}.export.camera")
         notes, depsgraph = export.Notes(), bpy.context.evaluated_depsgraph_get()
-        export.export_scene(depsgraph, camera.final_view(depsgraph, notes), notes)[0].close()
+        export.export_scene(depsgraph, camera.final_view(depsgraph), notes)[0].close()
         return list(notes)
 
 

@@ -86,7 +86,7 @@ class UnknownEnumerations(BlenderTest):
         scene = types.SimpleNamespace(camera=looks, render=bpy.context.scene.render)
         depsgraph = types.SimpleNamespace(scene_eval=scene)
         with self.assertRaisesRegex(_module("notes").ExportError, "Camera 'Eye': its type is unknown"):
-            _module("camera").final_view(depsgraph, self.notes)
+            _module("camera").final_view(depsgraph)
 
 
 class _Known(_Newer):

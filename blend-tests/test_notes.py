@@ -258,7 +258,7 @@ class Notes(NotesTest):
         bpy.ops.velour.add_material()
         notes = export.Notes()
         depsgraph = bpy.context.evaluated_depsgraph_get()
-        view = camera.final_view(depsgraph, notes)
+        view = camera.final_view(depsgraph)
         export.export_scene(depsgraph, view, notes, strict=False)[0].close()
         self.assertIn("has no model", "".join(notes))
         with self.assertRaisesRegex(export.ExportError, "has no model"):

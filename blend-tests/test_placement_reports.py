@@ -214,7 +214,7 @@ class Warnings(Placed):
         scenes.add_plane(self._material(metres=0, mode="REAL_SIZE"))
         export = importlib.import_module(f"{inputs.ADDON}.export")
         notes, depsgraph = export.Notes(), bpy.context.evaluated_depsgraph_get()
-        view = export_module("camera").final_view(depsgraph, notes)
+        view = export_module("camera").final_view(depsgraph)
         export.export_scene(depsgraph, view, notes, strict=False)[0].close()
         self.assertIn("enter Tile Size", " ".join(notes))
 

@@ -315,7 +315,7 @@ class Frames(PaintedPlane):
         export = __import__(f"{inputs.ADDON}.export", fromlist=["export"])
         camera = __import__(f"{inputs.ADDON}.export.camera", fromlist=["camera"])
         depsgraph, notes = bpy.context.evaluated_depsgraph_get(), export.Notes()
-        view = camera.final_view(depsgraph, notes)
+        view = camera.final_view(depsgraph)
         scene, materials, *_ = export.export_scene(depsgraph, view, notes, strict=False)
         with scene:
             self.assertEqual([entry.has_full for entry in materials.reduced], [True])

@@ -71,7 +71,7 @@ class Textures(BlenderTest):
         camera = __import__(f"{inputs.ADDON}.export.camera", fromlist=["camera"])
         notes = export.Notes()
         depsgraph = bpy.context.evaluated_depsgraph_get()
-        export.export_scene(depsgraph, camera.final_view(depsgraph, notes), notes)[0].close()
+        export.export_scene(depsgraph, camera.final_view(depsgraph), notes)[0].close()
         return list(notes)
 
     def test_a_plane_shows_its_picture(self):

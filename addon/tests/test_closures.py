@@ -67,7 +67,8 @@ def test_options(model):
 
 
 @pytest.mark.parametrize(
-    ("options", "sentence"), [({"max_lobes": 4}, "must be 1, 2 or 3"), ({"tolerance": -0.5}, "must be positive")]
+    ("options", "sentence"),
+    [({"max_lobes": 4}, "must be 1, 2 or 3"), ({"tolerance": -0.5}, "must be positive")],
 )
 def test_options_out_of_range_are_refused(model, options, sentence):
     with pytest.raises(VelourError, match=sentence) as caught:

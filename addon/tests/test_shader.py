@@ -73,7 +73,7 @@ def test_half_emission_mixed_into_a_model_gives_the_mean_of_both_pictures(model_
         mixed.weigh_layer("share", 0.5)
         reflected, both = _rendered(alone)[..., :3], _rendered(mixed)[..., :3]
     assert reflected.mean() > 0.01
-    np.testing.assert_allclose(both, 0.5 * (reflected + (0, 1, 3)), rtol=1e-4, atol=1e-5)
+    np.testing.assert_allclose(both, 0.5 * np.add(reflected, (0, 1, 3)), rtol=1e-4, atol=1e-5)
 
 
 def test_tints_are_colors_or_images(model_file):

@@ -20,7 +20,7 @@ class NotesTest(BlenderTest):
         camera = __import__(f"{inputs.ADDON}.export.camera", fromlist=["camera"])
         notes = export.Notes()
         depsgraph = bpy.context.evaluated_depsgraph_get()
-        view = camera.final_view(depsgraph, notes)
+        view = camera.final_view(depsgraph)
         export.export_scene(depsgraph, view, notes)[0].close()
         return list(notes)
 

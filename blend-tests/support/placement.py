@@ -70,5 +70,5 @@ class Placed(BlenderTest):
         export = importlib.import_module(f"{inputs.ADDON}.export")
         notes = export.Notes()
         depsgraph = bpy.context.evaluated_depsgraph_get()
-        export.export_scene(depsgraph, export_module("camera").final_view(depsgraph, notes), notes)[0].close()
+        export.export_scene(depsgraph, export_module("camera").final_view(depsgraph), notes)[0].close()
         return list(notes)

@@ -15,8 +15,8 @@ _ONE_LOBE = "It is anisotropic, so one GGX lobe has to do."
 def closures_of(model: Model, masking: str, progress: ProgressCallback | None = None) -> dict:
     """What operators/closure_network.py takes, with the keys relative_l2, by_view_angle and reason.
 
-    masking: see Model.closures. relative_l2: the mean of the views up to 75 degrees. reason: a sentence if the
-    error is large, otherwise "".
+    masking: see Model.closures. relative_l2: the mean of the views up to 75 degrees. reason: a sentence if
+    the error is large, otherwise "".
     """
     if model.info().get("isotropic", True):
         return closures_of_fit(model.closures(masking=masking))
@@ -31,13 +31,15 @@ def closures_of_fit(fit: dict) -> dict:
         "diffuse": fit["diffuse"],
         "lobes": fit["lobes"],
         "relative_l2": fit["relative_l2_mean"],
-        "by_view_angle": {f"{view:g}": error for view, error in zip(fit["views"], fit["relative_l2"], strict=True)},
+        "by_view_angle": {
+            f"{view:g}": error for view, error in zip(fit["views"], fit["relative_l2"], strict=True)
+        },
         "reason": fit["reason"],
     }
 
 
 def closures_of_ggx(report: dict) -> dict:
-    """One GGX lobe in the frame of the surface, whose color rises toward grazing views as its Fresnel term does.
+    """One GGX lobe in the frame of the surface; its color rises toward grazing views as Fresnel terms do.
 
     report: of the peer "ggx".
     """

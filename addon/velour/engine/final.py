@@ -55,7 +55,7 @@ def render_final(engine, depsgraph):
     asked = {each.asks for each in shown if each.asks}
     with engine.kept_scene.frame(depsgraph, not engine.is_preview, asked) as export:
         notes = export.notes
-        view = final_view(depsgraph, notes)
+        view = final_view(depsgraph)
         native_scene, materials, surroundings, passes = export.take(depsgraph, view, check_break)
         engine.update_stats("Velour", _exported(native_scene.info(), time.monotonic() - begin))
         stamps = {}

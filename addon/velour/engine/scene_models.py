@@ -32,7 +32,7 @@ def choose_models(native_scene, reduced, view, depsgraph, notes, check_break):
 def _seen_whole(native_scene, view, depsgraph, notes):
     """Sets the camera to the whole view, without the render border: parts of a picture, which may be rendered
     one by one, must get the same models."""
-    whole = final_view(depsgraph, notes, whole=True)
+    whole = final_view(depsgraph, whole=True)
     if not depsgraph.scene_eval.render.use_border:
         yield whole
         return

@@ -32,7 +32,7 @@ class View(NamedTuple):
         return directions @ np.linalg.pinv(axes).T  # a flattened camera's axes may be coplanar
 
 
-def final_view(depsgraph, notes, whole=False):
+def final_view(depsgraph, whole=False):
     """View of a final render: the scene's camera, film size and, unless `whole`, render border."""
     scene = depsgraph.scene_eval
     if scene.camera is None:

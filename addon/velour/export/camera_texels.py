@@ -4,7 +4,6 @@ import numpy as np
 from mathutils import Vector
 
 from .camera import final_view
-from .notes import Notes
 
 _RAYS = 32  # per axis, over the image region that may contain the object
 
@@ -15,7 +14,7 @@ def texels_per_pixel(depsgraph, obj, texels_per_unit):
     `texels_per_unit`: per face, texels per Blender unit in world space; NaN: face of another material.
     Surfaces are assumed to face the camera; tilted ones have more. Raises ExportError without a camera.
     """
-    view = final_view(depsgraph, Notes(), whole=True)
+    view = final_view(depsgraph, whole=True)
     found = []
     for x in _places(view, obj):
         ray = _ray(view, x)

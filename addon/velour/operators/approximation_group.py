@@ -48,7 +48,8 @@ def put(node, material, approximation, info=None, model=""):
 def build(node, material, info, colors=None, normals=None, shows_behind=False, fed=()):
     """Builds the nodes from the state of a MeasuredNode's group.
 
-    colors, normals: images of a tile. fed: sockets to link to the result, beside those that the former nodes feed.
+    colors, normals: images of a tile. fed: sockets to link to the result, beside those that the former nodes
+    feed.
     """
     tree = node.group.node_tree
     fed = {*fed, *_clear(tree)}

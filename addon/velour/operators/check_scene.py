@@ -58,7 +58,7 @@ class _Check:
         self._copies.add(depsgraph.scene.name)
 
     def _look(self, depsgraph):
-        view = final_view(depsgraph, self.notes)
+        view = final_view(depsgraph)
         export = export_scene(depsgraph, view, self.notes)
         reduced = export.materials.reduced
         with export.scene:

@@ -148,7 +148,7 @@ class SceneFit:
     def _visit(self, engine, depsgraph):
         """Observes one view layer of one frame."""
         notes = Notes()  # reported by renders instead
-        view = final_view(depsgraph, notes, whole=True)
+        view = final_view(depsgraph, whole=True)
         native_scene, materials, *_ = export_scene(depsgraph, view, notes)
         with native_scene:
             number = materials.find(self._material()[0])

@@ -18,7 +18,7 @@ namespace {
 
 /// State of libjpeg. Errors are long jumps, so functions that call setjmp must not hold objects with destructors.
 struct Decoder {
-  explicit Decoder(std::span<const uint8_t> bytes) {
+  explicit Decoder(std::span<const uint8_t> data) : bytes(data) {
     info.err = jpeg_std_error(&errors);
     errors.error_exit = [](j_common_ptr common) {
       auto& self = *static_cast<Decoder*>(common->client_data);
@@ -30,8 +30,6 @@ struct Decoder {
       common->err->format_message(common, static_cast<Decoder*>(common->client_data)->message.data());
     };
     info.client_data = this;
-    jpeg_create_decompress(&info);
-    jpeg_mem_src(&info, bytes.data(), bytes.size());
   }
   ~Decoder() { jpeg_destroy_decompress(&info); }
   Decoder(const Decoder&) = delete;
@@ -39,6 +37,8 @@ struct Decoder {
 
   bool read_header() {
     if (setjmp(failed) != 0) return false;
+    jpeg_create_decompress(&info);
+    jpeg_mem_src(&info, bytes.data(), bytes.size());
     jpeg_read_header(&info, TRUE);
     if (is_cmyk()) info.out_color_space = JCS_CMYK;
     jpeg_calc_output_dimensions(&info);
@@ -60,6 +60,7 @@ struct Decoder {
   bool is_cmyk() const { return info.jpeg_color_space == JCS_CMYK || info.jpeg_color_space == JCS_YCCK; }
   size_t row_values() const { return size_t{info.output_width} * static_cast<size_t>(info.out_color_components); }
 
+  std::span<const uint8_t> bytes;
   jpeg_decompress_struct info{};
   jpeg_error_mgr errors{};
   std::jmp_buf failed{};

@@ -100,7 +100,7 @@ def _curves(scene):
 
     scene.render.resolution_x, scene.render.resolution_y = (side // PLOT_REDUCTION for side in SIZE)
     depsgraph = bpy.context.evaluated_depsgraph_get()
-    view = final_view(depsgraph, Notes())
+    view = final_view(depsgraph)
     with export_scene(depsgraph, view, Notes()).scene as exported:
 
         def picture(strategy, samples, seed):

@@ -9,7 +9,6 @@ import bpy
 import numpy as np
 from support import scenes
 from velour.core import normal_map
-from velour.core.approximation import Steps
 from velour.export.nodes import approximation_node
 from velour.native import Model
 from velour.operators import approximation_group

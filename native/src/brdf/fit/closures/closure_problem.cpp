@@ -5,6 +5,7 @@
 #include <cmath>
 #include <Eigen/Cholesky>
 #include "brdf/fit/closures/view_products.h"
+#include "math/sphere/vec.h"
 
 namespace velour {
 
@@ -39,8 +40,6 @@ ClosureProblem::ClosureProblem(const std::vector<ClosureView>& views, std::vecto
     : views_(views), distributions_(std::move(distributions)), masking_(masking), bounds_(bounds) {}
 
 namespace {
-
-constexpr double kLuminance[3] = {0.2126, 0.7152, 0.0722};
 
 /// Colors of the lobes at a view: the diffuse one, then the others.
 struct LobeColors {
