@@ -26,6 +26,7 @@ PAGES = {
     "chart": Page(
         "error against time of every strategy, beside other renderers", ("product_bound",), "peers"
     ),
+    "closures": Page("nodes of measured materials in Cycles beside Velour and Principled", (), "metrics"),
     "denoise": Page("the compositor's Denoise node with Velour's passes"),
     "equal_noise": Page("processor time of Cycles and Velour at the same noise"),
     "failure_modes": Page("errors of models of hostile measurements", ("test_failure_modes",)),
