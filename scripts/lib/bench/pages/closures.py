@@ -77,7 +77,7 @@ def _read(folder: Path, stem: str) -> list[np.ndarray]:
 
 
 def _differences(reference: np.ndarray, picture: np.ndarray, where: np.ndarray) -> dict:
-    """Mean color over the reference's, relative L2 of blocks, and mean FLIP, over the pixels of the object."""
+    """Mean color over the reference's, relative L2 of blocks, and mean FLIP, over pixels of the object."""
     mean = picture[where].mean(0) / reference[where].mean(0)
     blocks = [_blocks(each * where[..., None]) for each in (picture, reference)]
     error = np.sqrt(np.square(blocks[0] - blocks[1]).sum() / np.square(blocks[1]).sum())
