@@ -26,10 +26,10 @@ struct ClosureFit {
 
 /// Least squares on f cos and albedo at 36 views, each relative to its own norms (ClosureProblem), with more weight on
 /// dim directions (emphasize_dim), by Levenberg-Marquardt. A network of K lobes starts from that of K - 1 lobes
-/// (one_more_lobe). The smallest K with a visible error below the tolerance or within 10 % of the best is returned. At last weights are scaled until albedos
-/// agree (ClosureAlbedo). Anisotropic sources are averaged over the azimuth of the view, and errors are against all
-/// azimuths. Throws Error(invalid_argument) if an option is out of range, and Error(cancelled) after a cancel. Black if
-/// the source is.
+/// (one_more_lobe). The smallest K with a visible error below the tolerance or within 10 % of the best is returned. At
+/// last weights are scaled until albedos agree (ClosureAlbedo). Anisotropic sources are averaged over the azimuth of
+/// the view, and errors are against all azimuths. Throws Error(invalid_argument) if an option is out of range, and
+/// Error(cancelled) after a cancel. Black if the source is.
 ClosureFit fit_closures(const ClosureSource& source, const ClosureFitOptions& options, Progress& progress);
 
 }  // namespace velour

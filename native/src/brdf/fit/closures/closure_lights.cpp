@@ -183,9 +183,8 @@ void set_norms(ClosureTarget& target) {
 ClosureTarget closure_target(const ClosureSource& source, const HighlightWidths& widths, float theta_v, int count) {
   const WeightedLights lights = closure_lights(widths, theta_v, count);
   const std::vector<Rgb> f_cos = source_values(source, theta_v, lights.wl);
-  ClosureTarget target{.lights = ClosureLights(theta_v, lights),
-                       .values = AlignedArray<float>(0),
-                       .integral = AlignedArray<float>(0)};
+  ClosureTarget target{
+      .lights = ClosureLights(theta_v, lights), .values = AlignedArray<float>(0), .integral = AlignedArray<float>(0)};
   const size_t padded = target.lights.padded();
   const float* root_weight = std::as_const(target.lights).root_weight();
   target.values = aligned_zeros(3 * padded);
