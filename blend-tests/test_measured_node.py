@@ -1,5 +1,7 @@
 """The node of a measured material: its inputs, materials that share its group, and where it is in a tree."""
 
+import warnings
+from pathlib import Path
 from unittest import mock
 
 import bpy
@@ -124,6 +126,72 @@ class Inputs(NodeTest):
 
     def test_what_is_linked_to_nothing_is_no_note(self):
         self.assertEqual(self._notes(self._tiles()), "")
+
+
+class FormerNames(NodeTest):
+    """Scripts set the look by the names that it had before it became inputs."""
+
+    NAMES = {"tint": "Tint", "exposure": "Exposure", "roughness": "Roughness Offset", "rotation": "Rotation"}
+
+    def setUp(self):
+        super().setUp()
+        self.material = scenes.measured_material(inputs.brushed_model())
+        self.node = scenes.velour_node(self.material)
+
+    def _set(self, settings, name, value):
+        """Sets it, and asserts that the warning names the input."""
+        with self.assertWarnsRegex(DeprecationWarning, rf"\.{name} is .*'{self.NAMES[name]}'") as caught:
+            setattr(settings.placement if name == "rotation" else settings, name, value)
+        self.assertEqual(Path(caught.filename).name, Path(__file__).name)
+
+    def _values(self, node):
+        return [self._value(node.inputs[name]) for name in self.NAMES.values()]
+
+    @staticmethod
+    def _value(socket):
+        return tuple(socket.default_value) if socket.type == "RGBA" else socket.default_value
+
+    def test_they_set_the_inputs(self):
+        for name, value in (("tint", (0.5, 0.25, 2)), ("exposure", -1), ("roughness", 0.5), ("rotation", 2)):
+            self._set(self.node.velour, name, value)
+        self.assertEqual(self._values(self.node.group), [(0.5, 0.25, 2, 1), -1, 0.5, 2])
+
+    def test_they_keep_their_ranges(self):
+        for name, value, kept in (
+            ("tint", (-1, 1, 1), (0, 1, 1, 1)),
+            ("exposure", 99, 32),
+            ("roughness", 7, 1),
+        ):
+            self._set(self.node.velour, name, value)
+            self.assertEqual(self._value(self.node.group.inputs[self.NAMES[name]]), kept)
+
+    def test_they_read_the_inputs(self):
+        scenes.set_look(self.material, tint=(0.5, 0.25, 2), exposure=-1, roughness=0.5, rotation=2)
+        settings = self.node.velour
+        self.assertEqual(tuple(settings.tint), (0.5, 0.25, 2))
+        found = settings.exposure, settings.roughness, settings.placement.rotation
+        self.assertEqual(found, (-1, 0.5, 2))
+
+    def test_a_node_sets_its_own_inputs_and_the_model_those_of_all(self):
+        copy = self.material.copy()
+        other = scenes.velour_node(copy)
+        self._set(self.node.velour, "exposure", 1)
+        self.assertEqual(other.group.inputs["Exposure"].default_value, 0)
+        self._set(self.node.texture.velour, "exposure", 2)
+        for node in (self.node, other):
+            self.assertEqual(node.group.inputs["Exposure"].default_value, 2)
+
+    def test_a_missing_input_is_told(self):
+        material = scenes.measured_material(inputs.model_bytes(inputs.plastic_measurement()), "Isotropic")
+        with self.assertWarnsRegex(DeprecationWarning, "has no effect: the node has no input 'Rotation'"):
+            scenes.velour_node(material).velour.placement.rotation = 1
+
+    def test_the_former_layout_says_nothing(self):
+        settings = scenes.velour_node(scenes.former_material(inputs.brushed_model())).velour
+        with warnings.catch_warnings():
+            warnings.simplefilter("error")
+            settings.tint, settings.placement.rotation = (0.5, 0.25, 2), 2
+        self.assertEqual((*settings.tint, settings.placement.rotation), (0.5, 0.25, 2, 2))
 
 
 class Places(NodeTest):

@@ -166,7 +166,7 @@ class Images(Usd):
                 return stage
 
         image = module("approximation_group").images(tree)[0]
-        named = module("approximation_usd")._exported(Context, image)
+        named = module("usd_nodes").exported(Context, image)
         again = bpy.data.images.load(str(self.folder / named))
         np.testing.assert_array_equal(np.array(again.pixels[:]), np.array(image.pixels[:]))
 
@@ -253,6 +253,87 @@ class Images(Usd):
             self.assertEqual(self._node(material, "Velour_UV").GetInput("varname").Get(), written)
             meshes = [prim for prim in stage.Traverse() if prim.HasAttribute(f"primvars:{written}")]
             self.assertEqual(len(meshes), 1, written)
+
+
+class MaterialX(Usd):
+    """The surface of the MaterialX context, beside the preview surface."""
+
+    def _surface(self, material):
+        from pxr import UsdShade
+
+        output = material.GetSurfaceOutput("mtlx")
+        return UsdShade.Shader(output.GetConnectedSources()[0][0].source.GetPrim())
+
+    def _known(self, material):
+        """All shaders and their inputs are those of USD's MaterialX library; their names."""
+        from pxr import Sdr, UsdShade
+
+        names = []
+        for prim in material.GetPrim().GetChildren():
+            shader = UsdShade.Shader(prim)
+            if not shader.GetIdAttr().Get().startswith("ND_"):
+                continue
+            node = Sdr.Registry().GetNodeByIdentifier(shader.GetIdAttr().Get())
+            self.assertIsNotNone(node, shader.GetIdAttr().Get())
+            unknown = {each.GetBaseName() for each in shader.GetInputs()} - set(node.GetInputNames())
+            self.assertEqual(unknown, set(), prim.GetName())
+            names.append(prim.GetName())
+        return names
+
+    def test_a_brdf_is_fitted(self):
+        data = inputs.model_bytes(inputs.plastic_measurement())
+        self._model(data)
+        material, _values, _stage = self._exported()
+        self.assertEqual(self._known(material), ["Velour_OpenPBR"])
+        surface = self._surface(material)
+        self.assertEqual(surface.GetIdAttr().Get(), "ND_open_pbr_surface_surfaceshader")
+        fits = importlib.import_module(f"{inputs.ADDON}.core.analytic.open_pbr_fit")
+        look = importlib.import_module(f"{inputs.ADDON}.operators.approximation_look")
+        start = look.fitted(group_of(self.material).node_tree)["principled"]
+        with inputs.native().Model.from_bytes(data, "plastic") as model:
+            found = fits.fitted_open_pbr(model, start)
+        for name, value in found.material.inputs().items():
+            np.testing.assert_allclose(
+                surface.GetInput(name).Get(), value, rtol=1e-4, atol=1e-5, err_msg=name
+            )
+        self.assertIn(f"{found.errors['relative_l2']:.3f}", surface.GetPrim().GetDocumentation())
+
+    def test_the_look_is_that_of_the_material(self):
+        self._model(inputs.model_bytes(inputs.lambert_measurement()))
+        colors = []
+        for tint in ((1.0, 1.0, 1.0), (0.5, 0.25, 1.0)):
+            scenes.set_look(self.material, tint=tint)
+            colors.append(self._surface(self._exported()[0]).GetInput("base_color").Get())
+        np.testing.assert_allclose(np.divide(colors[1], colors[0]), (0.5, 0.25, 1.0), rtol=0.05)
+
+    def test_a_tangent_turns(self):
+        self._model(inputs.brushed_model())
+        scenes.set_look(self.material, rotation=0.5)
+        self.assertIn("Velour_Turned_Tangent", self._known(self._exported()[0]))
+
+    def test_images_are_connected_and_placed(self):
+        self._model(inputs.quarters_model())
+        placement = scenes.velour_node(self.material).velour.placement
+        placement.repeats, placement.offset = (1.5, 2.0), (0.1, 0.2)
+        scenes.set_look(self.material, rotation=0.4)
+        material, _values, _stage = self._exported()
+        self.assertIn("Velour_MaterialX_Color", self._known(material))
+        named = self._node(material, "Velour_MaterialX_Color").GetInput("file").Get().path
+        self.assertTrue((self.folder / named).exists())
+        rows = [self._node(material, f"Velour_{axis}_Turned").GetInput("in2").Get() for axis in "XY"]
+        start = [self._node(material, f"Velour_{axis}_Moved").GetInput("in2").Get() for axis in "XY"]
+        moved, turn = np.array((0.7, -0.3)) - (0.1, 0.2), -0.4
+        rotation = np.array(((np.cos(turn), -np.sin(turn)), (np.sin(turn), np.cos(turn))))
+        expected = rotation @ moved * (1.5, 2.0)
+        np.testing.assert_allclose(np.array(rows) @ (0.7, -0.3) + start, expected, rtol=1e-5)
+
+    def test_a_surface_of_the_artist_s_own_stays(self):
+        self._approximation()
+        tree = self.material.node_tree
+        mine = tree.nodes.new("ShaderNodeBsdfPrincipled")
+        tree.links.new(mine.outputs[0], tree.nodes["Material Output"].inputs["Surface"])
+        material, _values, _stage = self._exported()
+        self.assertFalse(material.GetPrim().GetChild("Velour_OpenPBR"))
 
 
 class Ends(Usd):

@@ -6,16 +6,14 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import NamedTuple
 
-import numpy as np
-
 from ..native import Model
 from ..native.job_state import ProgressCallback
 from ..native.version import version_text
 from . import files
-from .analytic import gltf, materialx, open_pbr
+from .analytic import gltf, materialx
 from .analytic.ggx_terms import Geometry
-from .analytic.open_pbr_fit import fit_open_pbr
-from .analytic.view_samples import ViewSamples, errors, fitted_samples
+from .analytic.open_pbr_fit import along_tangent, fitted_open_pbr
+from .analytic.view_samples import errors, fitted_samples
 from .approximation import Approximation, Steps
 from .blend_file import write_closures
 from .closures import closures_of
@@ -52,30 +50,28 @@ def _write_principled(request: Request) -> dict:
 
 
 def _write_open_pbr(request: Request) -> dict:
-    material, is_turned, report = _open_pbr(request)
-    text = materialx.document(request.name, material, is_turned, _note(report))
-    files.write_text(request.path, text)
-    return report
+    material, is_turned, errors_of = _open_pbr(request)
+    files.write_text(
+        request.path, materialx.document(request.name, material, is_turned, error_note(errors_of))
+    )
+    return {"parameters": material.inputs(), **errors_of}
 
 
 def _open_pbr(request):
     found = _approximation(request)
-    samples, is_isotropic = fitted_samples(request.model), request.model.info().get("isotropic", True)
-    is_turned = found.turned and not is_isotropic
-    start = open_pbr.OpenPbr.of_principled(found.principled, found.anisotropic)
-    material = fit_open_pbr(_along(samples, is_turned), start, is_isotropic)
-
-    def f_cos(of):
-        return open_pbr.f_cos(material, _geometry(of, is_turned))
-
-    return material, is_turned, {"parameters": material.inputs(), **errors(request.model, f_cos)}
+    return fitted_open_pbr(request.model, found.principled, found.anisotropic, found.turned)
 
 
 def _write_gltf(request: Request) -> dict:
-    start, is_turned, _report = _open_pbr(request)
+    start, is_turned, _errors = _open_pbr(request)
     samples, is_isotropic = fitted_samples(request.model), request.model.info().get("isotropic", True)
-    material = gltf.fit_gltf(_along(samples, is_turned), gltf.Gltf.of_open_pbr(start), is_isotropic)
-    report = errors(request.model, lambda of: gltf.f_cos(material, _geometry(of, is_turned)))
+    material = gltf.fit_gltf(along_tangent(samples, is_turned), gltf.Gltf.of_open_pbr(start), is_isotropic)
+
+    def f_cos(of):
+        own = along_tangent(of, is_turned)
+        return gltf.f_cos(material, Geometry.of(own.wv, own.wl))
+
+    report = errors(request.model, f_cos)
     own = material.material(request.name, 0.25 if is_turned else 0.0, {"velour": report})
     document = {
         "asset": {"version": "2.0", "generator": f"Velour {version_text()}"},
@@ -89,7 +85,7 @@ def _write_gltf(request: Request) -> dict:
 def _write_cycles(request: Request) -> dict:
     closures = closures_of(request.model, "correlated", request.progress)
     report = {key: closures[key] for key in _ERROR_KEYS}
-    write_closures(request.path, request.name, closures, _note(report), request.blender)
+    write_closures(request.path, request.name, closures, error_note(report), request.blender)
     return {"parameters": {"lobes": [lobe["distribution"] for lobe in closures["lobes"]]}, **report}
 
 
@@ -108,27 +104,12 @@ def _approximation(request) -> Approximation:
     return steps.result
 
 
-def _along(samples, is_turned) -> ViewSamples:
-    """The samples in a frame whose x axis is that of the rougher direction."""
-    return samples._replace(wv=_turned(samples.wv), wl=_turned(samples.wl)) if is_turned else samples
-
-
-def _geometry(samples, is_turned):
-    frame = _along(samples, is_turned)
-    return Geometry.of(frame.wv, frame.wl)
-
-
-def _turned(directions):
-    """By a quarter turn about the normal that moves the y axis to x."""
-    x, y, z = np.moveaxis(directions, -1, 0)
-    return np.stack([y, -x, z], axis=-1)
-
-
 def _turns(found):
     return 0.25 if found.turned else 0.0
 
 
-def _note(report):
+def error_note(report: dict) -> str:
+    """A sentence on relative_l2 and by_view_angle, for files."""
     views = ", ".join(
         f"{angle} degrees {'-' if error is None else f'{error:.3f}'}"
         for angle, error in report["by_view_angle"].items()

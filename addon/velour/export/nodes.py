@@ -1,5 +1,7 @@
 """Lookups in Blender's node trees."""
 
+import bpy
+
 
 class MeasuredNode:
     """Node of a material that renders a measured model: a group node whose tree contains the model.
@@ -88,6 +90,17 @@ def all_measured(material):
 def model_names(material):
     """Names of the images of all measured models of a material."""
     return tuple(node.image.name_full for node in all_measured(material) if node.image)
+
+
+def nodes_of(tree):
+    """The group nodes that use a node tree."""
+    materials = (material.node_tree for material in bpy.data.materials)
+    return [
+        node
+        for user in (*materials, *bpy.data.node_groups)
+        for node in (user.nodes if user else ())
+        if node.bl_idname == "ShaderNodeGroup" and node.node_tree == tree
+    ]
 
 
 def model_texture(tree):

@@ -70,7 +70,7 @@ def shader_maps(owner, sources, reliefs, notes, first=None):
     first: name of the map of a measured layer. It alone is placed, so other layers have a set of their own.
     """
     pictures = [source for source in sources if isinstance(source, (Picture, Coordinates))]
-    names = tuple(sorted({picture.coordinates for picture in pictures}))
+    names = tuple(sorted({picture.coordinates for picture in pictures})) or tuple(reliefs[:1])
     if first is not None:
         names = (first, *names)
     if not names:

@@ -52,9 +52,9 @@ class Model(Handle):
         """Blender's closures fitted to the model: lobes, diffuse, views, relative_l2, albedo_excess, ...
 
         Curves have 65 samples over the view angle, 0 to 90 degrees. The keys are those of
-        vlr_model_closures_json. `max_lobes`: 1 to 3 glossy closures; 0: automatic. `tolerance`: mean relative
-        L2 error with which no more are added; 0: automatic. `masking`: "separable" before Blender 3.5,
-        "correlated" since. Not for models of BTFs.
+        vlr_model_closures_json. `max_lobes`: 1 to 3 glossy closures; 0: automatic. `tolerance`: error with
+        which no more are added, the mean of those of f cos and of its root; 0: automatic. `masking`:
+        "separable" before Blender 3.5, "correlated" since. Not for models of BTFs.
         """
         if masking not in table.MASKINGS:
             raise ValueError(f"masking is {masking!r}, not one of {', '.join(table.MASKINGS)}")

@@ -3,8 +3,6 @@
 Blender's exporter does not read node groups, and writes a material without a surface.
 """
 
-import os
-
 import numpy as np
 
 from ..export.color import working_to_rec709
@@ -12,8 +10,11 @@ from ..export.nodes import approximation_node
 from .approximation_group import images
 from .approximation_look import is_surface, shown
 from .approximation_uv import chain
+from .materialx_usd import READER as MATERIALX_READER
+from .usd_nodes import add, coordinate_name, exported, value_type
 
 _READER = "Velour_UV"
+_READERS = {_READER: "varname", MATERIALX_READER: "geomprop"}  # names of prims and of their inputs
 
 
 def write(context, material, usd_material):
@@ -25,12 +26,12 @@ def write(context, material, usd_material):
     if values is None or not is_surface(material) or _has_surface(usd_material):
         return False
     tree = approximation_node(material).node_tree
-    shader = _add(usd_material, "Velour_Approximation", "UsdPreviewSurface")
+    shader = add(usd_material, "Velour_Approximation", "UsdPreviewSurface")
     for name, (kind, value) in _inputs(values).items():
-        shader.CreateInput(name, _type(kind)).Set(value)
+        shader.CreateInput(name, value_type(kind)).Set(value)
     if images(tree):
         _write_images(context, usd_material, shader, tree, values)
-    output = shader.CreateOutput("surface", _type("Token"))
+    output = shader.CreateOutput("surface", value_type("Token"))
     usd_material.CreateSurfaceOutput().ConnectToSource(output)
     return True
 
@@ -40,12 +41,14 @@ def choose_uvs(stage):
     from pxr import Usd, UsdShade
 
     for prim in Usd.PrimRange(stage.GetPseudoRoot()):
-        if not (prim.IsA(UsdShade.Material) and prim.GetChild(_READER)):
-            continue
-        wanted = UsdShade.Shader(prim.GetChild(_READER)).GetInput("varname")
-        names = _uv_names(stage, prim.GetPath())
-        if names and wanted.Get() not in names:
-            wanted.Set("st" if "st" in names else names[0])
+        readers = [
+            (prim.GetChild(name), key) for name, key in _READERS.items() if prim.IsA(UsdShade.Material)
+        ]
+        names = _uv_names(stage, prim.GetPath()) if any(reader for reader, _key in readers) else []
+        for reader, key in readers:
+            wanted = UsdShade.Shader(reader).GetInput(key) if reader else None
+            if names and wanted and wanted.Get() not in names:
+                wanted.Set("st" if "st" in names else names[0])
 
 
 def _has_surface(usd_material):
@@ -79,58 +82,43 @@ def _ior(level):
 
 
 def _write_images(context, usd_material, shader, tree, values):
-    def add(name, image, color_space, scale):
-        texture = _add(usd_material, name, "UsdUVTexture")
-        texture.CreateInput("file", _type("Asset")).Set(_exported(context, image))
-        texture.CreateInput("sourceColorSpace", _type("Token")).Set(color_space)
+    def texture_of(name, image, color_space, scale):
+        texture = add(usd_material, name, "UsdUVTexture")
+        texture.CreateInput("file", value_type("Asset")).Set(exported(context, image))
+        texture.CreateInput("sourceColorSpace", value_type("Token")).Set(color_space)
         for wrap in ("wrapS", "wrapT"):
-            texture.CreateInput(wrap, _type("Token")).Set("repeat")
-        texture.CreateInput("scale", _type("Float4")).Set((*scale, 1.0))
-        texture.CreateInput("st", _type("Float2")).ConnectToSource(uvs)
-        return texture, texture.CreateOutput("rgb", _type("Float3"))
+            texture.CreateInput(wrap, value_type("Token")).Set("repeat")
+        texture.CreateInput("scale", value_type("Float4")).Set((*scale, 1.0))
+        texture.CreateInput("st", value_type("Float2")).ConnectToSource(uvs)
+        return texture, texture.CreateOutput("rgb", value_type("Float3"))
 
     uvs = _write_uvs(usd_material, values.placed)
     pictures = images(tree)
-    texture, color = add("Velour_Color", pictures[0], "sRGB", working_to_rec709(values.gain))
-    shader.CreateInput("diffuseColor", _type("Color3f")).ConnectToSource(color)
+    texture, color = texture_of("Velour_Color", pictures[0], "sRGB", working_to_rec709(values.gain))
+    shader.CreateInput("diffuseColor", value_type("Color3f")).ConnectToSource(color)
     principled = next(node for node in tree.nodes if node.bl_idname == "ShaderNodeBsdfPrincipled")
     if principled.inputs["Alpha"].is_linked:
-        alpha = texture.CreateOutput("a", _type("Float"))
-        shader.CreateInput("opacity", _type("Float")).ConnectToSource(alpha)
+        alpha = texture.CreateOutput("a", value_type("Float"))
+        shader.CreateInput("opacity", value_type("Float")).ConnectToSource(alpha)
     if len(pictures) > 1:
-        texture, normals = add("Velour_Normals", pictures[1], "raw", (2.0, 2.0, 2.0))
-        texture.CreateInput("bias", _type("Float4")).Set((-1.0, -1.0, -1.0, 0.0))
-        shader.CreateInput("normal", _type("Normal3f")).ConnectToSource(normals)
+        texture, normals = texture_of("Velour_Normals", pictures[1], "raw", (2.0, 2.0, 2.0))
+        texture.CreateInput("bias", value_type("Float4")).Set((-1.0, -1.0, -1.0, 0.0))
+        shader.CreateInput("normal", value_type("Normal3f")).ConnectToSource(normals)
 
 
 def _write_uvs(usd_material, placed):
     """Adds the nodes that place the image; returns the output of the last one."""
-    from pxr import Tf
-
-    reader = _add(usd_material, _READER, "UsdPrimvarReader_float2")
-    name = placed.uv_map
-    reader.CreateInput("varname", _type("String")).Set(Tf.MakeValidIdentifier(name) if name else "st")
-    output = reader.CreateOutput("result", _type("Float2"))
+    reader = add(usd_material, _READER, "UsdPrimvarReader_float2")
+    reader.CreateInput("varname", value_type("String")).Set(coordinate_name(placed))
+    output = reader.CreateOutput("result", value_type("Float2"))
     for number, step in enumerate(chain(placed)):
-        transform = _add(usd_material, f"Velour_Placement_{number + 1}", "UsdTransform2d")
-        transform.CreateInput("in", _type("Float2")).ConnectToSource(output)
-        transform.CreateInput("rotation", _type("Float")).Set(step.degrees)
-        transform.CreateInput("scale", _type("Float2")).Set(step.scale)
-        transform.CreateInput("translation", _type("Float2")).Set(step.translation)
-        output = transform.CreateOutput("result", _type("Float2"))
+        transform = add(usd_material, f"Velour_Placement_{number + 1}", "UsdTransform2d")
+        transform.CreateInput("in", value_type("Float2")).ConnectToSource(output)
+        transform.CreateInput("rotation", value_type("Float")).Set(step.degrees)
+        transform.CreateInput("scale", value_type("Float2")).Set(step.scale)
+        transform.CreateInput("translation", value_type("Float2")).Set(step.translation)
+        output = transform.CreateOutput("result", value_type("Float2"))
     return output
-
-
-def _exported(context, image):
-    """Writes the image beside the file, as Blender writes textures; returns its path for the file."""
-    if hasattr(context, "export_texture"):
-        return context.export_texture(image)
-    folder = os.path.join(os.path.dirname(context.get_stage().GetRootLayer().realPath), "textures")
-    os.makedirs(folder, exist_ok=True)
-    name = "".join(c if c.isalnum() else "_" for c in image.name) + ".png"
-    with open(os.path.join(folder, name), "wb") as file:
-        file.write(image.packed_file.data)  # always PNG, packed by approximation_image
-    return f"./textures/{name}"
 
 
 def _uv_names(stage, path):
@@ -144,21 +132,6 @@ def _uv_names(stage, path):
             continue
         mesh = prim.GetParent() if prim.IsA(UsdGeom.Subset) else prim
         for primvar in UsdGeom.PrimvarsAPI(mesh).GetPrimvars():
-            if primvar.GetTypeName().scalarType == _type("TexCoord2f"):
+            if primvar.GetTypeName().scalarType == value_type("TexCoord2f"):
                 names.append(primvar.GetPrimvarName())
     return names
-
-
-def _add(usd_material, name, kind):
-    from pxr import UsdShade
-
-    path = usd_material.GetPath().AppendChild(name)
-    shader = UsdShade.Shader.Define(usd_material.GetPrim().GetStage(), path)
-    shader.CreateIdAttr(kind)
-    return shader
-
-
-def _type(name):
-    from pxr import Sdf
-
-    return getattr(Sdf.ValueTypeNames, name)

@@ -22,6 +22,19 @@ def chain(placed):
     return Step((1.0, 1.0), math.degrees(angle), moved), Step(repeats, 0.0, (0.0, 0.0))
 
 
+def affine(placed):
+    """The same as rows (a, b, c) of tile coordinates a u + b v + c."""
+    start, along_u, along_v = (_moved(placed, point) for point in ((0.0, 0.0), (1.0, 0.0), (0.0, 1.0)))
+    return tuple((u - c, v - c, c) for c, u, v in zip(start, along_u, along_v, strict=True))
+
+
+def _moved(placed, point):
+    for step in chain(placed):
+        turned = _turned(_scaled(point, step.scale), math.radians(step.degrees))
+        point = tuple(p + t for p, t in zip(turned, step.translation, strict=True))
+    return point
+
+
 def _turned(vector, angle):
     x, y = vector
     return math.cos(angle) * x - math.sin(angle) * y, math.sin(angle) * x + math.cos(angle) * y

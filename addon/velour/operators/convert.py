@@ -11,7 +11,7 @@ from ..native import VelourError
 from . import approximation_group, approximation_look, measured_group
 
 # Settings of the former node that are inputs now, or belong to the model.
-_ELSEWHERE = ("enabled", "tint", "exposure", "roughness", "neighbors", "job")
+_ELSEWHERE = ("enabled", "tint", "exposure", "roughness", "rotation", "neighbors", "job")
 
 
 class VELOUR_OT_convert_materials(bpy.types.Operator):
@@ -66,7 +66,6 @@ def convert(material):
         socket.default_value = (*value, 1.0) if field == "tint" else value
     former.texture.name, node.group.name = "Former", name  # F-curves follow the names
     _follow_animation(tree, former.name, node)
-    node.velour.placement.property_unset("rotation")
     tree.nodes.remove(former.texture)  # with F-curves that still point to it
     if approximation is not None:
         _remove(tree, approximation)

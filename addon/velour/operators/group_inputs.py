@@ -2,7 +2,7 @@
 
 from typing import NamedTuple
 
-from .sharing import nodes_of
+from ..export.nodes import nodes_of
 
 
 class Input(NamedTuple):

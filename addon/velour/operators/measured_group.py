@@ -3,9 +3,8 @@
 import bpy
 
 from ..core.approximation import UNFITTED
-from ..export.nodes import MeasuredNode, active_output, model_texture
+from ..export.nodes import MeasuredNode, active_output, model_texture, nodes_of
 from . import approximation_group
-from .sharing import nodes_of
 
 NODE_NAME = "Velour"
 _SHADER = "NodeSocketShader"

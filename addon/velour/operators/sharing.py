@@ -1,17 +1,6 @@
-"""Finds scenes that share a material, and nodes that share a node group."""
+"""Finds scenes that share a material."""
 
 import bpy
-
-
-def nodes_of(tree):
-    """The group nodes that use a node tree."""
-    materials = (material.node_tree for material in bpy.data.materials)
-    return [
-        node
-        for user in (*materials, *bpy.data.node_groups)
-        for node in (user.nodes if user else ())
-        if node.bl_idname == "ShaderNodeGroup" and node.node_tree == tree
-    ]
 
 
 def other_scenes(material, scene):

@@ -4,7 +4,7 @@ import importlib.util
 
 import bpy
 
-from . import approximation_usd
+from . import approximation_usd, materialx_usd
 
 _registered = []
 
@@ -15,10 +15,12 @@ class VELOUR_USD_approximation(getattr(bpy.types, "USDHook", object)):
 
     @staticmethod
     def on_material_export(export_context, bl_material, usd_material):
-        try:
-            return approximation_usd.write(export_context, bl_material, usd_material)
-        except Exception as error:  # the export continues without it
-            return _sorry(f"the approximation of material '{bl_material.name}'", error)
+        parts = {"approximation": approximation_usd, "MaterialX surface": materialx_usd}
+        written = [
+            _write(part, module, (export_context, bl_material, usd_material))
+            for part, module in parts.items()
+        ]
+        return any(written)
 
     @staticmethod
     def on_export(export_context):
@@ -27,6 +29,14 @@ class VELOUR_USD_approximation(getattr(bpy.types, "USDHook", object)):
         except Exception as error:
             return _sorry("the texture coordinates of approximations", error)
         return True
+
+
+def _write(part, module, arguments):
+    """Writes a part of a material; without it, the export continues."""
+    try:
+        return module.write(*arguments)
+    except Exception as error:
+        return _sorry(f"the {part} of material '{arguments[1].name}'", error)
 
 
 def attach():

@@ -13,6 +13,7 @@ from bpy.props import (
 
 from .btf_fit_settings import VelourBtfFitSettings
 from .changed import changed, look_changed
+from .look_settings import stored_or_input
 from .placement_settings import VelourPlacementSettings
 from .saved_by import saved_by
 
@@ -186,6 +187,7 @@ class VelourMaterialSettings(bpy.types.PropertyGroup):
         soft_max=1.0,
         update=look_changed,
         override=_OVERRIDE,
+        **stored_or_input("tint", (1.0, 1.0, 1.0)),
     )
     exposure: FloatProperty(
         name="Exposure",
@@ -197,6 +199,7 @@ class VelourMaterialSettings(bpy.types.PropertyGroup):
         max=32.0,
         update=look_changed,
         override=_OVERRIDE,
+        **stored_or_input("exposure", 0.0),
     )
     roughness: FloatProperty(
         name="Roughness Offset",
@@ -208,6 +211,7 @@ class VelourMaterialSettings(bpy.types.PropertyGroup):
         max=1.0,
         update=look_changed,
         override=_OVERRIDE,
+        **stored_or_input("roughness", 0.0),
     )
     placement: PointerProperty(
         name="Placement",

@@ -4,6 +4,7 @@ import bpy
 from bpy.props import EnumProperty, FloatProperty, FloatVectorProperty, StringProperty
 
 from .changed import look_changed, uv_map_changed
+from .look_settings import stored_or_input
 
 _OVERRIDE = {"LIBRARY_OVERRIDABLE"}
 
@@ -78,6 +79,7 @@ class VelourPlacementSettings(bpy.types.PropertyGroup):
         default=0.0,
         update=look_changed,
         override=_OVERRIDE,
+        **stored_or_input("rotation", 0.0),
     )
     offset: FloatVectorProperty(
         name="Offset",

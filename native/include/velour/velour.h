@@ -139,7 +139,8 @@ enum {
 typedef struct vlr_closure_options {
   uint32_t struct_size;
   uint32_t max_lobes; /* maximum number of glossy lobes, 1 to 3; 0: automatic */
-  double tolerance;   /* mean relative L2 error with which no more lobes are added; 0: automatic */
+  double tolerance;   /* error with which no more lobes are added: mean of the relative L2 errors of f cos and of its
+                       * root, at views up to 75 degrees; 0: automatic */
   int32_t masking;    /* VLR_MASKING_* of the closures; VLR_MASKING_SEPARABLE */
   uint32_t threads;   /* 0: all */
 } vlr_closure_options;

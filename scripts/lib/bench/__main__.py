@@ -30,6 +30,7 @@ PAGES = {
 NEEDS = {
     "btf_chart": Needs(tools="metrics"),
     "chart": Needs(("product_bound",), "peers"),
+    "closures": Needs(tools="metrics"),
     "failure_modes": Needs(("test_failure_modes",)),
     "figures_check": Needs(("uniform_moments",)),
     "inputs": Needs(("test_image", "test_mesh", "test_brdf", "test_btf")),

@@ -2,10 +2,14 @@
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
+from ...native import Model
+from .ggx_terms import Geometry
 from .least_squares import IOR, ROUGHNESS, UNIT, Ranges, fit_material
 from .open_pbr import OpenPbr, f_cos
 from .parameter_fit import Range
-from .view_samples import ViewSamples
+from .view_samples import WHITE, ViewSamples, errors, fitted_samples
 
 _RANGES: Ranges = {
     "base_color": [UNIT] * 3,
@@ -20,6 +24,33 @@ _RANGES: Ranges = {
     "coat_ior": [IOR],
 }
 _ANISOTROPY: Ranges = {"specular_roughness_anisotropy": [Range(0.0, 0.98)]}
+
+
+class FittedOpenPbr(NamedTuple):
+    material: OpenPbr
+    is_turned: bool  # the tangent is y
+    errors: dict  # relative_l2 and by_view_angle, against the model
+
+
+def fitted_open_pbr(
+    model: Model, principled: dict, anisotropic: float = 0.0, is_turned: bool = False, gain: tuple = WHITE
+) -> FittedOpenPbr:
+    """OpenPBR fitted to a model times `gain`. The other arguments are its Approximation's."""
+    is_isotropic = model.info().get("isotropic", True)
+    is_turned = is_turned and not is_isotropic
+    start = OpenPbr.of_principled(principled, anisotropic)
+    material = fit_open_pbr(along_tangent(fitted_samples(model, gain=gain), is_turned), start, is_isotropic)
+
+    def of(samples):
+        own = along_tangent(samples, is_turned)
+        return f_cos(material, Geometry.of(own.wv, own.wl))
+
+    return FittedOpenPbr(material, is_turned, errors(model, of, gain=gain))
+
+
+def along_tangent(samples: ViewSamples, is_turned: bool) -> ViewSamples:
+    """The samples in the frame of a material whose tangent is y if it `is_turned`."""
+    return samples.quarter_turned() if is_turned else samples
 
 
 def fit_open_pbr(samples: ViewSamples, start: OpenPbr, is_isotropic: bool) -> OpenPbr:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
@@ -10,6 +11,7 @@ import numpy as np
 from ...native import Model
 
 REPORTED = (5, 30, 60, 75, 85)  # degrees
+WHITE = (1.0, 1.0, 1.0)
 LUMINANCE = np.array((0.2126, 0.7152, 0.0722))
 _FITTED = np.arange(2.5, 90, 5)  # degrees; none of them is reported
 _UNIFORM, _VIEWER = 0.3, 0.1  # shares of the lights; the others lie about the mirror direction
@@ -26,6 +28,10 @@ class ViewSamples(NamedTuple):
     solid_angle: np.ndarray  # [views x lights] that a light stands for: sr; 0 below the horizon
     f_cos: np.ndarray  # [views x lights x 3]: 1/sr, linear Rec. 709
 
+    def quarter_turned(self) -> ViewSamples:
+        """The samples in a frame whose x axis is y."""
+        return self._replace(wv=_quarter_turned(self.wv), wl=_quarter_turned(self.wl))
+
     def relative_errors(self, f_cos: np.ndarray) -> np.ndarray:
         """Relative L2 errors [views] of the luminance of other values; NaN at black views."""
         weight = self.solid_angle
@@ -34,14 +40,16 @@ class ViewSamples(NamedTuple):
             return np.sqrt(difference / (weight * (self.f_cos @ LUMINANCE) ** 2).sum(-1))
 
 
-def fitted_samples(model: Model, lights: int | None = None) -> ViewSamples:
-    """Samples at 18 views, 5 degrees apart; at four azimuths each if the model is anisotropic."""
-    return _samples(model, _FITTED, lights or (300 if model.info().get("isotropic", True) else 100))
+def fitted_samples(model: Model, lights: int | None = None, gain: tuple = WHITE) -> ViewSamples:
+    """The model times `gain` at 18 views, 5 degrees apart; at four azimuths each if it is anisotropic."""
+    return _samples(model, _FITTED, lights or (300 if model.info().get("isotropic", True) else 100), gain)
 
 
-def errors(model: Model, f_cos, lights: int = 4096) -> dict:
-    """Keys relative_l2 and by_view_angle, of a function f_cos(samples) against the model."""
-    fitted, reported = fitted_samples(model), _samples(model, REPORTED, lights)
+def errors(
+    model: Model, f_cos: Callable[[ViewSamples], np.ndarray], lights: int = 4096, gain: tuple = WHITE
+) -> dict:
+    """Keys relative_l2 and by_view_angle, of a function f_cos(samples) against the model times `gain`."""
+    fitted, reported = fitted_samples(model, gain=gain), _samples(model, REPORTED, lights, gain)
     weight = np.sin(2 * np.arccos(np.clip(fitted.wv[:, 2], 0, 1)))
     relative = fitted.relative_errors(f_cos(fitted))
     covered = np.isfinite(relative)
@@ -55,7 +63,7 @@ def errors(model: Model, f_cos, lights: int = 4096) -> dict:
     }
 
 
-def _samples(model, degrees, lights):
+def _samples(model, degrees, lights, gain):
     azimuths = (0.0,) if model.info().get("isotropic", True) else _AZIMUTHS
     views = [(math.radians(theta), math.radians(phi)) for theta in degrees for phi in azimuths]
     wv = np.array([_direction(theta, phi) for theta, phi in views], np.float32)
@@ -64,7 +72,13 @@ def _samples(model, degrees, lights):
     values = np.stack(
         [model.eval(view, light.astype(np.float32))[0] for view, light in zip(wv, wl, strict=True)]
     )
-    return ViewSamples(wv, wl, solid_angle, np.maximum(values, 0) * np.maximum(wl[..., 2:], 0))
+    f_cos = np.maximum(values, 0) * np.maximum(wl[..., 2:], 0) * np.asarray(gain)
+    return ViewSamples(wv, wl, solid_angle, f_cos)
+
+
+def _quarter_turned(directions):
+    x, y, z = np.moveaxis(directions, -1, 0)
+    return np.stack([y, -x, z], axis=-1)
 
 
 def _direction(theta, phi):

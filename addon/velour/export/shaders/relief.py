@@ -9,6 +9,8 @@ from .layer import Relief
 # Cycles' correction of steep normals changed in these versions; no property reveals it.
 _CORRECTION = "turned" if bpy.app.version < (4, 0) else "faded" if bpy.app.version < (4, 5) else "shadowed"
 
+_UNTILTED = (0.5, 0.5, 1.0)  # color of a normal map
+
 
 def correction(material):
     """Correction of steep normals, named as in Shader.add_layer."""
@@ -27,9 +29,9 @@ def read_relief(plug, reader):
         if fed.node.space != "TANGENT":
             reader.note(fed, "only normal maps in tangent space are supported; ignored.")
             return None
-        _, picture = reader.number(fed.input("Color"))
+        color, picture = reader.number(fed.input("Color"))
         strength, varies = reader.number(fed.input("Strength"))
-        if picture is None or (varies is None and strength <= 0.0):
+        if (picture is None and color == _UNTILTED) or (varies is None and strength <= 0.0):
             return None
         if isinstance(picture, Picture) and varies is None:
             return Relief(picture, strength, fed.node.uv_map)

@@ -20,18 +20,26 @@ double relative_root(double error_sq, double reference_sq) {
 /// Error of `values` (rows per channel, times root_weight) against all azimuths.
 ClosureViewError error_of(const std::vector<ClosureTarget>& azimuths, int degrees, const AlignedArray<float>& values) {
   const size_t row = azimuths[0].lights.padded();
-  double error_sq = 0, reference_sq = 0, luminance_error_sq = 0, luminance_sq = 0;
+  double error_sq = 0, reference_sq = 0, luminance_error_sq = 0, luminance_sq = 0, root_error_sq = 0, root_sq = 0;
   for (const ClosureTarget& target : azimuths) {
+    const float* root_weight = target.lights.root_weight();
     for (size_t i = 0; i < row; ++i) {
       const Rgb difference(values.data()[i] - target.channel(0)[i], values.data()[row + i] - target.channel(1)[i],
                            values.data()[2 * row + i] - target.channel(2)[i]);
       error_sq += static_cast<double>(glm::dot(difference, difference));
       luminance_error_sq += static_cast<double>(luminance(difference) * luminance(difference));
+      for (int c = 0; c < 3; ++c) {  // the weight times the squared difference of roots
+        const float source = target.channel(c)[i], model = values.data()[static_cast<size_t>(c) * row + i];
+        const float root = std::sqrt(model) - std::sqrt(source);
+        root_error_sq += static_cast<double>(root_weight[i] * root * root);
+        root_sq += static_cast<double>(root_weight[i] * source);
+      }
     }
     reference_sq += target.norm_sq.r + target.norm_sq.g + target.norm_sq.b;
     luminance_sq += target.norm_sq_luminance;
   }
-  return {degrees, relative_root(luminance_error_sq, luminance_sq), relative_root(error_sq, reference_sq)};
+  return {degrees, relative_root(luminance_error_sq, luminance_sq), relative_root(error_sq, reference_sq),
+          relative_root(root_error_sq, root_sq)};
 }
 
 AlignedArray<float> mean_values(const std::vector<ClosureTarget>& azimuths) {
@@ -72,15 +80,28 @@ std::vector<ClosureViewError> ClosureJudge::errors_of_mean() const {
   return errors;
 }
 
-double mean_closure_error(const std::vector<ClosureViewError>& errors) {
+namespace {
+
+/// Mean of `error_at` over the views up to 75 degrees.
+double mean_up_to_75(const std::vector<ClosureViewError>& errors, const auto& error_at) {
   double sum = 0;
   int count = 0;
   for (const ClosureViewError& e : errors) {
     if (e.degrees > kLastMeanView) continue;
-    sum += e.luminance;
+    sum += error_at(e);
     ++count;
   }
   return sum / count;
+}
+
+}  // namespace
+
+double mean_closure_error(const std::vector<ClosureViewError>& errors) {
+  return mean_up_to_75(errors, [](const ClosureViewError& e) { return e.luminance; });
+}
+
+double visible_closure_error(const std::vector<ClosureViewError>& errors) {
+  return mean_up_to_75(errors, [](const ClosureViewError& e) { return 0.5 * (e.luminance + e.root); });
 }
 
 ClosureAlbedo::ClosureAlbedo(const ClosureSource& source, const HighlightWidths& widths, int threads,

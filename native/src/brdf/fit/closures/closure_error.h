@@ -11,6 +11,7 @@ namespace velour {
 struct ClosureViewError {
   int degrees;  // theta_v
   double luminance, rgb;
+  double root;  // of the roots of all channels: errors around highlights count, too
 };
 
 /// The source at views of kHeldOutViews, over 1024 lights that resolve its highlights.
@@ -27,6 +28,9 @@ class ClosureJudge {
 
 /// Mean luminance error of the views up to 75 degrees.
 double mean_closure_error(const std::vector<ClosureViewError>& errors);
+/// Mean of the luminance and root errors of those views: what pictures show, since lights that a highlight misses are
+/// reflected by its surroundings.
+double visible_closure_error(const std::vector<ClosureViewError>& errors);
 
 /// Albedo of the source at the samples of ClosureCurve and halfway between them, at most 89.5 degrees.
 class ClosureAlbedo {

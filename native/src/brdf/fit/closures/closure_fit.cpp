@@ -13,6 +13,7 @@ namespace velour {
 namespace {
 
 constexpr int kClosureViews = 36, kFittedLights = 450;
+constexpr double kShareOfRoot = 0.1;
 constexpr double kNearBestClosures = 1.1;
 
 void check_closure_options(const ClosureFitOptions& o) {
@@ -33,6 +34,7 @@ std::vector<ClosureTarget> fitted_targets(const ClosureSource& source, const Hig
   parallel_pieces(one_each.size(), threads, progress, [&](size_t i) {
     one_each[i].push_back(
         closure_target(source, widths, radians_from(1.25f + 2.5f * static_cast<float>(i)), kFittedLights));
+    emphasize_dim(one_each[i].back(), kShareOfRoot);
   });
   std::vector<ClosureTarget> targets;
   for (auto& one : one_each) targets.push_back(std::move(one[0]));
@@ -41,10 +43,10 @@ std::vector<ClosureTarget> fitted_targets(const ClosureSource& source, const Hig
 
 /// The fewest lobes that are good enough.
 ClosureFit& chosen_of(std::vector<ClosureFit>& fits, double tolerance) {
-  double best = fits[0].mean_error;
-  for (const ClosureFit& f : fits) best = std::min(best, f.mean_error);
+  double best = visible_closure_error(fits[0].errors);
+  for (const ClosureFit& f : fits) best = std::min(best, visible_closure_error(f.errors));
   return *std::find_if(fits.begin(), fits.end(), [&](const ClosureFit& f) {
-    return f.mean_error < tolerance || f.mean_error <= kNearBestClosures * best;
+    return visible_closure_error(f.errors) < std::max(tolerance, kNearBestClosures * best);
   });
 }
 
@@ -52,7 +54,7 @@ ClosureFit black_closures(const ClosureFitOptions& options) {
   ClosureFit fit{.masking = options.masking};
   fit.network.lobes.resize(1);
   fit.network.lobes[0].roughness.fill(1);
-  for (const int degrees : kHeldOutViews) fit.errors.push_back({degrees, 0, 0});
+  for (const int degrees : kHeldOutViews) fit.errors.push_back({degrees, 0, 0, 0});
   return fit;
 }
 
@@ -84,7 +86,7 @@ ClosureFit fit_closures(const ClosureSource& source, const ClosureFitOptions& op
     fit.errors = judge.errors(fit.network, options.masking);
     fit.mean_error = mean_closure_error(fit.errors);
     fits.push_back(std::move(fit));
-    if (fits.back().mean_error < options.tolerance) break;
+    if (visible_closure_error(fits.back().errors) < options.tolerance) break;
   }
   ClosureFit chosen = std::move(chosen_of(fits, options.tolerance));
   chosen.azimuth_error = mean_closure_error(judge.errors_of_mean());

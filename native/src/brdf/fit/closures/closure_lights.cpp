@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 #include "math/sphere/directions.h"
 #include "math/sphere/sobol.h"
 
@@ -162,23 +163,61 @@ ClosureLights::ClosureLights(float theta_v, const WeightedLights& lights)
   }
 }
 
+namespace {
+
+/// Sums over the values of a target, which include root_weight.
+void set_norms(ClosureTarget& target) {
+  const size_t padded = target.lights.padded();
+  target.norm_sq = Vec3d(0);
+  target.norm_sq_luminance = 0;
+  for (size_t i = 0; i < padded; ++i) {
+    const Vec3d value(target.channel(0)[i], target.channel(1)[i], target.channel(2)[i]);
+    const double bright = luminance(Rgb(value));
+    target.norm_sq += value * value;
+    target.norm_sq_luminance += bright * bright;
+  }
+}
+
+}  // namespace
+
 ClosureTarget closure_target(const ClosureSource& source, const HighlightWidths& widths, float theta_v, int count) {
   const WeightedLights lights = closure_lights(widths, theta_v, count);
   const std::vector<Rgb> f_cos = source_values(source, theta_v, lights.wl);
-  ClosureTarget target{.lights = ClosureLights(theta_v, lights), .values = AlignedArray<float>(0)};
+  ClosureTarget target{
+      .lights = ClosureLights(theta_v, lights), .values = AlignedArray<float>(0), .integral = AlignedArray<float>(0)};
   const size_t padded = target.lights.padded();
+  const float* root_weight = std::as_const(target.lights).root_weight();
   target.values = aligned_zeros(3 * padded);
+  target.integral = aligned_zeros(padded);
+  std::copy(root_weight, root_weight + padded, target.integral.data());
   for (size_t i = 0; i < f_cos.size(); ++i) {
-    const Vec3d value(f_cos[i]);
-    const double bright = luminance(f_cos[i]);
-    target.albedo += lights.weight[i] * value;
-    target.norm_sq += lights.weight[i] * value * value;
-    target.norm_sq_luminance += lights.weight[i] * bright * bright;
+    target.albedo += lights.weight[i] * Vec3d(f_cos[i]);
     for (int c = 0; c < 3; ++c) {
-      target.values.data()[static_cast<size_t>(c) * padded + i] = target.lights.root_weight()[i] * f_cos[i][c];
+      target.values.data()[static_cast<size_t>(c) * padded + i] = root_weight[i] * f_cos[i][c];
     }
   }
+  set_norms(target);
   return target;
+}
+
+void emphasize_dim(ClosureTarget& target, double share) {
+  constexpr double kDark = 0.01;  // of the mean: darker lights count as much as these
+  const double albedo = luminance(Rgb(target.albedo));
+  if (!(albedo > 0)) return;
+  const size_t padded = target.lights.padded();
+  float* root_weight = target.lights.root_weight();
+  for (size_t i = 0; i < padded; ++i) {
+    if (root_weight[i] <= 0) continue;
+    const Rgb value(target.channel(0)[i], target.channel(1)[i], target.channel(2)[i]);
+    const double f_cos = luminance(value) / root_weight[i];
+    // d sqrt(f) = df / (2 sqrt(f)); the squared norm of the root is the albedo.
+    const double of_root = 0.25 * target.norm_sq_luminance / (albedo * (f_cos + kDark * albedo / kPiD));
+    const auto factor = static_cast<float>(std::sqrt(1 + share * of_root));
+    root_weight[i] *= factor;
+    target.integral.data()[i] /= factor;
+    for (size_t c = 0; c < 3; ++c) target.values.data()[c * padded + i] *= factor;
+  }
+  set_norms(target);
 }
 
 }  // namespace velour

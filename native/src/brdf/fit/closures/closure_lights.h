@@ -53,7 +53,8 @@ class ClosureLights {
   const float* h_x() const { return row(3); }
   const float* h_y() const { return row(4); }
   const float* h_z() const { return row(5); }
-  const float* root_weight() const { return row(6); }  // square root of the solid angle
+  const float* root_weight() const { return row(6); }  // square root of the solid angle, times that of emphasize_dim()
+  float* root_weight() { return data_.data() + 6 * padded_; }
 
  private:
   const float* row(size_t i) const { return data_.data() + i * padded_; }
@@ -66,12 +67,18 @@ class ClosureLights {
 /// Values of the source at the lights of a view.
 struct ClosureTarget {
   ClosureLights lights;
-  AlignedArray<float> values;  // f cos times root_weight, a row per channel
+  AlignedArray<float> values;    // f cos times root_weight, a row per channel
+  AlignedArray<float> integral;  // a row times root_weight, times this, sums to its integral
   Vec3d norm_sq{0}, albedo{0};
   double norm_sq_luminance = 0;
 
   const float* channel(int c) const { return values.data() + static_cast<size_t>(c) * lights.padded(); }
 };
 ClosureTarget closure_target(const ClosureSource& source, const HighlightWidths& widths, float theta_v, int count);
+
+/// Raises the weights of lights where the target is dim, so that squared errors, relative to norm_sq, become the sum of
+/// those of f cos and of `share` times those of its root. Peaks of highlights alone count in the former, but what
+/// surrounds them is visible, too.
+void emphasize_dim(ClosureTarget& target, double share);
 
 }  // namespace velour

@@ -40,9 +40,9 @@ class ClosureSearch {
     return s;
   }
 
-  ClosureSolution best_trial(std::vector<ClosureSolution> starts) const {
+  ClosureSolution best_of(std::vector<ClosureSolution> starts, const DescentOptions& descent) const {
     parallel_pieces(starts.size(), options_.threads, progress_,
-                    [&](size_t i) { starts[i] = descended(starts[i], kTrial); });
+                    [&](size_t i) { starts[i] = descended(starts[i], descent); });
     return *std::min_element(starts.begin(), starts.end(),
                              [](const ClosureSolution& a, const ClosureSolution& b) { return a.cost < b.cost; });
   }
@@ -58,11 +58,11 @@ class ClosureSearch {
 ClosureSolution one_more_lobe(const std::vector<ClosureView>& views, const ClosureSolution& from,
                               const ClosureSearchOptions& options, const Progress& progress) {
   const ClosureSearch search(views, options, progress);
-  const ClosureSolution best =
-      search.descended(search.best_trial(closure_starts(views, from, options.masking, options.bounds)), kFull);
+  // Short trials choose starts that end in poor minima.
+  const ClosureSolution best = search.best_of(closure_starts(views, from, options.masking, options.bounds), kFull);
   std::vector<ClosureSolution> flips;
   for (size_t k = 0; k < best.distributions.size(); ++k) flips.push_back(flipped(best, k, options.bounds));
-  const ClosureSolution flip = search.best_trial(std::move(flips));
+  const ClosureSolution flip = search.best_of(std::move(flips), kTrial);
   return flip.cost < best.cost ? search.descended(flip, kFull) : best;
 }
 

@@ -43,7 +43,7 @@ ViewProducts::ViewProducts(const ClosureTarget& target_at_view, const std::vecto
     slopes ? fill_lobe_slopes(lights, shape, chain_of(s, theta_v), out) : fill_lobe(lights, shape, out);
   }
   const float* const fixed[4] = {target_at_view.channel(0), target_at_view.channel(1), target_at_view.channel(2),
-                                 lights.root_weight()};
+                                 target_at_view.integral.data()};
   fill_products(data.data(), rows, padded, fixed, gram_, target);
 }
 

@@ -21,7 +21,7 @@ struct ViewProducts {
   double mass(int a) const { return static_cast<double>(target[a][3]); }
 
   int rows, rows_per_lobe;
-  float target[kMaxRows][4];  // with each channel of the target, and with root_weight
+  float target[kMaxRows][4];  // with each channel of the target, and with its integral
 
  private:
   float gram_[kMaxRows * kMaxRows];

@@ -86,6 +86,35 @@ TEST(ClosureProblem, TheCostOfTheTruthIsZero) {
   EXPECT_GT(ClosureProblem(views, {kBeckmann}, kSeparable, bounds).cost(u), 0.05);
 }
 
+TEST(ClosureTarget, EmphasisAddsTheErrorOfTheRootAndKeepsIntegrals) {
+  constexpr double kShare = 0.4, kChange = 0.02;
+  const ClosureNetwork network = network_of(Rgb(0.4f), {lobe_of(kGgx, Rgb(0.5f), 0.1f)});
+  ClosureNetwork changed = network;
+  changed.diffuse.fill(Rgb(0.4f * (1 + static_cast<float>(kChange))));
+  const ClosureSource source = source_of(network, kSeparable);
+  const auto target_of = [&](const ClosureSource& s) {
+    return closure_target(s, highlight_widths(source), radians_from(40.0f), 800);
+  };
+  const ClosureTarget plain = target_of(source), other = target_of(source_of(changed, kSeparable));
+  ClosureTarget target = target_of(source);
+  emphasize_dim(target, kShare);
+
+  double error_sq = 0, root_error_sq = 0, weighted_sq = 0, albedo = 0;
+  for (size_t i = 0; i < plain.lights.padded(); ++i) {
+    const float weight = plain.lights.root_weight()[i];
+    if (weight == 0) continue;
+    const double f = plain.channel(1)[i] / weight, g = other.channel(1)[i] / weight, w = weight * weight;
+    error_sq += w * (g - f) * (g - f);
+    root_error_sq += w * std::pow(std::sqrt(g) - std::sqrt(f), 2);
+    weighted_sq += std::pow(target.lights.root_weight()[i] * (g - f), 2);
+    albedo += static_cast<double>(target.channel(1)[i] * target.integral.data()[i]);
+  }
+  const double sum = error_sq / plain.norm_sq.g + kShare * root_error_sq / plain.albedo.g;
+  EXPECT_NEAR(weighted_sq / target.norm_sq.g * (1 + kShare / 4) / sum, 1, 0.05);
+  EXPECT_GT(root_error_sq / plain.albedo.g, error_sq / plain.norm_sq.g);  // both matter to the sum
+  EXPECT_NEAR(albedo, plain.albedo.g, 1e-4);
+}
+
 TEST(ClosureStarts, EachKindHasTheWidthOfTheMissingLobe) {
   const auto source = source_of(network_of(Rgb(0.2f), {lobe_of(kBeckmann, Rgb(0.3f), 0.06f)}), kSeparable);
   const ClosureBounds bounds;
@@ -131,6 +160,16 @@ TEST(ClosureFit, OneLobeCannotBeTwo) {
   const ClosureFit fit = fit_of(source);
   EXPECT_EQ(fit.network.lobes.size(), 2u);
   EXPECT_LT(fit.mean_error, 0.03);
+}
+
+TEST(ClosureFit, AHazeOfAnotherColorGetsALobe) {
+  const ClosureNetwork haze = network_of(
+      Rgb(0), {lobe_of(kGgx, Rgb(0.6f, 0.5f, 0.4f), 0.05f), lobe_of(kBeckmann, {0.01f, 0.02f, 0.06f}, 0.4f)});
+  const ClosureSource source = source_of(haze, kSeparable);
+  const ClosureFit one = fit_of(source, {.max_lobes = 1}), fit = fit_of(source);
+  EXPECT_LT(one.mean_error, 0.03);  // it adds next to nothing to luminance
+  EXPECT_EQ(fit.network.lobes.size(), 2u);
+  EXPECT_LT(visible_closure_error(fit.errors), 0.5 * visible_closure_error(one.errors));
 }
 
 TEST(ClosureFit, RecoversANarrowHighlight) {

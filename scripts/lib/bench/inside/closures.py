@@ -1,0 +1,72 @@
+"""A measured material under environment maps: by its measurement in Velour, by its nodes in Cycles."""
+
+import os
+
+import bpy
+from velour.export.files import read_model
+from velour.operators import approximation_group
+from velour.operators.measured import file_image
+
+from . import scene as build
+
+
+def main(task):
+    """Writes WORLD-SHAPE-ENGINE.exr for every world and shape; returns the nodes' error."""
+    scene = build.empty((task["size"], task["size"]), 8 * task["samples"], 0)
+    scene.render.film_transparent = True
+    cycles = scene.cycles
+    cycles.samples, cycles.max_bounces, cycles.use_denoising = task["samples"], 0, False
+    cycles.use_adaptive_sampling = False
+    build.camera((0, -7, 1.5), lens=85)
+    materials = [_material(task, masking) for masking in ("closures", None)]
+    for make in (_sphere, _sculpture):
+        shape = make()
+        for world in task["worlds"]:
+            build.world(world)
+            name = f"{os.path.basename(world)}-{shape.name}"
+            for engine, material in (("VELOUR", 0), ("CYCLES", 0), ("CYCLES", 1)):
+                shape.data.materials.clear()
+                shape.data.materials.append(materials[material])
+                scene.render.engine = engine
+                kind = "measurement" if engine == "VELOUR" else ("network", "principled")[material]
+                build.render(task["folder"], f"{name}-{kind}")
+        bpy.data.objects.remove(shape)
+    tree = build.measured_node(materials[0]).group.node_tree
+    return {"relative_l2": tree.velour.relative_l2, "fitted": tree.velour.fitted}
+
+
+def _material(task, masking):
+    """The material with the network, or with one Principled BSDF."""
+    bpy.ops.velour.load_material(filepath=task["model"])
+    material = bpy.data.materials[-1]
+    node = build.measured_node(material)
+    node.velour.measurement, node.velour.use_reference = file_image(task["measurement"]), True
+    with read_model(node.image, "The material") as model:
+        steps = approximation_group.Steps(
+            model,
+            approximation_group.has_layers(),
+            masking and ("separable" if approximation_group.SEPARABLE_SHADOWS else "correlated"),
+        )
+        while job := steps.next_job():
+            job.start().wait()
+        approximation_group.put(node, material, steps.result, model.info())
+    return material
+
+
+def _sphere():
+    bpy.ops.mesh.primitive_uv_sphere_add(segments=256, ring_count=128)
+    return _smooth("sphere")
+
+
+def _sculpture():
+    bpy.ops.mesh.primitive_monkey_add()
+    found = _smooth("Suzanne")
+    found.modifiers.new("Smooth", "SUBSURF").render_levels = 3
+    return found
+
+
+def _smooth(name):
+    found = bpy.context.object
+    found.name = name
+    found.data.polygons.foreach_set("use_smooth", [True] * len(found.data.polygons))
+    return found
