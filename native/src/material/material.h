@@ -60,7 +60,7 @@ class PreparedBrdf {
   ~PreparedBrdf() = default;  // never called
 };
 
-/// What is wanted of a point besides its view and site.
+/// Options of Material::prepare.
 struct PrepareOptions {
   bool value_only = false;          // no sampling; densities may be 0
   bool interpolated_draws = false;  // per-view models sample as in [T09]
