@@ -152,7 +152,7 @@ def cures(folder):
     viewport.show_real_time()
     yield from viewport.until(lambda: viewport.samples() > 0, "the ray tracer shows nothing")
     refusal = viewport.the_one()._refusal
-    assert "lamps" in refusal.sentence, refusal.sentence
+    assert "lights" in refusal.sentence, refusal.sentence
 
     counting, asked = viewport.addon("engine.refusal"), []
     numbers = counting._numbers
@@ -173,7 +173,7 @@ def cures(folder):
 
     _lamp(8)
     yield from viewport.until(lambda: viewport.samples() > 0, "the ray tracer shows nothing")
-    assert "lamps" in viewport.the_one()._refusal.sentence
+    assert "lights" in viewport.the_one()._refusal.sentence
     cube.active_material = scenes.measured_material((_DATA / "paint.velour").read_bytes(), "Paint")
     yield from viewport.real_time_finished()
     assert not viewport.the_one()._refusal
