@@ -152,7 +152,8 @@ class Numbers(BoardTest):
 
         kinds = ("EASE", "CARDINAL", "LINEAR", "B_SPLINE", "CONSTANT")
         self.show([build("RGB", kind) for kind in kinds] + [build("HSV", ""), build("HSL", "")])
-        self.assert_parity("Color Ramp: interpolations and color models")
+        # Cycles reads ramps from a table of 256 colors, Velour computes them.
+        self.assert_parity("Color Ramp: interpolations and color models", up_to=0.3)
 
     def test_ranges(self):
         def build(curve, clamped):
