@@ -1,11 +1,11 @@
 """Tables of Blender's ramps and curves, at the places where Cycles reads them."""
 
-_ROWS = 256  # RAMP_TABLE_SIZE of Cycles, which adds one
+_ROWS = 256  # RAMP_TABLE_SIZE of Cycles, which adds one for curves
 
 
 def ramp_table(ramp):
     """Flat RGBA rows from 0 to 1."""
-    return tuple(value for i in range(_ROWS + 1) for value in ramp.evaluate(i / _ROWS))
+    return tuple(value for i in range(_ROWS) for value in ramp.evaluate(i / (_ROWS - 1)))
 
 
 def curve_range(mapping, count):
