@@ -146,5 +146,12 @@ def source(socket):
 
 
 def first_input(node, *names):
-    """The first input socket with one of these names (Blender renames them between versions), or None."""
-    return next((node.inputs[name] for name in names if name in node.inputs), None)
+    """The first input socket with one of these names (Blender renames them between versions), or None.
+
+    Inputs that the node's settings hide count as well: since 4.1, look-ups by name leave them out.
+    """
+    for name in names:
+        found = node.inputs.get(name) or next((each for each in node.inputs if each.name == name), None)
+        if found is not None:
+            return found
+    return None
