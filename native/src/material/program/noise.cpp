@@ -78,9 +78,9 @@ HWY_INLINE Lanes kept_precise(Lanes x) {
   return select(size < 100000.0f, x, repeated + select(size < 1000000.0f, 0.0f, 0.5f));
 }
 
-/// Gradient noise in about [-1, 1].
+/// Gradient noise in about [-1, 1]. A function of its own: inlined in every fractal it would take a minute to compile.
 template <int N>
-HWY_INLINE Lanes noise_at(const LanesPoint<N>& place) {
+HWY_NOINLINE Lanes noise_at(const LanesPoint<N>& place) {
   constexpr float kScale[] = {0.25f, 0.6616f, 0.982f, 0.8344f};
   LatticeCell<N> cell{{}, {}, place, place};
   for (int i = 0; i < N; ++i) {
@@ -105,7 +105,7 @@ struct Fractal {
 };
 
 template <int N>
-HWY_INLINE Lanes fbm(LanesPoint<N> p, const Fractal& f) {
+HWY_NOINLINE Lanes fbm(LanesPoint<N> p, const Fractal& f) {
   const Lanes whole = f.whole(), rest = f.rest();
   Lanes sum = 0.0f, amplitude = 1.0f, total = 0.0f, scale = 1.0f;
   for (int i = 0;; ++i) {
@@ -129,7 +129,7 @@ HWY_INLINE Lanes fbm(LanesPoint<N> p, const Fractal& f) {
 }
 
 template <int N>
-HWY_INLINE Lanes multifractal(LanesPoint<N> p, const Fractal& f) {
+HWY_NOINLINE Lanes multifractal(LanesPoint<N> p, const Fractal& f) {
   const Lanes whole = f.whole(), rest = f.rest();
   Lanes value = 1.0f, power = 1.0f;
   for (int i = 0;; ++i) {
@@ -144,7 +144,7 @@ HWY_INLINE Lanes multifractal(LanesPoint<N> p, const Fractal& f) {
 }
 
 template <int N>
-HWY_INLINE Lanes hetero_terrain(LanesPoint<N> p, const Fractal& f) {
+HWY_NOINLINE Lanes hetero_terrain(LanesPoint<N> p, const Fractal& f) {
   const Lanes whole = larger(f.whole(), 1.0f), rest = f.rest();
   Lanes value = f.offset + noise_at(p), power = f.roughness;
   p = p * f.lacunarity;
@@ -161,7 +161,7 @@ HWY_INLINE Lanes hetero_terrain(LanesPoint<N> p, const Fractal& f) {
 }
 
 template <int N>
-HWY_INLINE Lanes hybrid_multifractal(LanesPoint<N> p, const Fractal& f) {
+HWY_NOINLINE Lanes hybrid_multifractal(LanesPoint<N> p, const Fractal& f) {
   const Lanes whole = f.whole(), rest = f.rest();
   Lanes value = 0.0f, power = 1.0f, weight = 1.0f;
   for (int i = 0;; ++i) {
@@ -179,7 +179,7 @@ HWY_INLINE Lanes hybrid_multifractal(LanesPoint<N> p, const Fractal& f) {
 }
 
 template <int N>
-HWY_INLINE Lanes ridged_multifractal(LanesPoint<N> p, const Fractal& f) {
+HWY_NOINLINE Lanes ridged_multifractal(LanesPoint<N> p, const Fractal& f) {
   const auto ridge = [&] {
     const Lanes height = f.offset - magnitude(noise_at(p));
     return height * height;
