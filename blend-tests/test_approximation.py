@@ -21,6 +21,8 @@ _NATIVE = {
     "NodeGroupInput",
     "NodeGroupOutput",
     "NodeReroute",
+    "ShaderNodeDisplacement",
+    "ShaderNodeSeparateXYZ",
     "ShaderNodeAddShader",
     "ShaderNodeBsdfAnisotropic",
     "ShaderNodeBsdfDiffuse",
@@ -227,7 +229,7 @@ class Relief(WithoutVelour):
 
     def test_their_image_is_of_numbers_and_goes_with_the_group(self):
         group = group_of(self.material).node_tree
-        colors, normals = _images(group)
+        colors, normals, *_rest = _images(group)
         self.assertFalse(colors.colorspace_settings.is_data)
         self.assertTrue(normals.colorspace_settings.is_data)
         self.assertTrue(normals.packed_file)
@@ -235,12 +237,50 @@ class Relief(WithoutVelour):
         np.testing.assert_allclose((tilts**2).sum(-1), 1, atol=0.02)
         bpy.ops.velour.approximate()
         names = [image.name for image in bpy.data.images if image.name.startswith(f"{self.material.name} ")]
-        self.assertEqual(len(names), 2, "the ones before stay")
+        count = sum(image is not None for image in _images(group))
+        self.assertEqual(len(names), count, "the ones before stay")
+
+    def test_its_relief_displaces_in_place_of_the_normals(self):
+        tree, output = group_of(self.material).node_tree, self.material.node_tree.nodes["Material Output"]
+        before, kinds = scenes.render(self.folder), _kinds(tree)
+        images = _images(tree)
+        bpy.ops.velour.displace()
+        self.assertEqual(output.inputs["Displacement"].links[0].from_node, group_of(self.material))
+        self.assertEqual(_method(self.material), "BOTH")
+        self.assertFalse(_node(tree, "ShaderNodeNormalMap").outputs[0].is_linked)
+        self.assertEqual(_images(tree), images)
+        np.testing.assert_array_equal(scenes.render(self.folder), before)
+        bpy.ops.velour.displace(enable=False)
+        self.assertFalse(output.inputs["Displacement"].is_linked)
+        self.assertEqual(_method(self.material), "BUMP")
+        self.assertTrue(_node(tree, "ShaderNodeNormalMap").outputs[0].is_linked)
+        self.assertEqual((_images(tree), _kinds(tree)), (images, kinds))
+
+    def test_its_height_follows_the_size_of_its_tile(self):
+        """The plane is 2 m wide, and its texture coordinates have half a unit per meter."""
+        bpy.ops.velour.displace()
+        placement = scenes.velour_node(self.material).velour.placement
+        placement.uv_density, placement.repeats = (0.5, 0.5), (2.0, 2.0)  # a tile of 1 m
+        _subdivide(self.obj, 6)
+        bpy.context.scene.camera.rotation_euler = np.pi / 2, 0, 0
+        bpy.context.scene.camera.location = 0, -5, 0
+        look = importlib.import_module(f"{inputs.ADDON}.operators.approximation_look")
+        wanted = look.fitted(group_of(self.material).node_tree)["height"]
+        bpy.context.scene.camera.data.ortho_scale = 4 * wanted
+        scenes.set_world(strength=0.0)
+        shown = self._cycles("side")[:, 2:-2].max(-1) > 0.01  # blocks that the surface covers
+        covered = shown.any(axis=1).mean() * 4 * wanted
+        self.assert_close(covered, wanted, 0.35 * wanted)
+
+    def test_the_error_is_stated_by_view(self):
+        state = group_of(self.material).node_tree.velour
+        self.assertTrue(all(0 < error < 1 for error in state.by_view_angle), list(state.by_view_angle))
+        self.assert_close(state.relative_l2, np.mean(state.by_view_angle[:4]), 1e-6)
 
     def test_what_is_flat_has_none(self):
         self._import(self._model_file(inputs.quarters_model(), "quarters"))
         kinds = {node.bl_idname for node in group_of(self.material).node_tree.nodes}
-        self.assertEqual(len(_images(group_of(self.material).node_tree)), 1)
+        self.assertIsNone(_images(group_of(self.material).node_tree).normals)
         self.assertNotIn("ShaderNodeNormalMap", kinds)
 
 
@@ -378,7 +418,7 @@ class Exported(Approximation):
         (material,), (image,) = written["materials"], written["images"]
         self.assertEqual(material["pbrMetallicRoughness"]["baseColorTexture"]["index"], 0)
         picture = scenes.read(self.folder / unquote(image["uri"]))
-        ours = _images(group_of(self.material).node_tree)[0]
+        ours = _images(group_of(self.material).node_tree).colors
         self.assertEqual(picture.shape[:2], tuple(ours.size)[::-1])
         self.assertGreater(picture[..., :3].std(), 0.05)
 
@@ -393,7 +433,7 @@ class Exported(Approximation):
         path = self.folder / unquote(written["images"][images[1]]["uri"])
         picture = bpy.data.images.load(str(path), check_existing=False)
         picture.colorspace_settings.is_data = True
-        ours = _images(group_of(self.material).node_tree)[1]
+        ours = _images(group_of(self.material).node_tree).normals
         np.testing.assert_allclose(picture.pixels, ours.pixels, atol=1.5 / 255)
         self.assertGreater(np.std(np.array(ours.pixels).reshape(-1, 4)[:, 0]), 0.05)
 
@@ -429,8 +469,18 @@ def _node(group, idname):
 
 
 def _images(group):
-    """Colors and normals."""
-    return group_module().images(group)
+    """The TileImages of a group."""
+    return importlib.import_module(f"{inputs.ADDON}.operators.approximation_image").images_of(group)
+
+
+def _subdivide(obj, times):
+    modifier = obj.modifiers.new("Subdivision", "SUBSURF")
+    modifier.subdivision_type, modifier.levels, modifier.render_levels = "SIMPLE", times, times
+
+
+def _method(material):
+    owner = material if hasattr(material, "displacement_method") else material.cycles
+    return owner.displacement_method
 
 
 def _kinds(group):

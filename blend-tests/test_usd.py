@@ -145,7 +145,7 @@ class Images(Usd):
     def test_it_is_beside_the_file(self):
         from pxr import UsdUtils
 
-        ours = module("approximation_group").images(self._quarters())[0]
+        ours = module("approximation_image").images_of(self._quarters()).colors
         material, _values, _stage = self._exported()
         named = self._node(material, "Velour_Color").GetInput("file").Get().path
         picture = scenes.read(self.folder / named)
@@ -165,7 +165,7 @@ class Images(Usd):
             def get_stage():
                 return stage
 
-        image = module("approximation_group").images(tree)[0]
+        image = module("approximation_image").images_of(tree).colors
         named = module("usd_nodes").exported(Context, image)
         again = bpy.data.images.load(str(self.folder / named))
         np.testing.assert_array_equal(np.array(again.pixels[:]), np.array(image.pixels[:]))

@@ -11,8 +11,8 @@ import numpy as np
 from ..native import Job, Model, model_peer_job
 from .approximation_map import map_job, map_of, size_of
 from .closures import closures_of_fit, closures_of_ggx
-from .normal_map import NormalMapJob
 from .read_job import ReadJob
+from .tile_maps import TileMapsJob
 
 _GRAZING = math.cos(math.radians(82))  # cosine at which a metal's tint is specified [KHE21]
 _LEAST_DIFFUSE = 0.002  # a base with a smaller albedo is not worth a node
@@ -27,7 +27,10 @@ class Approximation(NamedTuple):
     turned: bool = False  # the rougher direction is y
     diffuse: tuple = (0.0, 0.0, 0.0)  # color of an added diffuse base
     color_map: np.ndarray | None = None  # RGBA of a tile, replaces the base color
-    normal_map: np.ndarray | None = None  # unit normals along the tile; None: not worth it
+    # Further maps of the tile, as in core/tile_maps; None: not worth it.
+    normal_map: np.ndarray | None = None
+    roughness_map: np.ndarray | None = None
+    height_map: np.ndarray | None = None
     tile_metres: tuple | None = None
     closures: dict | None = None  # of a BRDF (core/closures.py), which replace the Principled BSDF in nodes
     relative_l2: float | None = None  # of the nodes, against the model; None: not fitted
@@ -87,12 +90,16 @@ class Steps:
                 yield job
                 picture = job.read_pass("Combined")
             colors = map_of(picture, values["principled"]["base_color"])
-            yield (job := NormalMapJob(model, values["principled"], values.get("diffuse"), colors))
+            yield (job := TileMapsJob(model, values["principled"], values.get("diffuse"), colors))
+            maps = job.result()
             values |= {
                 "color_map": colors,
-                "normal_map": job.result().normals,
+                "normal_map": maps.normals,
+                "roughness_map": maps.roughness,
+                "height_map": maps.height,
                 "tile_metres": info.get("tile_metres"),
             }
+            report = {"relative_l2": maps.relative_l2, "by_view_angle": maps.by_view_angle}
         elif masking is not None:
             if isotropic:
                 yield (fitting := ReadJob(lambda: model.closures(masking=masking)))

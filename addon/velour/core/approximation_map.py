@@ -9,6 +9,7 @@ from ..native import Job, Model, Scene, render_job
 _MOST_TEXELS = 4096  # along a side
 _SAMPLES = 64
 _CORNERS = np.array([(-1, -1, 0), (2, -1, 0), (2, 2, 0), (-1, 2, 0)], np.float32)  # a tile and its neighbors
+CENTER = (0.5, 0.5, 0.0)
 _TRIANGLES = np.array([(0, 1, 2), (0, 2, 3)], np.uint32)
 
 

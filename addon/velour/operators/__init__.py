@@ -22,6 +22,7 @@ from .compare import VELOUR_OT_compare
 from .compress_btf import VELOUR_OT_compress_btf
 from .convert import VELOUR_OT_convert_materials
 from .copy_cycles_settings import VELOUR_OT_copy_cycles_settings
+from .displace import VELOUR_OT_displace
 from .estimate_capture import VELOUR_OT_estimate_capture
 from .estimate_fit import VELOUR_OT_estimate_fit
 from .estimate_votf import VELOUR_OT_estimate_votf
@@ -47,6 +48,7 @@ CLASSES = (
     VELOUR_OT_fit,
     VELOUR_OT_fit_for_scene,
     VELOUR_OT_approximate,
+    VELOUR_OT_displace,
     VELOUR_OT_convert_materials,
     VELOUR_OT_cancel_fit,
     VELOUR_OT_cancel_waiting,

@@ -8,9 +8,22 @@ from ..export.shaders.readers import SEPARABLE_SHADOWS
 from ..export.uv_maps import placed_by
 from ..properties.approximation_state import VIEW_ANGLES
 from . import approximation_look, closure_network, group_inputs
-from .approximation_image import add_image, add_mapping, add_normals, add_texture, is_open
+from .approximation_image import (
+    COLORS,
+    HEIGHT,
+    NORMALS,
+    ROUGHNESS,
+    TileImages,
+    add_images,
+    add_mapping,
+    add_texture,
+    images_of,
+    is_open,
+)
 from .look_nodes import LookNodes
 
+_NO_IMAGES = TileImages()
+DISPLACEMENT = "Displacement"  # output of the group, if its tile has a relief
 FRAME = "Other Engines"  # contains the nodes that are replaced; an artist's own nodes are outside of it
 
 
@@ -34,42 +47,54 @@ def put(node, material, approximation, info=None, model=""):
 
     info: the model's, None without a model. model: SHA-256 of the model that is approximated.
     """
-    tree, colors, normals = node.group.node_tree, None, None
+    tree = node.group.node_tree
     fed = _clear(tree)  # first, to free the names of the images
-    if approximation.color_map is not None:
-        colors = add_image(f"{tree.name} approximation", approximation.color_map)
-        if approximation.normal_map is not None:
-            normals = add_normals(f"{tree.name} normals", approximation.normal_map)
+    images = add_images(tree.name, approximation)
     _remember(tree.velour, approximation, model)
-    shows_behind = colors is not None and is_open(approximation.color_map)
-    build(node, material, info or {}, colors, normals, shows_behind, fed)
+    is_seen_through = images.colors is not None and is_open(approximation.color_map)
+    build(node, material, info or {}, images, is_seen_through, fed)
 
 
-def build(node, material, info, colors=None, normals=None, shows_behind=False, fed=()):
+def build(node, material, info, images=_NO_IMAGES, is_seen_through=False, fed=()):
     """Builds the nodes from the state of a MeasuredNode's group.
 
-    colors, normals: images of a tile. fed: sockets to link to the result, beside those that the former nodes
-    feed.
+    images: TileImages. fed: sockets to link to the result, beside those that the former nodes feed.
     """
-    tree = node.group.node_tree
-    fed = {*fed, *_clear(tree)}
+    fed = {*fed, *_clear(node.group.node_tree)}
     put_inputs(node, material, info)
+    _build(node.group.node_tree, material, images, is_seen_through, fed)
+
+
+def rebuild(node, material):
+    """Builds the nodes of a MeasuredNode's group once more, from its state and its images."""
+    tree = node.group.node_tree
+    images, is_seen_through = images_of(tree), shows_behind(tree)
+    _build(tree, material, images, is_seen_through, _clear(tree, keeps_images=True))
+
+
+def _build(tree, material, images, is_seen_through, fed):
     source, sink = _only(tree, "NodeGroupInput", (-1300, 0)), _only(tree, "NodeGroupOutput", (600, 0))
     others = set(tree.nodes)
     fitted = approximation_look.fitted(tree)
     if fitted.get("closures"):
         shader = _network(tree, source, fitted["closures"])
     else:
-        shader = _principled(tree, source, fitted, colors, normals, shows_behind)
+        shader = _principled(tree, source, sink, fitted, images, is_seen_through)
     frame = tree.nodes.new("NodeFrame")
     frame.name = frame.label = FRAME
     for added in set(tree.nodes) - others - {frame}:
         added.parent = added.parent or frame
     for socket in fed if sink.inputs[0].is_linked else {*fed, sink.inputs[0]}:
         tree.links.new(shader, socket)
-    if shows_behind and hasattr(material, "shadow_method"):  # EEVEE before 4.2 requires it
+    if is_seen_through and hasattr(material, "shadow_method"):  # EEVEE before 4.2 requires it
         material.blend_method = material.shadow_method = "HASHED"
     approximation_look.follow(material)
+
+
+def shows_behind(tree):
+    """Whether the nodes of a group are transparent in places."""
+    alphas = (node.inputs["Alpha"] for node in tree.nodes if node.bl_idname == "ShaderNodeBsdfPrincipled")
+    return any(alpha.is_linked for alpha in alphas)
 
 
 def put_inputs(node, material, info):
@@ -79,12 +104,6 @@ def put_inputs(node, material, info):
     approximation_look.follow(material)
 
 
-def images(tree):
-    """The images of a tile's colors and normals, each only if there is one."""
-    textures = [node for node in tree.nodes if node.bl_idname == "ShaderNodeTexImage"]
-    return [node.image for node in textures if node.image and not node.velour.enabled]
-
-
 def _network(tree, source, closures):
     """Adds the closures of a BRDF; returns their output."""
     names = {"tint": "Tint", "normal": "Normal", "exposure": "Exposure", "roughness": "Roughness Offset"}
@@ -92,24 +111,30 @@ def _network(tree, source, closures):
     return closure_network.build(tree, closures, rotation=source.outputs.get("Rotation"), **controls)
 
 
-def _principled(tree, source, fitted, colors, normals, shows_behind):
+def _principled(tree, source, sink, fitted, images, is_seen_through):
     """Adds a Principled BSDF, and images of a tile; returns their output."""
     look = LookNodes(tree, source)
     shader, base = tree.nodes.new("ShaderNodeBsdfPrincipled"), None
     shader.distribution = "GGX"  # as fitted: without multiple scattering between facets
-    _feed_values(tree, shader, fitted, look)
+    tiles = add_mapping(tree, source, look) if images.colors is not None else None
+    rough = (
+        add_texture(tree, images.roughness, tiles, ROUGHNESS).outputs["Color"] if images.roughness else None
+    )
+    _feed_values(tree, shader, fitted, look, rough)
     if max(fitted["diffuse"]) > 0:
         base = tree.nodes.new("ShaderNodeBsdfDiffuse")
         _feed(tree, base.inputs["Color"], fitted["diffuse"], look.color(fitted["diffuse"]))
     relief = source.outputs["Normal"]
-    if colors is not None:
-        tiles = add_mapping(tree, source, look)
-        texture = add_texture(tree, colors, tiles)
+    if tiles is not None:
+        texture = add_texture(tree, images.colors, tiles, COLORS)
         tree.links.new(look.color(texture.outputs["Color"]), shader.inputs["Base Color"])
-        if shows_behind:
+        if is_seen_through:
             tree.links.new(texture.outputs["Alpha"], shader.inputs["Alpha"])
-        if normals is not None:
-            relief = _relief(tree, add_texture(tree, normals, tiles, -320), source)
+        if images.normals is not None:
+            bent = _relief(tree, add_texture(tree, images.normals, tiles, NORMALS), source)
+            relief = relief if tree.velour.displaces else bent
+        if images.height is not None:
+            _displace(tree, source, sink, add_texture(tree, images.height, tiles, HEIGHT))
     for socket in filter(None, map(_normal, (shader, base))):
         tree.links.new(relief, socket)
     tree.links.new(relief, first_input(shader, "Coat Normal", "Clearcoat Normal"))
@@ -120,8 +145,11 @@ def _normal(shader):
     return shader and shader.inputs["Normal"]
 
 
-def _feed_values(tree, shader, fitted, look):
-    """Sets the sockets of a Principled BSDF as fitted, and links what the look changes."""
+def _feed_values(tree, shader, fitted, look, rough=None):
+    """Sets the sockets of a Principled BSDF as fitted, and links what the look changes.
+
+    rough: socket of a map that replaces the roughness.
+    """
     values = fitted["principled"]
     for name, value in values.items():
         approximation_look.set_value(shader, name, value)
@@ -129,7 +157,7 @@ def _feed_values(tree, shader, fitted, look):
     inputs = {
         "base_color": look.color(values["base_color"]),
         "specular": look.weight(values["specular"]),
-        "roughness": look.roughness(roughness),
+        "roughness": look.roughness(roughness if rough is None else rough),
     }
     if values["coat"] > 0:
         inputs["coat"] = look.weight(values["coat"])
@@ -137,7 +165,7 @@ def _feed_values(tree, shader, fitted, look):
     if has_layers() and values["metallic"] < 1:
         inputs["specular_tint"] = look.tint(values["specular_tint"], values["metallic"])
     shader.inputs["IOR"].default_value = 1.5  # levels are fitted for it; Blender 4.0's default is 1.45
-    if amount > 0:
+    if amount > 0 and rough is None:
         inputs["roughness"], anisotropic = look.anisotropic(roughness, amount)
         _feed(tree, shader.inputs["Anisotropic"], amount, anisotropic)
         turns = look.turns(0.25 if fitted["turned"] else 0.0)
@@ -166,6 +194,30 @@ def _relief(tree, texture, source):
     tree.links.new(texture.outputs["Color"], turn.inputs["Vector"])
     tree.links.new(turn.outputs["Vector"], relief.inputs["Color"])
     return relief.outputs["Normal"]
+
+
+def _displace(tree, source, sink, texture):
+    """Adds the relief to the group's output Displacement, for surfaces whose material uses it.
+
+    Its height is in proportion to the width of a tile; approximation_look.follow() sets it for one repeat.
+    """
+    kinds = ("Displacement", "SeparateXYZ", "Math", "Math")
+    relief, repeats, size, height = (tree.nodes.new(f"ShaderNode{kind}") for kind in kinds)
+    for number, node in enumerate((height, size, repeats, relief)):
+        node.location = -720 + 180 * number, -1300
+    size.operation, height.operation = "DIVIDE", "MULTIPLY"
+    height.label = approximation_look.HEIGHT
+    for output, socket in (
+        (source.outputs["Scale"], height.inputs[0]),
+        (height.outputs[0], size.inputs[0]),
+        (source.outputs["Repeats"], repeats.inputs[0]),
+        (repeats.outputs["X"], size.inputs[1]),
+        (size.outputs[0], relief.inputs["Scale"]),
+        (texture.outputs["Color"], relief.inputs["Height"]),
+    ):
+        tree.links.new(output, socket)
+    group_inputs.put_output(tree, DISPLACEMENT, "Vector")
+    tree.links.new(relief.outputs[0], sink.inputs[DISPLACEMENT])
 
 
 def _with_base(tree, shader, base):
@@ -197,14 +249,18 @@ def _only(tree, idname, location):
     return found
 
 
-def _clear(tree):
-    """Removes the nodes of an approximation, and images that only they use; returns the sockets they fed."""
-    found, ours = images(tree), {node for node in tree.nodes if _is_built(node)}
-    fed = [link.to_socket for link in tree.links if link.from_node in ours and link.to_node not in ours]
+def _clear(tree, keeps_images=False):
+    """Removes the nodes of an approximation, and images that only they use.
+
+    Returns the sockets that its shader fed.
+    """
+    found, ours = images_of(tree), {node for node in tree.nodes if _is_built(node)}
+    leaving = (link for link in tree.links if link.from_node in ours and link.to_node not in ours)
+    fed = [link.to_socket for link in leaving if link.from_socket.type == "SHADER"]
     for node in ours:
         tree.nodes.remove(node)
     for image in found:
-        if image.users == 0:
+        if image is not None and image.users == 0 and not keeps_images:
             bpy.data.images.remove(image)
     return fed
 

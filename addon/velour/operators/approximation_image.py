@@ -1,12 +1,71 @@
-"""Images of an approximation: base color with opacity, and normals."""
+"""Images of a tile's approximation: base color with opacity, normals, roughness and height."""
+
+from typing import NamedTuple
 
 import bpy
 import numpy as np
 
 from ..core import srgb
-from ..core.normal_map import encoded
+from ..core.tile_maps import encoded
 
+COLORS, NORMALS, ROUGHNESS, HEIGHT = ROLES = (
+    "Colors",
+    "Normals",
+    "Roughness",
+    "Height",
+)  # labels of their nodes
 _KEPT_OPAQUE = 0.999  # mean alpha from which on a map counts as opaque except for noise
+
+
+class TileImages(NamedTuple):
+    """None: there is no such image."""
+
+    colors: bpy.types.Image | None = None
+    normals: bpy.types.Image | None = None
+    roughness: bpy.types.Image | None = None
+    height: bpy.types.Image | None = None  # 0 to 1; the Displacement node has the scale
+
+
+def images_of(tree):
+    """The TileImages of a group's nodes."""
+    textures = [node for node in tree.nodes if node.bl_idname == "ShaderNodeTexImage"]
+    found = {_role(node): node.image for node in textures if node.image and not node.velour.enabled}
+    return TileImages(*(found.get(role) for role in ROLES))
+
+
+def _role(node):
+    """Nodes of Velour before 0.2 have no label: only colors and normals had images."""
+    if node.label in ROLES:
+        return node.label
+    return NORMALS if node.image.colorspace_settings.is_data else COLORS
+
+
+def add_images(name, approximation):
+    """The TileImages of an approximation; `name`: their prefix."""
+    found = approximation
+    if found.color_map is None:
+        return TileImages()
+    height = found.height_map
+    return TileImages(
+        add_image(f"{name} approximation", found.color_map),
+        None if found.normal_map is None else add_normals(f"{name} normals", found.normal_map),
+        None if found.roughness_map is None else _add_numbers(f"{name} roughness", found.roughness_map),
+        None if height is None else _add_numbers(f"{name} height", _normalized(height), is_float=True),
+    )
+
+
+def height_range(height):
+    """Height of 1 in the image, in widths of the tile."""
+    return float(np.ptp(height))
+
+
+def _normalized(height):
+    return (height - height.min()) / max(height_range(height), 1e-12)
+
+
+def _add_numbers(name, values, is_float=False):
+    """A packed image of numbers [rows x columns] from 0 to 1; in floats where 256 steps would be seen."""
+    return _packed(name, np.dstack([values] * 3 + [np.ones_like(values)]), is_data=True, is_float=is_float)
 
 
 def add_image(name, pixels):
@@ -22,9 +81,9 @@ def add_normals(name, normals):
     return _packed(name, np.dstack([encoded(normals), np.ones(normals.shape[:2])]), is_data=True)
 
 
-def _packed(name, pixels, alpha=False, is_data=False):
+def _packed(name, pixels, alpha=False, is_data=False, is_float=False):
     rows, columns = pixels.shape[:2]
-    image = bpy.data.images.new(name, columns, rows, alpha=alpha, is_data=is_data)
+    image = bpy.data.images.new(name, columns, rows, alpha=alpha, is_data=is_data, float_buffer=is_float)
     if alpha:
         image.alpha_mode = "CHANNEL_PACKED"
     image.pixels.foreach_set(pixels.astype(np.float32).ravel())
@@ -59,10 +118,10 @@ def add_mapping(tree, source, look):
     return mapping.outputs["Vector"]
 
 
-def add_texture(group, image, tiles, y=0):
+def add_texture(group, image, tiles, role):
     """Adds the image's node; `tiles` is the socket of add_mapping()."""
     texture = group.nodes.new("ShaderNodeTexImage")
-    texture.location = -500, y
+    texture.label, texture.location = role, (-500, -320 * ROLES.index(role))
     texture.image = image
     group.links.new(tiles, texture.inputs["Vector"])
     return texture

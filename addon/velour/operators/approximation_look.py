@@ -18,6 +18,7 @@ from ..export.nodes import (
 )
 from ..export.uv_maps import linked_uv_map, placed_by
 from ..properties import changed
+from .approximation_image import height_range
 
 # The library's names: names of Blender's sockets across versions.
 _SOCKETS = {
@@ -29,6 +30,7 @@ _SOCKETS = {
     "coat": ("Coat Weight", "Clearcoat"),
     "coat_roughness": ("Coat Roughness", "Clearcoat Roughness"),
 }
+HEIGHT = "Height of Relief"  # label of the node with the height for one repeat, in meters
 _NEGLIGIBLE = 1e-6
 
 
@@ -62,6 +64,7 @@ def kept(approximation):
             "anisotropic": approximation.anisotropic,
             "turned": approximation.turned,
             "tile_metres": approximation.tile_metres,
+            "height": 0.0 if approximation.height_map is None else height_range(approximation.height_map),
             "closures": approximation.closures and _rounded(approximation.closures),
         }
     )
@@ -117,6 +120,9 @@ def _place(node):
         for part in group.node_tree.nodes:
             if part.bl_idname in ("ShaderNodeTangent", "ShaderNodeNormalMap"):
                 _set(part, "uv_map", placed_by(node))
+            elif part.label == HEIGHT:
+                height = fitted(group.node_tree)["height"] / (placement.uv_density[0] or 1.0)
+                _set(part.inputs[1], "default_value", height)
 
 
 def socket_of(shader, name):

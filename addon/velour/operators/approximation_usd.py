@@ -7,7 +7,7 @@ import numpy as np
 
 from ..export.color import working_to_rec709
 from ..export.nodes import approximation_node
-from .approximation_group import images
+from .approximation_image import images_of
 from .approximation_look import is_surface, shown
 from .approximation_uv import chain
 from .materialx_usd import READER as MATERIALX_READER
@@ -29,7 +29,7 @@ def write(context, material, usd_material):
     shader = add(usd_material, "Velour_Approximation", "UsdPreviewSurface")
     for name, (kind, value) in _inputs(values).items():
         shader.CreateInput(name, value_type(kind)).Set(value)
-    if images(tree):
+    if images_of(tree).colors:
         _write_images(context, usd_material, shader, tree, values)
     output = shader.CreateOutput("surface", value_type("Token"))
     usd_material.CreateSurfaceOutput().ConnectToSource(output)
@@ -93,15 +93,15 @@ def _write_images(context, usd_material, shader, tree, values):
         return texture, texture.CreateOutput("rgb", value_type("Float3"))
 
     uvs = _write_uvs(usd_material, values.placed)
-    pictures = images(tree)
-    texture, color = texture_of("Velour_Color", pictures[0], "sRGB", working_to_rec709(values.gain))
+    pictures = images_of(tree)
+    texture, color = texture_of("Velour_Color", pictures.colors, "sRGB", working_to_rec709(values.gain))
     shader.CreateInput("diffuseColor", value_type("Color3f")).ConnectToSource(color)
     principled = next(node for node in tree.nodes if node.bl_idname == "ShaderNodeBsdfPrincipled")
     if principled.inputs["Alpha"].is_linked:
         alpha = texture.CreateOutput("a", value_type("Float"))
         shader.CreateInput("opacity", value_type("Float")).ConnectToSource(alpha)
-    if len(pictures) > 1:
-        texture, normals = texture_of("Velour_Normals", pictures[1], "raw", (2.0, 2.0, 2.0))
+    if pictures.normals:
+        texture, normals = texture_of("Velour_Normals", pictures.normals, "raw", (2.0, 2.0, 2.0))
         texture.CreateInput("bias", value_type("Float4")).Set((-1.0, -1.0, -1.0, 0.0))
         shader.CreateInput("normal", value_type("Normal3f")).ConnectToSource(normals)
 

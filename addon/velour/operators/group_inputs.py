@@ -66,6 +66,16 @@ def put(tree, inputs):
             node.inputs[each.name].hide = each.is_hidden
 
 
+def put_output(tree, name, kind):
+    """Gives the tree an output with this name, unless it has one."""
+    if hasattr(tree, "interface"):  # 4.0 and newer
+        items = (item for item in tree.interface.items_tree if item.item_type == "SOCKET")
+        if not any(item.in_out == "OUTPUT" and item.name == name for item in items):
+            tree.interface.new_socket(name=name, in_out="OUTPUT", socket_type=f"NodeSocket{kind}")
+    elif name not in tree.outputs:
+        tree.outputs.new(f"NodeSocket{kind}", name)
+
+
 def _sockets(tree):
     if hasattr(tree, "interface"):  # 4.0 and newer
         return [

@@ -30,8 +30,10 @@ class LookNodes:
         return self.vector("MULTIPLY_ADD", relative, *shares)
 
     def roughness(self, roughness):
-        """Squared alphas add."""
-        return self.math("POWER", self.math("ADD", self._spread, roughness**4), 0.25)
+        """A roughness, or its socket, plus the offset: squared alphas add."""
+        is_socket = hasattr(roughness, "is_output")
+        square = self.math("POWER", roughness, 4.0) if is_socket else roughness**4
+        return self.math("POWER", self.math("ADD", self._spread, square), 0.25)
 
     def anisotropic(self, roughness, anisotropic):
         """Roughness and anisotropy of a highlight; Blender's alphas are r^2 / aspect and r^2 aspect."""

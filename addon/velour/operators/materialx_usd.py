@@ -11,7 +11,7 @@ from ..export.files import read_model
 from ..export.measured_look import constant_look
 from ..export.nodes import approximation_node, velour_node
 from ..properties.approximation_state import VIEW_ANGLES
-from .approximation_group import images
+from .approximation_image import images_of
 from .approximation_look import fitted, is_surface, shown
 from .approximation_uv import affine
 from .usd_nodes import add, coordinate_name, exported, value_type
@@ -33,7 +33,7 @@ def write(context, material, usd_material):
         return False
     tree = approximation_node(material).node_tree
     shader = add(usd_material, "Velour_OpenPBR", "ND_open_pbr_surface_surfaceshader")
-    if images(tree):
+    if images_of(tree).colors:
         _write_values(shader, OpenPbr.of_principled(values.principled), _stored_errors(tree))
         _write_images(context, usd_material, shader, tree, values)
     else:
@@ -92,20 +92,20 @@ def _write_tangent(usd_material, shader, turn):
 def _write_images(context, usd_material, shader, tree, values):
     """Connects images of colors, opacity and normals."""
     uvs = _write_uvs(usd_material, values.placed)
-    pictures = images(tree)
-    color = _texture(usd_material, "Color", "color3", exported(context, pictures[0]), uvs, "srgb_texture")
+    pictures = images_of(tree)
+    color = _texture(usd_material, "Color", "color3", exported(context, pictures.colors), uvs, "srgb_texture")
     dyed = add(usd_material, "Velour_Tint", "ND_multiply_color3")
     _connect(dyed, "in1", "Color3f", color)
     dyed.CreateInput("in2", value_type("Color3f")).Set(tuple(working_to_rec709(values.gain)))
     _connect(shader, "base_color", "Color3f", dyed)
     principled = next(node for node in tree.nodes if node.bl_idname == "ShaderNodeBsdfPrincipled")
     if principled.inputs["Alpha"].is_linked:
-        both = _texture(usd_material, "Opacity", "color4", exported(context, pictures[0]), uvs)
+        both = _texture(usd_material, "Opacity", "color4", exported(context, pictures.colors), uvs)
         alpha = add(usd_material, "Velour_Alpha", "ND_separate4_color4")
         _connect(alpha, "in", "Color4f", both)
         _connect(shader, "geometry_opacity", "Float", alpha, "outa")
-    if len(pictures) > 1:
-        texels = _texture(usd_material, "Normals", "vector3", exported(context, pictures[1]), uvs)
+    if pictures.normals:
+        texels = _texture(usd_material, "Normals", "vector3", exported(context, pictures.normals), uvs)
         relief = add(usd_material, "Velour_Relief", "ND_normalmap_float")
         _connect(relief, "in", "Float3", texels)
         _connect(shader, "geometry_normal", "Float3", relief)

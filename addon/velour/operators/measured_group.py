@@ -4,10 +4,9 @@ import bpy
 
 from ..core.approximation import UNFITTED
 from ..export.nodes import MeasuredNode, active_output, model_texture, nodes_of
-from . import approximation_group
+from . import approximation_group, group_inputs
 
 NODE_NAME = "Velour"
-_SHADER = "NodeSocketShader"
 
 
 def add(material):
@@ -32,10 +31,7 @@ def add(material):
 
 def _new_tree(name):
     tree = bpy.data.node_groups.new(name, "ShaderNodeTree")
-    if hasattr(tree, "interface"):  # 4.0 and newer
-        tree.interface.new_socket(name="BSDF", in_out="OUTPUT", socket_type=_SHADER)
-    else:
-        tree.outputs.new(_SHADER, "BSDF")
+    group_inputs.put_output(tree, "BSDF", "Shader")
     texture = tree.nodes.new("ShaderNodeTexImage")
     texture.name = texture.label = "Model"
     texture.location = 0, 420

@@ -16,5 +16,6 @@ class VelourApproximationState(bpy.types.PropertyGroup):
     fitted: StringProperty()  # JSON from operators/approximation_look
     model: StringProperty()  # SHA-256 of the model's file; empty: no model yet
     relative_l2: FloatProperty(default=-1.0)
+    displaces: BoolProperty()  # the material's Displacement shows the relief, in place of the normal map
     reason: StringProperty()  # a sentence, if the error is large
     by_view_angle: FloatVectorProperty(size=len(VIEW_ANGLES), default=(-1.0,) * len(VIEW_ANGLES))

@@ -4,6 +4,8 @@ import bpy
 
 from ..export.nodes import approximation_node, velour_node
 from ..operators.approximate import VELOUR_OT_approximate
+from ..operators.approximation_image import images_of
+from ..operators.displace import VELOUR_OT_displace
 from ..properties.approximation_state import VIEW_ANGLES
 from .material_panel import MaterialPanel
 from .model_panel import VELOUR_MATERIAL_PT_model, draw_error_by_angle
@@ -38,6 +40,10 @@ class VELOUR_MATERIAL_PT_approximation(MaterialPanel, bpy.types.Panel):
                 context, layout, "The approximation is of another model. Press Refresh.", icon="ERROR"
             )
         layout.operator(VELOUR_OT_approximate.bl_idname, text="Refresh", icon="FILE_REFRESH")
+        if images_of(group.node_tree).height is not None:
+            is_on = state.displaces
+            button = layout.operator(VELOUR_OT_displace.bl_idname, icon="MOD_DISPLACE", depress=is_on)
+            button.enable = not is_on
 
 
 def _digest(image):

@@ -2,7 +2,7 @@
 
 from ..image_nodes import UnsupportedError
 from ..newer import has_nodes
-from ..nodes import active_output, former_node
+from ..nodes import active_output, former_node, model_texture
 from ..plugs import Plug, fed_by, inside, is_measured
 from ..programs import displaced
 from .layer import Factor, black, diffuse, gray, simplified, split
@@ -49,7 +49,7 @@ def surface_layers(material, notes, metres=1.0, opens_measured=False):
 
 def _read_displacement(plug, material, reader):
     """Bends the surface's normal by displacement as bump; notes other displacement."""
-    if plug is None:
+    if plug is None or (_is_relief_of_model(plug) and not reader.opens_measured):
         return
     if _displacement_method(material) != "BUMP":
         reader.notes.add(f"{reader.owner}: displacement is not supported other than as bump; ignored.")
@@ -58,6 +58,11 @@ def _read_displacement(plug, material, reader):
         reader.compiler.displaced_normal = displaced(reader.compiler, plug)
     except UnsupportedError as reason:
         reader.notes.add(f"{reader.owner}: displacement is ignored: {reason}.")
+
+
+def _is_relief_of_model(plug):
+    """Whether a measured group displaces the surface in other engines; its model has the relief."""
+    return bool(plug.groups) and model_texture(plug.groups[-1].node_tree) is not None
 
 
 def _displacement_method(material):

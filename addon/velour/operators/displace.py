@@ -1,0 +1,62 @@
+"""Displaces surfaces by the relief of a BTF in Cycles."""
+
+import bpy
+from bpy.props import BoolProperty, StringProperty
+
+from ..export import ExportError
+from ..export.nodes import active_output
+from . import approximation_group, measured
+from .approximation_image import images_of
+
+
+class VELOUR_OT_displace(bpy.types.Operator):
+    bl_idname = "velour.displace"
+    bl_label = "Displace by Relief"
+    bl_description = (
+        "In Cycles, displace the surface by the relief of the BTF in place of its normal map. The mesh needs"
+        " a Subdivision Surface modifier, with adaptive subdivision if possible. Velour itself shows the BTF"
+    )
+    bl_options = {"REGISTER", "UNDO"}
+
+    enable: BoolProperty(name="Displace", default=True)
+    material: StringProperty(
+        name="Material", description="Name of the material. Empty: the active one", options={"SKIP_SAVE"}
+    )
+
+    def execute(self, context):
+        try:
+            material = measured.wanted_material(context, self.material)
+            node = measured.modelled_node(material)
+            measured.refuse_linked(material)
+            measured.refuse_linked_group(material, node)
+            if node.group is None or images_of(node.group.node_tree).height is None:
+                raise ExportError(
+                    f"Material '{material.name}' has no relief for other engines; press Refresh under"
+                    " Approximation. A flat BTF has none."
+                )
+        except ExportError as error:
+            self.report({"ERROR"}, str(error))
+            return {"CANCELLED"}
+        self._displace(material, node)
+        return {"FINISHED"}
+
+    def _displace(self, material, node):
+        tree = node.group.node_tree
+        tree.velour.displaces = self.enable
+        approximation_group.rebuild(node, material)
+        socket = active_output(material.node_tree, "ShaderNodeOutputMaterial").inputs["Displacement"]
+        ours = node.group.outputs[approximation_group.DISPLACEMENT]
+        if self.enable:
+            material.node_tree.links.new(ours, socket)
+            # Bump shows what the faces of the mesh are too large for.
+            _set_method(material, "BOTH")
+        else:
+            for link in list(socket.links):
+                if link.from_socket == ours:
+                    material.node_tree.links.remove(link)
+            _set_method(material, "BUMP")
+
+
+def _set_method(material, method):
+    owner = material if hasattr(material, "displacement_method") else material.cycles  # 4.1 and newer
+    owner.displacement_method = method
