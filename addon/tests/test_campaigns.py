@@ -113,7 +113,8 @@ def test_models(campaign, capsys):
     small = ("--lobes=1", "--bytes=2000")
     assert campaign.run("models", *small) == 0
     page = campaign.page("models.md")
-    assert "| blue-metallic-paint | parametric |" in page
+    assert "\n| blue-metallic-paint | " in page
+    assert "\n| parametric | " in page
     for picture in ("error_by_lobes", "error_by_bytes"):
         assert (campaign.output / f"models/{picture}.png").stat().st_size > 5000
     assert _kept(campaign, "models", capsys, *small)

@@ -145,7 +145,7 @@ def test_pages_are_old_when_what_they_measure_has_changed(tmp_path):
     assert "no git history" in measured_pages.told(tmp_path)[0]
     subprocess.run(["git", "init", "-q", tmp_path], check=True)
     measured = _commit(tmp_path, "native/src/brdf/formats/load.cpp", "1")
-    page = "docs/results/fit.md"
+    page = "docs/results/models.md"
     _commit(tmp_path, page, f"All numbers come from one run: 2026-11-20, commit {measured},\n")
     assert measured_pages.told(tmp_path) == []
     _commit(tmp_path, "native/src/render/render.cpp", "2")

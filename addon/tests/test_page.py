@@ -12,7 +12,7 @@ from bench import page
 def test_cells_are_templates():
     rows = [{"a": 0.125, "b": 2500, "c": {"d": "x"}}, {"a": None, "b": None, "c": {"d": 1}}]
     found = page.table(rows, "share | kilo | inner", "{a:p} | {b:k.1f} | {c[d]}")
-    assert found == "| share | kilo | inner |\n| --- | --- | --- |\n| 12.50 % | 2.5 | x |\n| - | - | 1 |\n"
+    assert found == "| share | kilo | inner |\n|---|---|---|\n| 12.50 % | 2.5 | x |\n| - | - | 1 |\n"
     assert page.filled("{b}/{b:M.4f}", rows[0]) == "2500/0.0025"
     assert page.filled("{a}/{a:.1f}", rows[1]) == "/-"
 

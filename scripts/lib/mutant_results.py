@@ -96,18 +96,20 @@ def _read(path: Path) -> dict:
 
 
 def table(results: Results, faults: list[Fault]) -> str:
-    """Markdown: a row per fault, including results of older commits, and a list of the commits."""
-    rows = [_row(fault, results.faults.get(fault.name)) for fault in faults]
+    """Markdown: the detected faults of each folder, a line for every other fault, and the commits, which
+    include older ones. Which tests detect a fault is in its patch."""
+    seen: dict[str, list[str]] = {}
+    others = []
+    for fault in faults:
+        found = results.faults.get(fault.name)
+        if found is None or found["digest"] != fault.digest:
+            others.append(f"- {fault.name}: not tried")
+        elif found["state"] == SEEN:
+            seen.setdefault(fault.folder, []).append(fault.name)
+        else:
+            case = f": {found['case']}" if found["state"] == LONG else ""
+            others.append(f"- {fault.name}: {found['state']}{case}")
+    rows = [f"| {folder} | {', '.join(names)} |" for folder, names in sorted(seen.items())]
     commits = sorted({found["commit"][:8] for found in results.faults.values()})
-    header = ["Fault", "Folder", "Seen by", "Seconds"]
-    lines = [f"| {' | '.join(row)} |" for row in (header, ["---"] * len(header), *rows)]
-    return "\n".join([*lines, "", f"Commit: {', '.join(commits) or 'no results yet'}", ""])
-
-
-def _row(fault: Fault, found: dict | None) -> list[str]:
-    if found is None or found["digest"] != fault.digest:
-        return [fault.name, fault.folder, "not tried", ""]
-    seen = ", ".join(filter(None, (found["by"], found["case"]))) if found["by"] else found["state"]
-    if found["state"] == LONG:
-        seen = f"{LONG}: {found['case']}"
-    return [fault.name, fault.folder, seen, f"{found['seconds']:.0f}"]
+    parts = ["\n".join(["| folder | detected faults |", "|---|---|", *rows]), "\n".join(others)]
+    return "\n\n".join([*filter(None, parts), f"Commit: {', '.join(commits) or 'no results yet'}", ""])

@@ -28,8 +28,8 @@ def table(rows: Iterable, header: str, cells: str) -> str:
     field has no format. The format p is a percentage; others may begin with a factor: k and M divide by a
     thousand and a million, m multiplies by a thousand.
     """
-    lines = [header, " | ".join(["---"] * len(header.split("|"))), *(filled(cells, row) for row in rows)]
-    return "".join(f"| {line} |\n" for line in lines)
+    lines = [f"| {line} |\n" for line in (header, *(filled(cells, row) for row in rows))]
+    return "".join([lines[0], "|" + "---|" * len(header.split("|")) + "\n", *lines[1:]])
 
 
 class _Cells(string.Formatter):

@@ -22,6 +22,7 @@ _SCENES = {
     "100,000 instances of a sphere of 992 triangles": {"kind": "instances", "count": 100_000},
     "10,000 objects, each with a mesh of its own": {"kind": "objects", "count": 10_000},
 }
+_NOTABLE = 0.3  # per cent from which an honored feature is named on the page
 _OURS = re.compile(r"Exported .* (\d+) MiB in ([\d.]+) s, including ([\d.]+) s")
 _CYCLES = re.compile(r"Total time spent synchronizing data: ([\d.]+)")
 
@@ -54,17 +55,27 @@ def _export(run: Run, name: str, task: dict) -> dict:
 def write(run: Run, found: dict) -> None:
     rows = found["parity"]
     sentence = f"{provenance.sentence(found['conditions'])} Blender and Cycles {rows[0]['blender']}."
+    honored = [row for row in rows if row["verdict"] == "honored"]
+    groups = list(_groups(honored))
+    conditions = found["conditions"] | {"blender": rows[0]["blender"]}
+    page.write_rows(run.output / "blender_parity.csv", groups, conditions)
     agreeing = page.table(
-        _groups([row for row in rows if row["verdict"] == "honored"]),
-        "honored | features | largest block difference, % | in standard errors",
-        "{group} | {features} | {percent:.2f} | {errors:s}",
+        (group for group in groups if group["percent"] >= _NOTABLE),
+        "honored | scenes | largest block difference, % | in standard errors",
+        "{honored} | {scenes} | {percent:.2f} | {errors:s}",
     )
     others = page.table(
         (row | {"errors": _errors([row])} for row in rows if row["verdict"] != "honored"),
         "feature | verdict | largest block difference, % | in standard errors",
         "{feature} | {verdict} | {percent:.2f} | {errors:s}",
     )
-    parity = f"{agreeing}\n{others}"
+    parity = f"""Honored: {len(honored)} scenes of {len(groups)} features ([CSV](blender_parity.csv)), at most
+{_errors(honored)} standard errors apart. Blocks that noise lets differ by {_NOTABLE} % or more:
+
+{agreeing}
+All others:
+
+{others}"""
     export = page.table(
         found["export"],
         "scene | export, s | Cycles' synchronisation, s | ratio | hierarchies for tracing, s | MiB",
@@ -82,8 +93,8 @@ def _groups(rows: list[dict]) -> Iterator[dict]:
         groups.setdefault(row["feature"].partition(": ")[0], []).append(row)
     for group, own in groups.items():
         features = "; ".join(filter(None, (row["feature"].partition(": ")[2] for row in own)))
-        percent = max(row["percent"] for row in own)
-        yield {"group": group, "features": features, "percent": percent, "errors": _errors(own)}
+        numbers = {"percent": max(row["percent"] for row in own), "errors": _errors(own)}
+        yield {"honored": group, "scenes": len(own), **numbers, "features": features}
 
 
 def _errors(rows: list[dict]) -> str | None:

@@ -10,6 +10,7 @@ import json
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
+from statistics import median
 
 import numpy as np
 from velour.native.table import COMPRESS_METHODS
@@ -368,10 +369,10 @@ class Results:
     def get(self, tile: str, method: str, ratio: int) -> dict | None:
         return self._rows.get((tile, method, ratio))
 
-    def best(self, tile: str, ratio: int, value: str = "psnr") -> str | None:
-        """The method with the largest `value`."""
+    def best(self, tile: str, ratio: int, value: str = "psnr", among: list[str] | None = None) -> str | None:
+        """The method with the largest `value`, of those in `among`."""
         at = [row for row in self.all if (row["tile"], row["ratio"]) == (tile, ratio)]
-        known = [row for row in at if row.get(value) is not None]
+        known = [row for row in at if row.get(value) is not None and row["method"] in (among or self.methods)]
         return max(known, key=lambda row: row[value])["method"] if known else None
 
     def gain(self, tile: str, ratio: int, method: str, other: str, value: str = "psnr") -> float | None:
@@ -427,8 +428,7 @@ def write(run: Run, found: dict) -> None:
     results, conditions = Results(found["rows"]), found["conditions"]
     targets = [target | {"word": page.verdict(target["met"])} for target in verdicts(results)]
     ratio, spp = int(conditions["speed_ratio"]), conditions["speed_spp"].replace(", ", " and ")
-    sections = [_tile(results, tile, ratio, found.get("interpolated", {})) for tile in results.tiles]
-    at = [results.get(tile, method, ratio) for tile in results.tiles for method in results.methods]
+    sections = [_tile(tile, ratio, found.get("interpolated", {})) for tile in results.tiles]
     values = {
         "origin": _origin(conditions),
         "sheet_tiles": SHEET_TILES,
@@ -438,11 +438,12 @@ def write(run: Run, found: dict) -> None:
             targets, "target | where | measured | ", "{target} | {where} | {measured} | {word}"
         ),
         "sections": "\n".join(sections),
+        "errors": _errors(results, ratio),
         "costs": page.table(
-            (row for row in at if row),
-            "tile | method | KB | fit, s | processor s | million evaluations a second and core | "
+            filter(None, (_median_costs(results, method, ratio) for method in _shown(results))),
+            "method | KB | fit, s | processor s | million evaluations a second and core | "
             f"render to {conditions['level']}, processor s | brightness",
-            "{tile} | `{method}` | {bytes:k.0f} | {seconds:.1f} | {processor_seconds:.0f} | "
+            "`{method}` | {bytes:k.0f} | {seconds:.1f} | {processor_seconds:.0f} | "
             "{evaluations:M.2f} | {render_seconds:.2f} | {brightness:.3f}",
         ),
     }
@@ -455,6 +456,19 @@ def write(run: Run, found: dict) -> None:
     panels = [(tile, _curves(results, tile, value)) for value in titles for tile in results.tiles]
     chart, axes = run.output / "images/chart_btf.png", ("raw bytes / bytes of the file", [*titles.values()])
     charts.curves(chart, panels, *axes, columns=len(results.tiles), log="x", shared=False)
+
+
+def _shown(results: Results) -> list[str]:
+    """Methods with rows on the page: not K-CTA of a fixed K."""
+    return [method for method in results.methods if " " not in method] or results.methods
+
+
+def _median_costs(results: Results, method: str, ratio: int) -> dict | None:
+    """Medians over the tiles; None if the method has no model of this size for any."""
+    rows = [row for tile in results.tiles if (row := results.get(tile, method, ratio))]
+    names = ("bytes", "seconds", "processor_seconds", "evaluations", "render_seconds", "brightness")
+    known = {name: [row[name] for row in rows if row.get(name) is not None] for name in names}
+    return {"method": method} | {n: median(v) if v else None for n, v in known.items()} if rows else None
 
 
 def _origin(conditions: Mapping) -> str:
@@ -476,29 +490,22 @@ def _curves(results: Results, tile: str, value: str) -> dict[str, list[tuple[flo
     return curves
 
 
-def _tile(results: Results, tile: str, speed_ratio: int, interpolated: Mapping) -> str:
-    has_flip = any(row.get("flip") is not None for row in results.all)
+def _tile(tile: str, speed_ratio: int, interpolated: Mapping) -> str:
     itself = f"The BTF itself, interpolated at unseen pairs: {interpolated.get(tile, 0):.2f} dB.\n\n"
-    values = {
-        "tile": tile,
-        "speed_ratio": speed_ratio,
-        "itself": itself if tile in interpolated else "",
-        "flip_words": " / mean FLIP" if has_flip else "",
-        "psnr": _by_ratio(results, tile, "psnr", "psnr_unseen", ".2f"),
-        "picture": _by_ratio(results, tile, "picture", "flip", ".3f"),
-    }
+    values = {"tile": tile, "speed_ratio": speed_ratio, "itself": itself if tile in interpolated else ""}
     return page.text("btf_chart_tile", values)
 
 
-def _by_ratio(results: Results, tile: str, first: str, second: str, form: str) -> str:
-    """A row per method, a column per ratio: both values, the second if it is known."""
+def _errors(results: Results, ratio: int) -> str:
+    """A row per method, a column per tile: PSNR of fitted pairs and, if it is known, of unseen ones."""
+    names = _shown(results)
 
-    def cell(method: str, ratio: int) -> str:
+    def cell(method: str, tile: str) -> str:
         row = results.get(tile, method, ratio)
         if row is None:
             return "-"
-        text = " / ".join(f"{row[n]:{form}}" for n in (first, second) if row.get(n) is not None)
-        return f"**{text}**" if first == "psnr" and results.best(tile, ratio) == method else text
+        text = " / ".join(f"{row[n]:.2f}" for n in ("psnr", "psnr_unseen") if row.get(n) is not None)
+        return f"**{text}**" if results.best(tile, ratio, among=names) == method else text
 
-    rows = [{"m": m, "cells": " | ".join(cell(m, r) for r in results.ratios)} for m in results.methods]
-    return page.table(rows, f"method | {' | '.join(f'1:{r}' for r in results.ratios)}", "`{m}` | {cells}")
+    rows = [{"m": m, "cells": " | ".join(cell(m, tile) for tile in results.tiles)} for m in names]
+    return page.table(rows, f"method | {' | '.join(results.tiles)}", "`{m}` | {cells}")

@@ -317,9 +317,9 @@ def write(run: Run, found: dict) -> None:
 
 
 _NO_BOUND = "The bound is left out: the program `product_bound` is not built."
-_BOUND = """Variance: of one light direction at {} hits, over the squared
-mean; exact: proportional to f cos times radiance on the environment's pixels. A pixel has noise of its own
-besides (edges, curvature, visibility), so its relmse gains less."""
+_BOUND = """Variance: of one light direction at {} hits, over the squared mean; exact:
+proportional to f cos times radiance on the environment's pixels. Edges, curvature and visibility add noise,
+so the relmse of a pixel gains less."""
 
 
 def _picture(result: Result) -> str:
@@ -327,7 +327,7 @@ def _picture(result: Result) -> str:
 
 
 def _scene_text(result: Result) -> str:
-    noise = f"relmse of the reference, which is subtracted: {result.about['noise']:.1e}."
+    noise = f"relmse of the reference: {result.about['noise']:.1e}."
     return f"![{result.about['name']}]({_picture(result)})\n\n{noise}\n"
 
 
@@ -342,13 +342,17 @@ def _draw(path: Path, result: Result) -> None:
     charts.curves(path, panels, *axes, levels={"relmse": result.level}, shared=False, title=title)
 
 
+# Curves with a column in the table of equal errors; the pictures and the CSV have all.
+_SHOWN = ("uniform", "light", "mis", "mis-ggx", "product", "mis-dissertation", "mis, random")
+
+
 def _gain(gain: tuple[float, float]) -> str:
     return f"{gain[0]:.2f} ± {gain[1]:.2f}"
 
 
 def _equal_error(results: list[Result]) -> str:
-    """A table with a column per curve."""
-    names, rows = list(results[0].points), []
+    """A table with a column per shown curve."""
+    names, rows = [name for name in _SHOWN if name in results[0].points], []
     for result in results:
         cells = [*map(result.seconds_to_level, names), result.time_ratio("uniform", DEFAULT)]
         texts = " | ".join(map(shown, cells))
@@ -358,7 +362,7 @@ def _equal_error(results: list[Result]) -> str:
 
 
 def _equal_samples(results: list[Result], equal_spp: int, bounded: bool) -> str:
-    every, rows = sorted({p["spp"] for p in results[0].points["product"]}), []
+    every, rows = sorted({p["spp"] for p in results[0].points["product"]})[-2:], []
     for result in results:
         gains = [_gain(result.gain("product", DEFAULT, spp)) for spp in every]
         gained = result.gain(DEFAULT, DISSERTATION, equal_spp)[0]

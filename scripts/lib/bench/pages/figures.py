@@ -114,7 +114,7 @@ def write(run: Run, found: dict) -> None:
     parts = {
         "errors": page.table(
             (line for rows in figures.values() for line in _lines(rows, samplers)),
-            "figure | spp | " + " | ".join(f"relmse {s} | rmse {s} | seconds {s}" for s in samplers),
+            "figure | spp | " + " | ".join(f"relmse {s} | rmse {s}" for s in samplers),
             "{figure} | {spp} | " + " | ".join(f"{{{s}}}" for s in samplers),
         ),
         "references": page.table(
@@ -129,18 +129,19 @@ def write(run: Run, found: dict) -> None:
 
 
 def _lines(rows: list[dict], samplers: list[str]) -> list[dict]:
-    """A line per number of samples, then one of the fit's error."""
+    """Lines of the fewest and the most samples, then one of the fit's error."""
     pictures = [row for row in rows if row["what"] == "picture"]
     lines = []
-    for spp in sorted({row["spp"] for row in pictures}):
+    counts = [row["spp"] for row in pictures]
+    for spp in dict.fromkeys((min(counts), max(counts))):
         own = {r["sampler"]: page.filled(_CELLS, r) for r in pictures if r["spp"] == spp}
         lines.append({"figure": rows[0]["figure"], "spp": spp, **own})
     (fit,) = (page.filled(_CELLS, row) for row in rows if row["what"] == "fit")
     name = f"{rows[0]['figure']}: the fit's error"
-    return [*lines, {"figure": name, "spp": None, **dict.fromkeys(samplers, fit.removesuffix("-"))}]
+    return [*lines, {"figure": name, "spp": None, **dict.fromkeys(samplers, fit)}]
 
 
-_CELLS = "{relmse:.2e} | {rmse:.2e} | {seconds:.1f}"
+_CELLS = "{relmse:.2e} | {rmse:.2e}"
 
 
 def _reference(rows: list[dict], samplers: list[str]) -> dict:

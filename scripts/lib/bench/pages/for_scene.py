@@ -97,8 +97,8 @@ def write(run: Run, found: dict) -> None:
             "material | bytes | reduced | saving | lobes | reduced | seconds | relmse of the full model | "
             "of the reduced one",
             "{material} | {full_parameter_bytes} | {reduced_parameter_bytes} | {saving:.1f} | {full_lobes} | "
-            "{reduced_lobes} | {reduced_seconds:.1f} | {full_relmse:.1e} +- {full_error:.0e} | "
-            "{reduced_relmse:.1e} +- {reduced_error:.0e}",
+            "{reduced_lobes} | {reduced_seconds:.1f} | {full_relmse:.1e} ± {full_error:.0e} | "
+            "{reduced_relmse:.1e} ± {reduced_error:.0e}",
         ),
     }
     part = page.text("for_scene", found["conditions"] | parts)

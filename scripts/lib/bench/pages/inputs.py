@@ -35,10 +35,19 @@ def measure(run: Run) -> None:
 
 
 def _lists(found: dict[str, dict[str, str]]) -> str:
-    """A heading per format, with a line per variant: what Velour does with it."""
-    parts = []
-    for file_format, variants in sorted(found.items()):
-        lines = (f"- {variant}: {verdict}" for variant, verdict in sorted(variants.items()))
-        wrapped = (textwrap.fill(line, 120, subsequent_indent="  ", break_on_hyphens=False) for line in lines)
-        parts.append("\n".join((f"## {file_format}\n", *wrapped)) + "\n")
+    """A heading per format, with a line per variant: what Velour does with it. Formats that are refused as a
+    whole share a heading."""
+    others: dict[str, list[str]] = {}
+    for file_format in sorted(found):
+        if list(found[file_format]) == ["any"]:
+            others.setdefault(found[file_format]["any"], []).append(file_format)
+    parts = [_list(name, found[name]) for name in sorted(found) if list(found[name]) != ["any"]]
+    if others:
+        parts.append(_list("Others", {", ".join(names): verdict for verdict, names in others.items()}))
     return "\n".join(parts)
+
+
+def _list(title: str, verdicts: dict[str, str]) -> str:
+    lines = (f"- {variant}: {verdict}" for variant, verdict in sorted(verdicts.items()))
+    wrapped = (textwrap.fill(line, 120, subsequent_indent="  ", break_on_hyphens=False) for line in lines)
+    return "\n".join((f"## {title}\n", *wrapped)) + "\n"

@@ -128,16 +128,12 @@ def write(run: Run, found: dict) -> None:
     values = {
         "count": len(materials),
         "summary": _summary(materials) + TARGETS,
+        "angles": _angles(materials),
         "errors": _errors(materials),
         "neighbors": _neighbors(float(conditions["load"])),
         "floor": _floor(floor),
     }
-    page.write_parts(run.output, "models.md", "models", models=page.text("models", conditions | values))
-    parts = {"fit": _turned(materials), "ggx": _ggx(materials)}
-    parts["principled"] = _principled(materials, found["principled"])
-    for name, part in parts.items():
-        text = f"{provenance.sentence(conditions)}\n\n{part}"
-        page.write_parts(run.output, f"{name}.md", "models", **{name: text})
+    page.write(run.output, "models.md", page.text("models", conditions | values))
     _draw(run.output / "models", rows, materials)
 
 
@@ -148,10 +144,6 @@ def _models(own: Mapping) -> list[dict]:
 
 _COST_TITLES = " | ".join(COSTS.values())
 _COST_CELLS = " | ".join(f"{{{name}:.0f}}" for name in COSTS)
-_ANGLE_TITLES = " | ".join(f"{angle}°" for angle in ANGLES)
-# Pages of their own have the errors of the peers.
-_WITH_ERRORS = ("noise", "scattered", "parametric")
-_ANGLE_CELLS = " | ".join(f"{{error_{angle}:.4f}}" for angle in ANGLES)
 
 
 def _summary(materials: Mapping) -> str:
@@ -177,57 +169,32 @@ def _summary(materials: Mapping) -> str:
     )
 
 
+def _angles(materials: Mapping) -> str:
+    """Errors of the default model beside the noise of the measurement."""
+
+    def cell(row: Mapping, noise: Mapping, angle: str) -> str:
+        error, own = ("-" if (e := of[f"error_{angle}"]) is None else f"{e:.4f}" for of in (row, noise))
+        return f"**{error}** / {own}" if meets(row, angle, noise) else f"{error} / {own}"
+
+    rows = [
+        {"material": name, "cells": " | ".join(cell(own["parametric"], own["noise"], a) for a in ANGLES)}
+        for name, own in materials.items()
+    ]
+    return page.table(rows, f"material | {' | '.join(f'{a}°' for a in ANGLES)}", "{material} | {cells}")
+
+
 def _errors(materials: Mapping) -> str:
-    def cells(row: Mapping, noise: Mapping) -> dict:
-        texts = {angle: "-" if (e := row[f"error_{angle}"]) is None else f"{e:.4f}" for angle in ANGLES}
-        good = {angle for angle in ANGLES if row is not noise and meets(row, angle, noise)}
-        marked = [f"**{text}**" if angle in good else text for angle, text in texts.items()]
-        whole = "" if row is noise else f"{row['relative_l2']:.4f}"
-        return {**row, "whole": whole, "angles": " | ".join(marked)}
-
-    rows = [cells(own[m], own["noise"]) for own in materials.values() for m in _WITH_ERRORS if m in own]
-    return page.table(
-        rows, f"material | model | relative_l2 | {_ANGLE_TITLES}", "{material} | {model} | {whole} | {angles}"
-    )
-
-
-def _turned(materials: Mapping) -> str:
-    """Per-view models with slices aligned to the mirror direction, beside models with unaligned slices."""
-    errors = "{relative_l2:.4f}, " + " / ".join(f"{{error_{angle}:.4f}}" for angle in ANGLES)
-    rows = []
-    for own in materials.values():
-        turned, mixed = (page.filled(errors, own[model]) for model in ("scattered", UNTURNED))
-        rows.append(own["scattered"] | {"turned": turned, "mixed": mixed})
+    """Errors of every model, and alpha of the GGX lobe."""
+    names = (*table.MODELS, UNTURNED, *PEERS)
+    rows = [
+        own["ggx"] | {"errors": [own[name]["relative_l2"] for name in names]} for own in materials.values()
+    ]
+    cells = " | ".join(f"{{errors[{k}]:.4f}}" for k in range(len(names)))
     return page.table(
         rows,
-        f"material | views, lobes | bytes | turned: all, {' / '.join(ANGLES)} | mixed as they are",
-        "{material} | {views}, {lobes} | {bytes} | {turned} | {mixed}",
+        f"material | {' | '.join(names)} | alpha",
+        f"{{material}} | {cells} | {{alpha:.3f}}",
     )
-
-
-def _ggx(materials: Mapping) -> str:
-    return page.table(
-        (own["ggx"] for own in materials.values()),
-        f"material | alpha | relative_l2 | {_ANGLE_TITLES}",
-        f"{{material}} | {{alpha:.3f}} | {{relative_l2:.4f}} | {_ANGLE_CELLS}",
-    )
-
-
-def _principled(materials: Mapping, values: Mapping) -> str:
-    """The errors, and the fitted parameters."""
-    errors = page.table(
-        (own["principled"] for own in materials.values()),
-        f"material | relative_l2 | {_ANGLE_TITLES}",
-        f"{{material}} | {{relative_l2:.4f}} | {_ANGLE_CELLS}",
-    )
-    names = list(next(iter(values.values())))
-    rows = [
-        {"material": name}
-        | {key: ", ".join(f"{v:.3f}" for v in (x if isinstance(x, list) else [x])) for key, x in own.items()}
-        for name, own in values.items()
-    ]
-    titles, cells = " | ".join(names), " | ".join(f"{{{name}}}" for name in names)
-    return f"{errors}\n{page.table(rows, f'material | {titles}', '{material} | ' + cells)}"
 
 
 def _neighbors(load: float) -> str:

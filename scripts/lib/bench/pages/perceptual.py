@@ -85,7 +85,6 @@ def write(run: Run, found: dict) -> None:
         row["is_below"] = row["flip_mean"] < mean and row["flip_99"] < percentile
         orders.setdefault((row["tolerance"], row["max_lobes"]), []).append(row)
     at = orders[DEFAULT]
-    failed = {row["material"] for row in at if not row["is_below"]}
     parts = {
         "mean_threshold": mean,
         "percentile_threshold": percentile,
@@ -94,8 +93,6 @@ def write(run: Run, found: dict) -> None:
         "below": sum(row["is_below"] for row in at),
         "at_default": len(at),
         "means_below": sum(row["flip_mean"] < mean for row in at),
-        "whole": ", ".join(dict.fromkeys(r["material"] for r in at if r["material"] not in failed)) or "none",
-        "ending": " The others are named below." if failed else "",
         "by_tolerance": page.table(
             (_of_order(*item) for item in orders.items()),
             "tolerance | error, median | error, largest | mean, median | mean, largest | "
@@ -105,9 +102,8 @@ def write(run: Run, found: dict) -> None:
         ),
         "default_table": page.table(
             (row for row in at if not row["is_below"]),
-            "material | scene | error | mean | 99th percentile | noise, mean | 99th percentile",
-            "{material} | {scene} | {relative_l2:.4f} | {flip_mean:.4f} | {flip_99:.4f} | {noise_mean:.4f} | "
-            "{noise_99:.4f}",
+            "material | scene | error | mean | 99th percentile",
+            "{material} | {scene} | {relative_l2:.4f} | {flip_mean:.4f} | {flip_99:.4f}",
         ),
     }
     page.write(run.output, "perceptual.md", page.text("perceptual", conditions | parts))

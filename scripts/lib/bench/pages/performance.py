@@ -123,7 +123,8 @@ def write(run: Run, found: dict) -> None:
         titles = f"per cent of the time of a render | {' | '.join(found['profile'])}"
         cells = "{part} | " + " | ".join(f"{{s[{k}]:.1f}}" for k in range(len(shares)))
         profile = page.text("performance_profile", conditions | {"profile": page.table(rows, titles, cells)})
-    first, kinds = found["lobes"][0]["seconds"], {"0": "Gaussian", "1": "Abel-Poisson"}
+    first = found["lobes"][0]["seconds"]
+    page.write_rows(run.output / "performance_kernels.csv", list(_kernel_rows(found)), conditions)
     values = {
         "neighbors": _neighbors(float(conditions["load"])),
         "pictures": page.table(
@@ -139,27 +140,36 @@ def write(run: Run, found: dict) -> None:
             "{lobes} | {seconds:.2f} | {ns:.1f} | {over:.2f} | {ray_share:.2f}",
         ),
         "evaluation": page.table(
-            _of(kernels, "eval_neighbors"),
-            "lobes a view | directions | ns a lobe | ns a lobe and direction | share of peak",
-            "{parts[1]} | {parts[2]} | {ns_per_lobe:.2f} | {ns_per_lobe_direction:.3f} | {share_of_peak:.2f}",
+            (r for r in _of(kernels, "eval_neighbors") if r["parts"][1] == "16"),
+            "directions | ns a lobe | ns a lobe and direction | share of peak",
+            "{parts[2]} | {ns_per_lobe:.2f} | {ns_per_lobe_direction:.3f} | {share_of_peak:.2f}",
         ),
         "by_target": page.table(
             _of(kernels, "eval_on"),
             "instruction set | ns a lobe and direction",
             "{parts[1]} | {ns_per_lobe_direction:.3f}",
         ),
-        "drawing": page.table(
-            (r | {"kernel": kinds[r["parts"][1]]} for r in _of(kernels, "sample_lobe_mixture")),
-            "kernel | lobes | directions at once | ns a direction",
-            "{kernel} | {parts[2]} | {parts[3]} | {ns_per_direction:.1f}",
-        ),
-        "gathering": page.table(
-            found["gathering"],
-            "lobes a view | ns a camera ray | ns a lobe",
-            "{parts[1]} | {cpu_time:.0f} | {ns_per_lobe:.1f}",
-        ),
     }
     page.write(run.output, "performance.md", page.text("performance", conditions | values))
+
+
+def _kernel_rows(found: Mapping) -> Iterator[dict]:
+    """Rows of the CSV: values and densities, samples of mixtures, gathering of the lobes of neighbors."""
+    kinds = {"0": "Gaussian", "1": "Abel-Poisson"}
+    names = ("task", "kernel", "lobes", "directions")
+    evaluation = ("ns_per_lobe", "ns_per_lobe_direction", "share_of_peak")
+    empty = dict.fromkeys((*names, *evaluation, "ns_per_direction", "ns_per_camera_ray"))
+    for run in _of(found["kernels"], "eval_neighbors"):
+        _, lobes, directions, *_ = run["parts"]
+        values = dict(zip(names, ("evaluate", "Gaussian", lobes, directions), strict=True))
+        yield empty | values | {name: run[name] for name in evaluation}
+    for run in _of(found["kernels"], "sample_lobe_mixture"):
+        _, kernel, lobes, directions, *_ = run["parts"]
+        values = dict(zip(names, ("sample", kinds[kernel], lobes, directions), strict=True))
+        yield empty | values | {"ns_per_direction": run["ns_per_direction"]}
+    for run in found["gathering"]:
+        numbers = {"ns_per_lobe": run["ns_per_lobe"], "ns_per_camera_ray": run["cpu_time"]}
+        yield empty | {"task": "gather", "lobes": run["parts"][1]} | numbers
 
 
 def _neighbors(load: float) -> str:

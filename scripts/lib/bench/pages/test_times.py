@@ -8,7 +8,7 @@ from .. import page, provenance
 from ..run import Run
 from ..velour_cli import ROOT
 
-SETTINGS = {"shown": (5, 5)}  # number of slowest tests shown per group
+SETTINGS = {"shown": (3, 3)}  # number of slowest tests shown per group
 _TIMES = ROOT / "build/release/tests/times.json"
 
 

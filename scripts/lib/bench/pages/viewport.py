@@ -55,52 +55,55 @@ def write(run: Run, found: dict) -> None:
         "seen": SEEN,
         "export": EXPORT,
         "held": f"{1000 * HELD:.0f}",
-        "scenes": "\n".join(_text(scene, result) for scene, result in results.items()),
+        "scenes": "\n".join(f"- {scene}: {SCENES[scene]}" for scene in results),
+        "changes": _changes(results),
+        "more": "".join(map(_more, results.values())),
     }
     part = page.text("viewport", conditions | values)
     page.write_parts(run.output, "viewport.md", "viewport", measured=part)
 
 
-def _text(scene: str, result: dict) -> str:
-    rows = page.table(
-        (_row(name, runs) for name, runs in result["changes"].items()),
-        "change | seen after, s | of it export, s | Blender held up by a redraw, ms",
-        "{name} | {seen} | {export} | {held}",
-    )
-    text = f"""### {SCENES[scene][0].upper()}{SCENES[scene][1:]}
-
-{rows}
-While the object moves on and on: {result["dragged"]:.1f} pictures a second.
-Memory of Blender: {result["mib"]:.0f} MiB.
-"""
-    if "restarts" in result:
-        count, memory = (
-            result["restarts"]["count"],
-            ", ".join(f"{mib:.0f}" for mib in result["restarts"]["mib"]),
-        )
-        text += f"Switched off and on {count} times; MiB after each tenth of them: {memory}.\n"
-    if "real_time" in result:
-        seconds, (width, height) = (
-            statistics.median(result["real_time"]["seconds"]),
-            result["real_time"]["size"],
-        )
-        text += f"""
-In real time ([realtime.md](../engine/realtime.md)) a picture of {width} x {height} of it takes
-{1000 * seconds:.0f} ms, {1 / seconds:.1f} a second, reading it back included; the target is 30 on a modest
-graphics processor.
-"""
-    return text
+def _changes(results: dict[str, dict]) -> str:
+    """A row per change and a column per scene; then images a second, and memory."""
+    rows = [
+        {"change": name, "cells": " | ".join(_cell(result["changes"][name]) for result in results.values())}
+        for name in next(iter(results.values()))["changes"]
+    ]
+    for name, key, form in (
+        ("images a second while an object moves", "dragged", ".1f"),
+        ("memory of Blender, MiB", "mib", ".0f"),
+    ):
+        cells = " | ".join(f"{result[key]:{form}}" for result in results.values())
+        rows.append({"change": name, "cells": cells})
+    return page.table(rows, f"change | {' | '.join(results)}", "{change} | {cells}")
 
 
-def _row(name: str, runs: list[dict]) -> dict:
+def _cell(runs: list[dict]) -> str:
     seen, export, held = (statistics.median(run[key] for run in runs) for key in ("seen", "export", "held"))
     is_first = len(runs) == 1
-    return {
-        "name": name,
-        "seen": _marked(f"{seen:.2f}", not is_first and seen > SEEN),
-        "export": _marked(f"{export:.3f}", is_first and export > EXPORT),
-        "held": _marked(f"{1000 * held:.0f}", held > HELD),
-    }
+    parts = (
+        _marked(f"{seen:.2f}", not is_first and seen > SEEN),
+        _marked(f"{export:.3f}", is_first and export > EXPORT),
+        _marked(f"{1000 * held:.0f}", held > HELD),
+    )
+    return " / ".join(parts)
+
+
+def _more(result: dict) -> str:
+    text = ""
+    if "restarts" in result:
+        count = result["restarts"]["count"]
+        memory = ", ".join(f"{mib:.0f}" for mib in result["restarts"]["mib"])
+        text += f"\nSwitched off and on {count} times; MiB after each tenth of them: {memory}.\n"
+    if "real_time" in result:
+        seconds = statistics.median(result["real_time"]["seconds"])
+        width, height = result["real_time"]["size"]
+        text += f"""
+In real time ([realtime.md](../engine/realtime.md)) an image of {width} x {height} takes
+{1000 * seconds:.0f} ms, {1 / seconds:.1f} a second, reading it back included; the target is 30 on a
+modest graphics processor.
+"""
+    return text
 
 
 def _marked(text: str, is_missed: bool) -> str:

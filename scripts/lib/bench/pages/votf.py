@@ -5,6 +5,7 @@ from __future__ import annotations
 import contextlib
 import math
 from collections.abc import Iterator
+from itertools import starmap
 from pathlib import Path
 from typing import NamedTuple
 
@@ -218,27 +219,38 @@ def shell_errors(picture: np.ndarray, truth: np.ndarray) -> ShellErrors:
 
 def write(run: Run, found: dict) -> None:
     looks = {look: [row for row in found["rows"] if row["look"] == look] for look in ("BTF", "BRDF")}
-    both = [row | {"plain": plain} for row, plain in zip(looks["BTF"], looks["BRDF"], strict=True)]
-    pixels = [row["tile_pixels"] for row in both]
+    both = list(starmap(_numbers, zip(looks["BTF"], looks["BRDF"], strict=True)))
+    page.write_rows(run.output / "votf_numbers.csv", both, found["conditions"])
+    largest = max(row["tile_pixels"] for row in both)
     table = page.table(
-        (row for row in both if row["tile_pixels"] in (min(pixels), max(pixels))),
-        "tile | surface | pixels a tile | outline: smooth / shell | alpha: smooth / shell | "
-        "light, BTF: smooth / shell | light, BRDF: smooth / shell | seconds: geometry / smooth / shell | "
-        "MB: geometry / shell",
-        "{tile} | {surface} | {tile_pixels} | {smooth[outline]:.3f} / {shell[outline]:.3f} | "
-        "{smooth[alpha]:.3f} / {shell[alpha]:.3f} | {smooth[light]:.2f} / {shell[light]:.2f} | "
-        "{plain[smooth][light]:.2f} / {plain[shell][light]:.2f} | "
-        "{geometry[seconds]:.1f} / {smooth[seconds]:.1f} / {shell[seconds]:.1f} | "
-        "{geometry[bytes]:M.1f} / {shell[bytes]:M.1f}",
+        (row for row in both if row["tile_pixels"] == largest),
+        "tile | surface | outline: smooth / shell | alpha: smooth / shell | light, BTF: smooth / shell | "
+        "light, BRDF: smooth / shell | seconds: geometry / smooth / shell | MB: geometry / shell",
+        "{tile} | {surface} | {outline_smooth:.3f} / {outline_shell:.3f} | "
+        "{alpha_smooth:.3f} / {alpha_shell:.3f} | {btf_smooth:.2f} / {btf_shell:.2f} | "
+        "{brdf_smooth:.2f} / {brdf_shell:.2f} | "
+        "{seconds_geometry:.1f} / {seconds_smooth:.1f} / {seconds_shell:.1f} | "
+        "{mb_geometry:.1f} / {mb_shell:.1f}",
     )
     sheets = [
         f"![{name}, {look}](images/{_sheet_name(name, look)})\n"
         for look in looks
         for name in dict.fromkeys(row["tile"] for row in both)
     ]
-    values = {"rows": table, "sheets": "\n".join(sheets)}
+    values = {"largest": largest, "rows": table, "sheets": "\n".join(sheets)}
     values |= {f"{look}_ratios": _ratios(rows) for look, rows in looks.items()}
     page.write(run.output, "votf_numbers.md", page.text("votf", found["conditions"] | values))
+
+
+def _numbers(btf: dict, brdf: dict) -> dict:
+    """A row of the CSV: errors and costs of a picture; light with both looks."""
+    row = {name: btf[name] for name in ("tile", "surface", "tile_pixels")}
+    for error in ("outline", "alpha"):
+        row |= {f"{error}_{way}": btf[way][error] for way in _WAYS[1:]}
+    for name, look in (("btf", btf), ("brdf", brdf)):
+        row |= {f"{name}_{way}": look[way]["light"] for way in _WAYS[1:]}
+    row |= {f"seconds_{way}": btf[way]["seconds"] for way in _WAYS}
+    return row | {f"mb_{way}": btf[way]["bytes"] / 1e6 for way in (_WAYS[0], _WAYS[2])}
 
 
 def _sheet_name(tile: str, look: str) -> str:
