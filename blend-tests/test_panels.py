@@ -10,6 +10,7 @@ import bpy
 from velour.operators import measured
 from velour.operators.background_job import TABS
 from velour.ui import material_panel, model_panel, summaries
+from velour.ui.advanced_panel import VELOUR_MATERIAL_PT_advanced
 from velour.ui.material_panel import VELOUR_MATERIAL_PT_measured
 from velour.ui.viewport_panel import VELOUR_VIEW3D_PT_lighting
 
@@ -165,6 +166,60 @@ class Panels(BlenderTest):
         shown = {name: rows[name] for name in ("Source", "Relative error", "Max albedo", "Reciprocity error")}
         self.assertEqual(list(shown.values()), ["paint", "0.125", "0.75", "0.0625"])
 
+    def test_order_of_a_fitted_material(self):
+        """Name, look, verdict, measurement, fit; settings of the fit are under Advanced."""
+        context = self._of_a_material()
+        node = scenes.velour_node(context.material)
+        node.velour.measurement = measured.file_image(str(inputs.lambert_measurement()))
+        self._read_and_offered(context)
+        layout = self._layout(VELOUR_MATERIAL_PT_measured, context)
+        (verdict,) = (text for text in layout.labels if text.startswith(("Good: ", "Fair: ", "Poor: ")))
+        wanted = ["node_tree", "Tint", "Exposure", "Roughness Offset", verdict, "measurement", "velour.fit"]
+        self.assertEqual([each for each in layout.order if each in wanted], wanted)
+        settings = {"model", "tolerance", "max_lobes", "use_limit_albedo", "use_symmetric", "use_all_data"}
+        self.assertFalse(settings & set(layout.props))
+        self.assertLessEqual(settings, set(self._layout(VELOUR_MATERIAL_PT_advanced, context).props))
+
+    def test_what_is_closed(self):
+        ours = [panel for panel in self._panels_of("material") if panel.__module__.startswith("velour.ui.")]
+        inside = {p.bl_label for p in ours if getattr(p, "bl_parent_id", "") == "VELOUR_MATERIAL_PT_advanced"}
+        self.assertEqual(inside, {"Scene Model", "Model", "Plots", "Approximation"})
+        open_ones = {p.bl_label for p in ours if "DEFAULT_CLOSED" not in getattr(p, "bl_options", ())}
+        wanted = {"Measured Material", "Placement", "Unsupported Features", "Surface"}
+        self.assertEqual(open_ones, wanted)
+
+    def test_the_verdict_and_what_it_advises(self):
+        context = self._of_a_material()
+        node = scenes.velour_node(context.material)
+        node.velour.measurement = measured.file_image(str(inputs.lambert_measurement()))
+        order = {"lobes": [8], "worst": [2.0], "chosen": 0}
+        info = {"model": "parametric", "tolerance": 0.02, "order": order, "warning_codes": []}
+        info["source"] = {"name": "paint", "sha256": "a"}
+        for verdict, said, more in (
+            ({"quality": "good", "reason": None, "value": 0}, "Good: looks like the measurement", None),
+            (
+                {"quality": "fair", "reason": "grazing_views", "value": 60},
+                "Fair: differs at grazing views; more lobes?",
+                16,
+            ),
+        ):
+            found = info | {"verdict": verdict}
+            with mock.patch.object(material_panel, "model_summary", lambda _image, found=found: found):
+                layout = self._layout(VELOUR_MATERIAL_PT_measured, context)
+            self.assertIn(said, layout.labels)
+            fits = [operator for operator in layout.operators if operator.name == "velour.fit"]
+            lobes = [fit.max_lobes for fit in fits if hasattr(fit, "max_lobes")]
+            self.assertEqual(lobes, [more] if more else [])
+
+    def test_a_canceled_fit_says_so(self):
+        context = self._of_a_material()
+        state = context.window_manager.velour
+        state.canceled, state.canceled_subject = "The fit was canceled.", context.material.name
+        self.assertIn(state.canceled, self._layout(VELOUR_MATERIAL_PT_measured, context).labels)
+        state.canceled_subject = "Another"
+        self.assertNotIn(state.canceled, self._layout(VELOUR_MATERIAL_PT_measured, context).labels)
+        state.canceled = ""
+
     def _read_and_offered(self, context, panel=VELOUR_MATERIAL_PT_measured):
         """What the panel offers once the files are read."""
         self._offered(panel, context)
@@ -213,12 +268,20 @@ class Panels(BlenderTest):
             if not getattr(panel, "bl_parent_id", "") and panel.poll(context)
         )
 
+    def _offered(self, panel, context):
+        return [operator.name for operator in self._layout(panel, context).operators]
+
     @staticmethod
-    def _offered(panel, context):
+    def _layout(panel, context):
+        """The drawn panel; sentences are labels, because they are wrapped in windows only."""
+
+        def draw(_context, layout, text, icon="NONE"):
+            layout.label(text=text)
+
         layout = Layout(panel)
-        with mock.patch.object(material_panel, "draw_sentence"):  # it measures text, in a window
+        with mock.patch.object(material_panel, "draw_sentence", draw):
             panel.draw(layout, context)
-        return [operator.name for operator in layout.operators]
+        return layout
 
     def _shown(self, tab, **context):
         """How often each setting stands in a tab."""

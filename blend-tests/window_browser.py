@@ -19,10 +19,7 @@ def start(folder):
     """Called by the harness once the window is there."""
     os.environ["XDG_CACHE_HOME"] = str(folder / "cache")
     _module("core.thumbnails")._SAMPLES = 8  # a pixel: how many there are is tested, not what they look like
-    panel = _module("ui.browser_panel").VELOUR_MATERIAL_PT_browser
-    bpy.utils.unregister_class(panel)
-    panel.bl_options = set()  # open, to be looked at
-    bpy.utils.register_class(panel)
+    window.open_panels("browser")
     tests = (thousand_files, search, use, broken, refreshed, another_folder, nothing)
     window.run(folder, (*tests, loaded_file, switched_off, waits_for_renders))
 

@@ -7,6 +7,7 @@ from support import plots, window
 
 def start(folder):
     """Called by the harness once the window is there."""
+    window.open_panels("advanced", "plots")
     window.run(folder, (compared, marked))
 
 
@@ -20,11 +21,12 @@ def _until_done():
 
 
 def compared(folder):
-    """In an Image Editor of its own, with the view transform; in the panel, its thumbnail."""
+    """In an Image Editor of its own, with the view transform; in the panel, its thumbnail. A script does not
+    block the window."""
     plots.material()
     yield from plots.show("LOBES", scroll=10)
     with window.override():
-        assert bpy.ops.velour.compare("INVOKE_DEFAULT", side=128) == {"RUNNING_MODAL"}
+        assert bpy.ops.velour.compare(side=128) == {"RUNNING_MODAL"}
     assert bpy.context.window_manager.velour.running
     yield from _until_done()
     yield from window.shown("Paint compared")

@@ -18,13 +18,6 @@ def _ui(name):
     return importlib.import_module(f"{inputs.ADDON}.ui.{name}")
 
 
-def _open_panel():
-    panel = _ui("outline_panel").VELOUR_MATERIAL_PT_outline
-    bpy.utils.unregister_class(panel)
-    panel.bl_options = set()
-    bpy.utils.register_class(panel)
-
-
 def _measured():
     summary = _ui("placement_summary")
     for _ in range(_TURNS):
@@ -59,7 +52,7 @@ def outline_of_a_ball(folder):
     bpy.ops.velour.estimate_votf(material=material.name)
     settings = scenes.velour_node(material).velour
     settings.outline_width = 0.1
-    _open_panel()
+    window.open_panels("outline")
     yield from window.show_properties("MATERIAL")
     outline = yield from _measured()
     assert outline.share < 1, outline

@@ -15,6 +15,7 @@ _TURNS = 100  # of 0.1 s that a measurement may take
 def start(folder):
     """Called by the harness once the window is there."""
     parts = (model_rows, repeats, real_size, unknown_size, follows_changes, without_coordinates, brushed)
+    window.open_panels("advanced", "model")
     window.run(folder, parts)
 
 

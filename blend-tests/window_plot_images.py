@@ -12,6 +12,7 @@ _WEAVE = os.path.join(os.path.dirname(__file__), "scenes/data/weave.velour")
 
 def start(folder):
     """Called by the harness once the window is there."""
+    window.open_panels("advanced", "plots")
     if bpy.app.version >= (4, 0):
         window.run(folder, (gone_measurement, btf, enlarged, saved, not_saved))
     else:  # at times it crashes in taking a panel's handler from the window that closes; it hung once

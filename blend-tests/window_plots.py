@@ -13,6 +13,7 @@ SCREEN = "1400x720"
 
 def start(folder):
     """Called by the harness once the window is there."""
+    window.open_panels("advanced", "plots")
     window.run(folder, (each_plot, light_theme, slider, in_the_background, overtaken))
 
 

@@ -248,7 +248,7 @@ def outline_beside_the_window(folder):
 
 
 def _is_model(image):
-    return image.packed_file is not None and image.packed_file.data[:4] == b"v/1\x01"
+    return image.packed_file is not None and image.velour.sha256 != ""
 
 
 def outline_deleted(folder):

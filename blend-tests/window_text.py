@@ -6,13 +6,15 @@ from unittest import mock
 import bpy
 import numpy as np
 
-from support import inputs, window
+from support import inputs, plots, scenes, window
+from support.panels import Layout
 
 _TEXT = (
     "Material 'Paint': the file '/home/someone/measurements/paint/blue-metallic-paint-of-a-car.velour' has"
     " changed since it was chosen; restore it, or accept it with"
     " 'Accept Changed File' in the Material tab."
 )
+_NEW_WINDOW = 320  # width in pixels of the Properties editor of factory settings on a screen of 1920
 _SLACK = 4  # pixels that glyphs leave free at the ends of a line
 _shown = {"text": "", "icon": "NONE", "active": True}
 SCREEN = "1400x720"
@@ -46,7 +48,7 @@ def start(folder):
     """Called by the harness once the window is there."""
     bpy.utils.register_class(_Engine)
     bpy.utils.register_class(_Sentence)
-    window.run(folder, (plain, large))
+    window.run(folder, (plain, large, labels))
 
 
 def _text():
@@ -82,6 +84,45 @@ def _each(folder, scale):
     with mock.patch.object(_text(), "_BESIDE", 0.0):
         lines, pixels, _region = yield from _drawn(folder, f"{scale:g}-control", wide, "INFO")
     assert pixels < _widest(lines) - _SLACK, "the check would not see a line that is cut"
+
+
+def labels(folder):
+    """No name of a setting in the Material tab is cut at the width that the tab has in a new window."""
+    material = plots.material()
+    scenes.velour_node(material).velour.model = "SCATTERED"
+    scenes.use_engine()
+    yield from window.show_properties("MATERIAL")
+    panels = importlib.import_module(f"{inputs.ADDON}.ui.advanced_panel")
+    tab = importlib.import_module(f"{inputs.ADDON}.ui.material_panel")
+    area = max(window.first().screen.areas, key=lambda a: a.width * a.height)
+    region = next(region for region in area.regions if region.type == "WINDOW")
+    found = {}
+    with window.in_context(window=window.first(), area=area, region=region):
+        for panel in (tab.VELOUR_MATERIAL_PT_measured, panels.VELOUR_MATERIAL_PT_advanced):
+            for model in ("SCATTERED", "PARAMETRIC"):
+                scenes.velour_node(material).velour.model = model
+                recorder = _Names(panel)
+                panel.draw(recorder, bpy.context)
+                found |= recorder.names
+    assert len(found) > 10, found
+    room = _NEW_WINDOW - 2.3 * _unit()  # without margins
+    cut = {name for name, share in found.items() if _text()._width(name, _points()) > share * room}
+    assert not cut, cut
+    assert _text()._width("Render from the Measurement of the Material", _points()) > room / 2  # the control
+
+
+class _Names(Layout):
+    """Remembers the names beside settings, and the share of the width that each has."""
+
+    def __init__(self, cls):
+        super().__init__(cls)
+        self.names = {}
+
+    def prop(self, owner, name, text="", **keywords):
+        known = owner.bl_rna.properties[name]
+        # The name of a check box is behind it, in the wider column.
+        self.names[text or known.name] = 0.52 if known.type == "BOOLEAN" else 0.4
+        super().prop(owner, name, text, **keywords)
 
 
 def _widest(lines):

@@ -19,6 +19,7 @@ FIT_KEYS = [
     "albedo_max",
     "reciprocity",
     "measured_reciprocity",
+    "verdict",
     "warnings",
     "warning_codes",
     "order",
@@ -111,7 +112,7 @@ def test_fit_and_compare(measurement_file, tmp_path):
     assert list(result.json["by_view_angle"]) == ANGLES
     assert result.json["bytes"] == path.stat().st_size
     report = velour("compare", measurement_file, path, "--json").json
-    assert list(report) == COMPARE_KEYS
+    assert list(report) == [*COMPARE_KEYS, "verdict"]
     assert list(report["by_view_angle"]) == list(report["noise_by_view_angle"]) == ANGLES
     assert report["relative_l2"] == pytest.approx(result.json["relative_l2"], rel=0.05)
 

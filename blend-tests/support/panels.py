@@ -45,10 +45,12 @@ _BESIDES = (
 
 
 class Layout:
-    """A layout, and the panel or menu with it: remembers which settings, nodes and texts are put there."""
+    """A layout, and the panel or menu with it: remembers which settings, nodes and texts are put there, and
+    their `order`."""
 
     def __init__(self, cls=None):
         self._cls, self.layout, self.props, self.operators, self.labels = cls, self, [], [], []
+        self.order = []
 
     def __getattr__(self, name):
         if hasattr(self._cls, name):
@@ -57,14 +59,20 @@ class Layout:
             return functools.partial(found, self) if is_method else found
         return lambda *_arguments, **_keywords: self
 
-    def prop(self, _owner, name, **_keywords):
+    def prop(self, _owner, name, text="", **_keywords):
         self.props.append(name)
+        self.order.append(text or name)
+
+    def template_ID(self, _owner, name, **_keywords):  # noqa: N802 - as in Blender
+        self.order.append(name)
 
     def label(self, *, text="", **_keywords):
         self.labels.append(text)
+        self.order.append(text)
 
     def operator(self, name, **_keywords):
         self.operators.append(SimpleNamespace(name=name))
+        self.order.append(name)
         return self.operators[-1]
 
 

@@ -104,6 +104,19 @@ def show_properties(tab):
     yield 0.7
 
 
+def open_panels(*names):
+    """Opens panels of the Material tab, before it is first drawn: no script can change the state that Blender
+    remembers after that. All panels are registered again, because a panel finds its parent then."""
+    ui = importlib.import_module(f"{ADDON}.ui")
+    panels = [panel for panel in ui.CLASSES if getattr(panel, "bl_context", "") == "material"]
+    for panel in reversed(panels):
+        bpy.utils.unregister_class(panel)
+    for panel in panels:
+        if panel.__name__.removeprefix("VELOUR_MATERIAL_PT_") in names:
+            panel.bl_options = set()
+        bpy.utils.register_class(panel)
+
+
 def choose_file(path):
     """In the file browser that is open, as by its button."""
     yield from _in_browser(lambda params: _fill(params, path), bpy.ops.file.execute)

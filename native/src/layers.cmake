@@ -24,6 +24,7 @@ layer(btf/eval BELOW btf/model material)
 layer(model BELOW votf/eval usage btf/formats brdf/eval btf/eval LIBRARIES nlohmann_json::nlohmann_json)
 layer(brdf/fit BELOW math/tensor math/optimize model BATCH 6)
 layer(btf/fit BELOW math/tensor math/optimize model BATCH 5)
+layer(brdf/verdict BELOW brdf/fit)
 
 layer(light BELOW math/srbf image)
 layer(scene BELOW votf/eval material light)
@@ -37,4 +38,4 @@ layer(capture/goniometer BELOW brdf/formats scene LIBRARIES PRIVATE Eigen3::Eige
 layer(capture/tile BELOW material)
 layer(votf/capture BELOW capture/btf)
 layer(plot BELOW brdf/fit)
-layer(capi BELOW usage/btf usage/observe realtime capture/goniometer capture/tile votf/capture plot)
+layer(capi BELOW usage/btf usage/observe realtime capture/goniometer capture/tile votf/capture plot brdf/verdict)

@@ -2,22 +2,18 @@
 
 from __future__ import annotations
 
-import math
-
 from .warning_table import sentence
 
-_LOOKS = (  # (largest tolerance, what the errors look like)
-    (0.014, "most images look like the measurement, as they already do at 0.02"),
-    (0.05, "most images look like the measurement"),
-    (0.2, "differences are visible side by side, but hardly from a distance"),
-    (math.inf, "differences are visible"),
-)
+# Warnings of errors, which the verdict replaces where there is one (core/verdict.py).
+_ERRORS = {"views_exceed_tolerance", "fitted_views_exceed_tolerance", "noise_exceeds_tolerance"}
 
 
 def panel_warnings(info: dict) -> list[str]:
     """`info`: a model's info from the library. Errors at the reported views stand for those at all views."""
     codes = {warning["code"] for warning in info["warning_codes"]}
     redundant = {"fitted_views_exceed_tolerance"} if "views_exceed_tolerance" in codes else set()
+    if info.get("verdict"):
+        redundant = _ERRORS
     return [sentence(warning) for warning in info["warning_codes"] if warning["code"] not in redundant]
 
 
@@ -27,12 +23,6 @@ def gain_warning(albedo_max: float | None, gain: tuple[float, float, float]) -> 
     if max(gain) <= 1.0 or brightest <= 1.0:
         return None
     return f"The material reflects up to {brightest:.2g} times the light it receives. Lower Tint or Exposure."
-
-
-def tolerance_words(tolerance: float) -> str:
-    """Describes how visible errors within a tolerance are. Measured in docs/results/perceptual.md."""
-    seen = next(words for most, words in _LOOKS if tolerance <= most)
-    return f"Error of at most {100 * tolerance:.3g} % up to 75\N{DEGREE SIGN}, twice that beyond: {seen}."
 
 
 def roughness_reason(info: dict, use_reference: bool) -> str | None:

@@ -48,8 +48,7 @@ class VELOUR_OT_add_votf(AskedOutline, MakesModel, bpy.types.Operator):
         report = self._report
         material, node = measured.put_model(self._data, self._target, self.report, self.users)
         if node is None:
-            return {"FINISHED"}
-        self._put_approximation(material, node)
+            return None, None
         for sentence in (*self._notes, *sentences(report["warning_codes"])):
             self.report({"WARNING"}, sentence)
         self.report(
@@ -57,7 +56,7 @@ class VELOUR_OT_add_votf(AskedOutline, MakesModel, bpy.types.Operator):
             f"'{material.name}' has the silhouette of '{report['source']}': {data_size(report['bytes'])},"
             f" {report['wrong']:.2%} of rays wrong.",
         )
-        return {"FINISHED"}
+        return material, node
 
 
 def _outline_job(scene, stored, **options):

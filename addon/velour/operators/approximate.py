@@ -14,12 +14,15 @@ from .shared_group import AsksUsers
 
 
 class MakesModel(AsksUsers, JobsInSteps):
-    """Mixin for an operator whose first job makes a model, applied only together with its approximation.
+    """Mixin for an operator whose first job makes a model. The material gets it at once; the approximation
+    for other engines follows.
 
-    The model is for the material of `_target`; `_put()` uses `_data`, `_info` and the first job's `_report`.
+    `_put()` puts the model of `_data`, `_info` and the first job's `_report`; it returns the material and its
+    node, or (None, None) if they are gone.
     """
 
     _data = None  # contents of the model file
+    _user = None  # JobTarget of the material that has the model
 
     def _finish(self):
         if self._data is None:
@@ -27,11 +30,25 @@ class MakesModel(AsksUsers, JobsInSteps):
                 model, self._report = self._job.result_model(), self._job.report()
                 self._seconds = self._job.poll().seconds
             self._data, self._info = model.bytes(), model.info()
+            material, node = self._put()
+            if node is None:
+                return {"FINISHED"}
+            approximation_group.put_inputs(node, material, self._info)
+            self._user, self._what = JobTarget(material, node), "The approximation"
+            self._after_cancel = "; other engines do not show the new model"
             self._steps = approximation_group.steps(model)
-        return None if self._advance() else self._put()
+        if self._advance():
+            return None
+        (material, node), digest = self._user.find(), sha256(self._data)
+        image = node.image if node is not None else None
+        if image is not None and image.velour.sha256 == digest:  # an undo may have taken it back
+            approximation_group.put(node, material, self._steps.result, self._info, digest)
+        return {"FINISHED"}
 
-    def _put_approximation(self, material, node):
-        approximation_group.put(node, material, self._steps.result, self._info, sha256(self._data))
+    def _fail(self, error):
+        """Ends as finished if the material has the model, so that an undo takes it back."""
+        failed = super()._fail(error)
+        return {"FINISHED"} if self._user is not None else failed
 
 
 class VELOUR_OT_approximate(JobsInSteps, bpy.types.Operator):

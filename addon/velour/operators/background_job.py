@@ -34,7 +34,8 @@ class BackgroundJob:
         self._shown_as = subject
         self._ticket = _Ticket()
         _line.append(self._ticket)
-        context.window_manager.velour.waiting = len(_line) - 1
+        state = context.window_manager.velour
+        state.waiting, state.canceled = len(_line) - 1, ""
         try:
             self._has_turn(context)
         except (ExportError, VelourError) as error:
@@ -193,6 +194,9 @@ class OneJob(BackgroundJob):
     def _fail(self, error):
         cancelled = isinstance(error, VelourError) and error.cancelled
         sentence = f"{self._what} was canceled{self._after_cancel}." if cancelled else str(error)
+        if cancelled:
+            state = bpy.context.window_manager.velour
+            state.canceled, state.canceled_subject = sentence, getattr(self, "_subject", "")
         self.report({"WARNING" if cancelled else "ERROR"}, sentence)
         return {"CANCELLED"}
 

@@ -31,6 +31,12 @@ class VELOUR_OT_compare(JobsInSteps, bpy.types.Operator):
 
     _what = "The comparison"
 
+    def execute(self, context):
+        """In a window it runs in the background, as from the button: a script does not block the window."""
+        if bpy.app.background or context.window is None:
+            return super().execute(context)
+        return self.invoke(context, None)
+
     def _begin(self, context):
         material = measured.wanted_material(context, self.material)
         node = measured.modelled_node(material)

@@ -100,9 +100,8 @@ class VELOUR_OT_compress_btf(AskedFit, MakesModel, bpy.types.Operator):
             remember(Path(cache_folder()), self._fit, self._seconds)
         material, node = self._put_anew() if self._target else self._put_new()
         if material is not None:
-            self._put_approximation(material, node)
             self._say_what_it_is(material)
-        return {"FINISHED"}
+        return material, node
 
     def _put_anew(self):
         """Puts the refitted model; returns the material and its node, or (None, None) if they are gone."""

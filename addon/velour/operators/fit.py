@@ -3,6 +3,7 @@
 import bpy
 from bpy.props import EnumProperty, FloatProperty, IntProperty, StringProperty
 
+from ..core import verdict
 from ..core.model_warnings import panel_warnings
 from ..export import ExportError
 from ..export.files import MeasurementReading, absolute_path
@@ -53,6 +54,7 @@ class VELOUR_OT_fit(MakesModel, bpy.types.Operator):
         measured.refuse_linked_group(material, node)
         self._target = JobTarget(material, node)
         self._subject = material.name
+        self._after_cancel = "; the previous model is kept" if node.image is not None else ""
         settings = self._settings(node)
         self._options = {
             "tolerance": settings.tolerance,
@@ -85,13 +87,15 @@ class VELOUR_OT_fit(MakesModel, bpy.types.Operator):
         data, info = self._data, self._info
         material, node = measured.put_model(data, self._target, self.report, self.users)
         if node is None:
-            return {"FINISHED"}
-        self._put_approximation(material, node)
+            return None, None
         measured.after_fit(material, node, self._read_file, self._digest, self.report)
         for warning in panel_warnings(info):
             self.report({"WARNING"}, f"Material '{material.name}': {warning}")
-        self.report({"INFO"}, f"Fitted '{material.name}': {info['lobes']} lobes, {len(data)} bytes.")
-        return {"FINISHED"}
+        line = verdict.line(info)
+        looks = f" {line.text}." if line is not None else ""
+        fitted = f"Fitted '{material.name}': {info['lobes']} lobes, {len(data)} bytes."
+        self.report({"INFO"}, fitted + looks)
+        return material, node
 
 
 def _model_options(settings):

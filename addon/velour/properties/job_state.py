@@ -16,6 +16,8 @@ class VelourJobState(bpy.types.PropertyGroup):
     running: BoolProperty(options={"SKIP_SAVE"})
     cancel_requested: BoolProperty(options={"SKIP_SAVE"})
     subject: StringProperty(options={"SKIP_SAVE"})  # name of what the job works on
+    canceled: StringProperty(options={"SKIP_SAVE"})  # sentence on the last job, if it was canceled
+    canceled_subject: StringProperty(options={"SKIP_SAVE"})
     stage: StringProperty(options={"SKIP_SAVE"})
     seconds_left: FloatProperty(default=-1.0, options={"SKIP_SAVE"})  # below 0: unknown
     waiting: IntProperty(options={"SKIP_SAVE"})  # number of queued jobs

@@ -12,6 +12,7 @@ from . import (
     stock_panels,
     summaries,
 )
+from .advanced_panel import VELOUR_MATERIAL_PT_advanced
 from .approximation_panel import VELOUR_MATERIAL_PT_approximation
 from .browser_panel import VELOUR_MATERIAL_PT_browser
 from .layer_panels import VELOUR_VIEWLAYER_PT_filter, VELOUR_VIEWLAYER_PT_override
@@ -70,10 +71,11 @@ CLASSES = (
     VELOUR_WORLD_PT_mist,
     VELOUR_MATERIAL_PT_measured,
     VELOUR_MATERIAL_PT_placement,
+    VELOUR_MATERIAL_PT_outline,
+    VELOUR_MATERIAL_PT_advanced,
     VELOUR_MATERIAL_PT_scene_model,
     VELOUR_MATERIAL_PT_model,
     VELOUR_MATERIAL_PT_plots,
-    VELOUR_MATERIAL_PT_outline,
     VELOUR_MATERIAL_PT_approximation,
     VELOUR_MATERIAL_PT_notes,
     VELOUR_MATERIAL_PT_browser,

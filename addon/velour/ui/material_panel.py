@@ -2,7 +2,8 @@
 
 import bpy
 
-from ..core.model_warnings import gain_warning, roughness_reason, tolerance_words
+from ..core import verdict
+from ..core.model_warnings import gain_warning, roughness_reason
 from ..engine.engine import VelourRenderEngine
 from ..export.measured_look import INPUTS, constant_look
 from ..export.newer import has_nodes
@@ -18,7 +19,7 @@ from ..operators.convert import VELOUR_OT_convert_materials
 from ..operators.fit import VELOUR_OT_fit
 from ..operators.load_material import VELOUR_OT_load_material
 from ..operators.measured import is_btf
-from ..operators.open_file import VELOUR_OT_open_measurement, VELOUR_OT_open_model
+from ..operators.open_file import VELOUR_OT_open_measurement
 from ..operators.use_as_tile import VELOUR_OT_use_as_tile
 from .draw_btf_fit import draw_btf_fit
 from .preset_grid import draw_presets
@@ -26,7 +27,7 @@ from .progress import draw_progress
 from .summaries import is_changed, measurement_summary, model_summary
 from .text import draw_sentence
 
-_LOOK = ("Tint", "Exposure", "Roughness Offset")
+_LOOK = ("Tint", "Exposure", "Roughness Offset", "Normal", "Scale")
 
 
 class MaterialPanel:
@@ -59,34 +60,39 @@ class VELOUR_MATERIAL_PT_measured(MaterialPanel, bpy.types.Panel):
                 if context.material is None:
                     draw_presets(context, layout)
             return
-        settings = node.velour
         if node.group is not None:
             layout.template_ID(node.group, "node_tree", text="Node Group")
-        layout.template_ID(
-            settings, "measurement", open=VELOUR_OT_open_measurement.bl_idname, text="Measurement"
-        )
-        if settings.measurement is not None:
-            _draw_measurement(context, layout, settings)
-        if node.group is None:
+        else:
             _draw_former(context, layout, context.material)
-        layout.template_ID(node.texture, "image", open=VELOUR_OT_open_model.bl_idname, text="Model")
         info = model_summary(node.image) if node.image is not None else None
         info = info if isinstance(info, dict) else {}
-        if settings.measurement is not None and is_btf(settings.measurement):
-            _draw_btf(context, layout, settings)
-        elif "texels" in info:  # there is no BTF to fit
-            draw_progress(context, layout)
-        else:
-            _draw_brdf(context, layout, node, info)
-        layout.column().prop(settings, "use_reference")
         if node.group is not None:
             _draw_look(context, layout, node, info)
+        _draw_verdict(context, layout, node, info)
+        _draw_measurement(context, layout, node.velour)
+        _draw_fit(context, layout, node, info)
+
+
+def _draw_verdict(context, layout, node, info):
+    """Draws one line on how the model looks, with a button that does what it advises."""
+    if not info or "texels" in info:
+        return
+    measurement = node.velour.measurement
+    line = verdict.line_for(info, measurement.velour.sha256 if measurement is not None else None)
+    if line is None:
+        return
+    draw_sentence(context, layout, line.text, icon="CHECKMARK" if line.is_good else "INFO")
+    if line.remedy is not None and measurement is not None:
+        operator = layout.operator(VELOUR_OT_fit.bl_idname, text=line.remedy.label, icon="FILE_REFRESH")
+        for name, value in line.remedy.settings.items():
+            setattr(operator, name, value)
 
 
 def _draw_measurement(context, layout, settings):
-    """Draws why the measurement is refused, if its file has changed or it is rendered."""
+    """Draws the measurement, and why it is refused if its file has changed or it is rendered."""
+    layout.template_ID(settings, "measurement", open=VELOUR_OT_open_measurement.bl_idname, text="Measurement")
     image = settings.measurement
-    if not image.velour.sha256 and not settings.use_reference:
+    if image is None or (not image.velour.sha256 and not settings.use_reference):
         return
     summary = measurement_summary(image)
     if isinstance(summary, str) and (is_changed(image) or settings.use_reference):
@@ -100,10 +106,18 @@ def draw_refusal(context, layout, image, sentence):
         layout.operator(VELOUR_OT_accept_file.bl_idname)
 
 
-def _draw_btf(context, layout, settings):
-    key, name = refitted_as(context.material), context.material.name
-    draw_btf_fit(context, layout, settings.btf, key, (VELOUR_OT_fit.bl_label, "PLAY"), material=name)
+def _draw_fit(context, layout, node, info):
+    """Draws the button of the fit, its progress, and that it was canceled."""
+    measurement = node.velour.measurement
+    if measurement is not None and is_btf(measurement):
+        key, name = refitted_as(context.material), context.material.name
+        draw_btf_fit(context, layout, node.velour.btf, key, (VELOUR_OT_fit.bl_label, "PLAY"), material=name)
+    elif "texels" not in info:  # otherwise there is no BTF to fit
+        layout.operator(VELOUR_OT_fit.bl_idname, icon="PLAY")
     draw_progress(context, layout)
+    state = context.window_manager.velour
+    if state.canceled and state.canceled_subject == context.material.name:
+        draw_sentence(context, layout, state.canceled, icon="CANCEL")
 
 
 def _draw_former(context, layout, material):
@@ -114,29 +128,6 @@ def _draw_former(context, layout, material):
     draw_sentence(context, box, sentence, icon="INFO")
     if is_editable(material):
         box.operator(VELOUR_OT_convert_materials.bl_idname, icon="NODETREE").material = material.name
-
-
-def _draw_brdf(context, layout, node, info):
-    settings = node.velour
-    _draw_fit_settings(layout.column(align=True), settings)
-    draw_sentence(context, layout, tolerance_words(settings.tolerance), icon="INFO")
-    draw_progress(context, layout)
-    layout.operator(VELOUR_OT_fit.bl_idname, icon="PLAY")
-    row = layout.row()
-    row.active = info.get("model", "scattered") == "scattered"
-    row.prop(node.texture.velour, "neighbors")
-
-
-def _draw_fit_settings(column, settings):
-    column.prop(settings, "model")
-    column.prop(settings, "tolerance")
-    column.prop(settings, "max_lobes")
-    if settings.model == "SCATTERED":
-        column.prop(settings, "kernel")
-    else:
-        column.prop(settings, "use_limit_albedo")
-        column.prop(settings, "use_symmetric")
-    column.prop(settings, "use_all_data")
 
 
 def _draw_look(context, layout, node, info):
@@ -157,8 +148,10 @@ def _draw_look(context, layout, node, info):
 
 
 def draw_input(layout, socket):
-    """Draws an input of a node, whose value has no effect while it is linked."""
-    if socket.is_linked:
+    """Draws an input of a node: its value, or what is linked."""
+    if socket.hide_value:
+        layout.template_node_view(socket.id_data, socket.node, socket)
+    elif socket.is_linked:
         layout.label(text=f"{socket.name}: linked")
     else:
         layout.prop(socket, "default_value", text=socket.name)

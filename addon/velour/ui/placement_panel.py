@@ -35,9 +35,8 @@ class VELOUR_MATERIAL_PT_placement(MaterialPanel, bpy.types.Panel):
                 _draw_real_size(layout, settings, info.get("tile_metres"), context.object)
         linked = linked_uv_map(node)
         _draw_uv_map(layout, settings if linked is None else linked, context.object)
-        for name in ("Rotation", "Scale"):
-            if node.group is not None and name in node.group.inputs:
-                draw_input(layout, node.group.inputs[name])
+        if node.group is not None and "Rotation" in node.group.inputs:
+            draw_input(layout, node.group.inputs["Rotation"])
         if _has_tiles(info):
             layout.column().prop(settings, "offset")
             layout.prop(settings, settings.scale_property)

@@ -17,7 +17,8 @@ _COMPARISON_UNITS = 10.0  # height in buttons
 
 class VELOUR_MATERIAL_PT_plots(MaterialPanel, bpy.types.Panel):
     bl_label = "Plots"
-    bl_parent_id = "VELOUR_MATERIAL_PT_measured"
+    bl_parent_id = "VELOUR_MATERIAL_PT_advanced"
+    bl_options = {"DEFAULT_CLOSED"}
 
     @classmethod
     def poll(cls, context):

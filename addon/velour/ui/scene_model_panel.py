@@ -15,7 +15,8 @@ from .text import draw_sentence
 
 class VELOUR_MATERIAL_PT_scene_model(MaterialPanel, bpy.types.Panel):
     bl_label = "Scene Model"
-    bl_parent_id = "VELOUR_MATERIAL_PT_measured"
+    bl_parent_id = "VELOUR_MATERIAL_PT_advanced"
+    bl_options = {"DEFAULT_CLOSED"}
 
     @classmethod
     def poll(cls, context):

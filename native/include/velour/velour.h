@@ -268,25 +268,27 @@ typedef struct vlr_fit_options {
   const vlr_model* full_model; /* with for_scene: the full model; NULL: fit it first */
 } vlr_fit_options;
 VLR_API void vlr_fit_options_init(vlr_fit_options* options);
-/* Result: a model. JSON: lobes, bytes, parameter_bytes, seconds, relative_l2, by_view_angle, albedo_max, reciprocity,
- * measured_reciprocity, warning_codes, order {lobes [], parameter_bytes [], worst [], relative_l2 [], chosen}: how the
- * error falls as the model grows. `worst` is the largest relative L2 over tolerance of any fitted view, `chosen` the
- * index of the model's own point, or null. Parametric: also view_range [from, to], the view angles in degrees that the
- * model covers. With for_scene also scene {frames, light_density, hash, picture_error, full_picture_error,
- * full_parameter_bytes}: the errors are the relmse at the observed hits against the measurement, of this model and of
- * the full one. */
+/* Result: a model. JSON: lobes, bytes, parameter_bytes, seconds, relative_l2, by_view_angle, albedo_max,
+ * reciprocity, measured_reciprocity, verdict {quality "good", "fair" or "poor", flip_mean, flip_95, reason, value}:
+ * whether pictures of the model look like pictures of the measurement (brdf/verdict/verdict.h), or null,
+ * warning_codes, order {lobes [], parameter_bytes [], worst [], relative_l2 [], chosen}: how the error falls as the
+ * model grows. `worst` is the largest relative L2 over tolerance of any fitted view, `chosen` the index of the
+ * model's own point, or null. Parametric: also view_range [from, to], the view angles in degrees that the model
+ * covers. With for_scene also scene {frames, light_density, hash, picture_error, full_picture_error,
+ * full_parameter_bytes}: the errors are the relmse at the observed hits against the measurement, of this model and
+ * of the full one. */
 VLR_API vlr_status vlr_fit_create_job(const vlr_measurement* measurement, const vlr_fit_options* options,
                                       vlr_job** out);
 
-/* JSON: relative_l2, by_view_angle, log_rms, noise_by_view_angle, samples, narrow_views. */
+/* JSON: relative_l2, by_view_angle, log_rms, noise_by_view_angle, samples, narrow_views, and verdict as of a fit. */
 VLR_API vlr_status vlr_compare_create_job(const vlr_measurement* measurement, const vlr_model* model, vlr_job** out);
 /* Analytic materials to compare with: the GGX lobe over a diffuse base that the strategies `ggx` and `mis-ggx` sample
  * from, and Blender's Principled material: all of it, or without coat and specular tint, which differ before Blender
  * 4.0. */
 enum { VLR_PEER_GGX = 0, VLR_PEER_PRINCIPLED = 1, VLR_PEER_PLAIN_PRINCIPLED = 2 };
-/* Compares a measurement with the peer (VLR_PEER_*) fitted to it. JSON: as vlr_compare_create_job, and seconds (of the
- * peer's fit), parameter_bytes, and ggx {alpha [x, y], f0, f90, diffuse} or principled {base_color, metallic,
- * roughness, specular, specular_tint, coat, coat_roughness}; colors are linear Rec. 709. */
+/* Compares a measurement with the peer (VLR_PEER_*) fitted to it. JSON: as vlr_compare_create_job without verdict, and
+ * seconds (of the peer's fit), parameter_bytes, and ggx {alpha [x, y], f0, f90, diffuse} or principled {base_color,
+ * metallic, roughness, specular, specular_tint, coat, coat_roughness}; colors are linear Rec. 709. */
 VLR_API vlr_status vlr_compare_peer_create_job(const vlr_measurement* measurement, int32_t peer, vlr_job** out);
 /* Compares a model with the peer fitted to it: errors are against the model, for a BTF against its mean over the tile.
  * Views that the model does not cover are null. JSON: as vlr_compare_peer_create_job. */

@@ -12,6 +12,8 @@ namespace velour::capi {
 
 namespace {
 
+Json verdict_or_null(const std::optional<Verdict>& verdict) { return verdict ? verdict_json(*verdict) : Json(nullptr); }
+
 Json narrow_views(const Comparison& comparison) {
   Json json = Json::array();
   for (const auto& [degrees, share] : comparison.narrow_views) json.push_back(degrees);
@@ -52,6 +54,7 @@ std::string fit_json(const Model& model, uint64_t file_bytes) {
                    {"albedo_max", model.fit.albedo_max},
                    {"reciprocity", model.fit.reciprocity},
                    {"measured_reciprocity", or_null(model.fit.measured_reciprocity)},
+                   {"verdict", verdict_or_null(model.fit.verdict)},
                    {"warning_codes", warnings_json(model.fit.warnings)},
                    {"order", order_json(model.fit.order)}});
   if (const auto* brdf = std::get_if<ParametricBrdf>(&model.body)) json["view_range"] = views_json(brdf->views);
@@ -59,7 +62,11 @@ std::string fit_json(const Model& model, uint64_t file_bytes) {
   return text(json);
 }
 
-std::string comparison_json(const Comparison& comparison) { return text(errors_of(comparison)); }
+std::string comparison_json(const Comparison& comparison, const std::optional<Verdict>& verdict) {
+  Json json = errors_of(comparison);
+  json["verdict"] = verdict_or_null(verdict);
+  return text(json);
+}
 
 std::string peer_json(const PeerFit& fit) {
   Json json = errors_of(fit.error);
@@ -228,6 +235,7 @@ Json record_json(const FitRecord& fit) {
           {"seconds", fit.seconds},
           {"seed", fit.seed},
           {"all_data", fit.all_data},
+          {"verdict", verdict_or_null(fit.verdict)},
           {"warning_codes", warnings_json(fit.warnings)},
           {"order", order_json(fit.order)}};
 }

@@ -1,6 +1,7 @@
 // JSON reports on fits and their errors, with the keys of the verbs (docs/reference/cli_measurements.md).
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 #include "brdf/fit/closures/model_closures.h"
@@ -12,7 +13,7 @@
 namespace velour::capi {
 
 std::string fit_json(const Model& model, uint64_t file_bytes);
-std::string comparison_json(const Comparison& comparison);
+std::string comparison_json(const Comparison& comparison, const std::optional<Verdict>& verdict);
 std::string peer_json(const PeerFit& fit);
 /// With the inputs of Blender's nodes (vlr_model_closures_json).
 std::string closures_json(const ModelClosures& closures);

@@ -3,6 +3,7 @@
 #include "brdf/fit/error/evaluate.h"
 #include "brdf/fit/fit_model.h"
 #include "brdf/fit/peer.h"
+#include "brdf/verdict/verdict.h"
 #include "capi/btf_reports.h"
 #include "capi/fit_reports.h"
 #include "capi/guard.h"
@@ -35,6 +36,12 @@ ModelKind kind_of(const vlr_fit_options& given) {
   return static_cast<ModelKind>(given.model);
 }
 
+/// Bytes of the model's file once it has a verdict, which no text of a verdict exceeds.
+uint64_t size_with_verdict(Model model) {
+  model.fit.verdict = Verdict{LookQuality::poor, 1.234e-5, 1.234e-5, LookReason::measurement_noise, 1.234e-5};
+  return encode_model(model).size();
+}
+
 FitOptions converted(const vlr_fit_options& given) {
   if (given.kernel != VLR_KERNEL_GAUSSIAN && given.kernel != VLR_KERNEL_ABEL_POISSON) {
     throw Error(Status::invalid_argument,
@@ -45,7 +52,7 @@ FitOptions converted(const vlr_fit_options& given) {
   options.tolerance = given.tolerance;
   options.max_lobes = static_cast<int>(given.max_lobes);
   options.max_bytes = given.max_bytes;
-  options.size_of = [](const Model& model) { return encode_model(model).size(); };
+  options.size_of = size_with_verdict;
   options.seed = given.seed;
   options.threads = static_cast<int>(given.threads);
   options.all_data = given.all_data != 0;
@@ -70,6 +77,26 @@ MicrosurfaceOptions converted(const vlr_microsurface_options& given) {
   options.seed = given.seed;
   options.threads = static_cast<int>(given.threads);
   return options;
+}
+
+/// The verdict on a model of any scene; none on scene models.
+std::optional<Verdict> verdict_on(const Measurement& measurement, const std::shared_ptr<const Model>& model,
+                                  int threads, Progress& progress) {
+  if (is_reduced(*model)) return std::nullopt;
+  return judge_look(measurement, *make_material(model, 0), threads, progress);
+}
+
+Model fit_and_judge(ModelKind kind, const Measurement& measurement, const FitOptions& options, Progress& progress) {
+  constexpr double kFitShare = 0.9;  // of the time
+  Model model;
+  {
+    const Progress::Span fitting(progress, 0, kFitShare);
+    model = fit_model(kind, measurement, options, progress);
+  }
+  progress.stage("comparing pictures", kFitShare, 1);
+  model.fit.verdict = verdict_on(measurement, std::make_shared<const Model>(model), options.threads, progress);
+  progress.update(1);
+  return model;
 }
 
 Peer checked_peer(int32_t peer) {
@@ -102,7 +129,7 @@ vlr_status vlr_fit_create_job(const vlr_measurement* measurement, const vlr_fit_
     }
     auto output = std::make_shared<JobOutput>();
     *out = new vlr_job(output, [output, kind, fit, source = measurement->measurement](Progress& progress) {
-      auto model = std::make_shared<const Model>(fit_model(kind, *source, fit, progress));
+      auto model = std::make_shared<const Model>(fit_and_judge(kind, *source, fit, progress));
       output->set(fit_json(*model, encode_model(*model).size()), model);
     });
   });
@@ -115,7 +142,8 @@ vlr_status vlr_compare_create_job(const vlr_measurement* measurement, const vlr_
     require(out, "out");
     auto output = std::make_shared<JobOutput>();
     const auto task = [output, source = measurement->measurement, fitted = model->model](Progress& progress) {
-      output->set(comparison_json(compare(*source, *make_material(fitted, 0), progress)));
+      const Comparison errors = compare(*source, *make_material(fitted, 0), progress);
+      output->set(comparison_json(errors, verdict_on(*source, fitted, 0, progress)));
     };
     *out = new vlr_job(output, task);
   });

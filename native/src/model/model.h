@@ -16,6 +16,7 @@
 #include "btf/model/tensor_btf.h"
 #include "model/btf_record.h"
 #include "model/records.h"
+#include "model/verdict.h"
 #include "votf/eval/occlusion_volume.h"
 
 namespace velour {
@@ -37,6 +38,7 @@ struct FitRecord {
   bool all_data = false;  // fitted without held-out data
   OrderCurve order;
   std::vector<Warning> warnings;
+  std::optional<Verdict> verdict = std::nullopt;  // none: not judged (brdf/verdict/verdict.h)
 };
 
 /// The data that the model was fitted to.

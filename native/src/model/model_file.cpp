@@ -18,7 +18,7 @@
 namespace velour {
 namespace {
 
-constexpr char kFormatVersion[] = "1.8";
+constexpr char kFormatVersion[] = "1.9";
 constexpr int kMajorVersion = 1;
 constexpr char kKind[] = "model";
 constexpr char kScene[] = "velour.scene", kBtf[] = "velour.btf.record";

@@ -53,6 +53,9 @@ class FitRecordReader {
   void order(const char* key, OrderCurve& out) const {
     if (const Json* v = find(key)) out = parse_order(*v, where_ + ": '" + key + "'");
   }
+  void verdict(const char* key, std::optional<Verdict>& out) const {
+    if (const Json* v = find(key)) out = parse_verdict(*v, where_ + ": '" + key + "'");
+  }
 
  private:
   const Json* find(const char* key) const {
@@ -86,6 +89,7 @@ std::string fit_record_json(const FitRecord& record) {
                {"all_data", record.all_data}};
   put_warnings(record.warnings, json);
   if (!record.order.points.empty()) json["order"] = order_json(record.order);
+  if (record.verdict) json["verdict"] = verdict_json(*record.verdict);
   return json.dump(-1, ' ', false, Json::error_handler_t::replace);
 }
 
@@ -106,6 +110,7 @@ FitRecord parse_fit_record(const std::string& text, const std::string& where) {
   reader.boolean("all_data", record.all_data);
   record.warnings = parse_warnings(json, where);
   reader.order("order", record.order);
+  reader.verdict("verdict", record.verdict);
   return record;
 }
 

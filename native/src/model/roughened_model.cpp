@@ -33,6 +33,7 @@ Model roughened(const Model& model, float roughness) {
   const auto r = static_cast<double>(roughness);
   if (const auto* per_view = std::get_if<PerViewBrdf>(&model.body)) rougher.body = roughened(*per_view, r);
   if (const auto* parametric = std::get_if<ParametricBrdf>(&model.body)) rougher.body = roughened(*parametric, r);
+  rougher.fit.verdict = std::nullopt;  // of the other look
   rougher.fit.warnings.push_back(warning<WarningCode::roughened>({{"roughness", roughness}}));
   return rougher;
 }

@@ -22,8 +22,10 @@ def steps(desk, measurement, facts):
         bpy.ops.velour.load_material(filepath=str(measurement))
     yield from desk.job()
     yield from desk.show("MATERIAL")
-    yield from desk.plot("LOBES")
     desk.picture_of_panels("material_panel", "MATERIAL", "Measured Material")
+    for label in ("Advanced", "Plots", "Model"):
+        yield from desk.fold("MATERIAL", label, is_open=True)
+    yield from desk.plot("LOBES")
     desk.picture_of_panels("model_panel", "MATERIAL", "Model")
     desk.picture_of_panels("plot", "MATERIAL", "Plots")
     material = bpy.context.view_layer.objects.active.active_material

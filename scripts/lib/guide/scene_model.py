@@ -34,6 +34,7 @@ def steps(desk, measurement, facts):
     facts["full"], facts["scene"] = (
         model_info(image)["parameter_bytes"] for image in (node.image, node.velour.scene_model)
     )
-    yield from desk.plot("LOBES")
+    for label in ("Advanced", "Scene Model"):
+        yield from desk.fold("MATERIAL", label, is_open=True)
     desk.picture_of_panels("scene_model", "MATERIAL", "Scene Model")
     desk.side_by_side("scene_model_pictures", ["part-full", "part-scene"])

@@ -58,6 +58,8 @@ def _material(desk, facts):
         bpy.ops.mesh.primitive_plane_add(size=4, location=(6, 1, 0))
         bpy.context.object.active_material = bpy.data.materials[MATERIAL]
     yield from desk.show("MATERIAL")
+    for label in ("Advanced", "Plots", "Model"):
+        yield from desk.fold("MATERIAL", label, is_open=True)
     yield from desk.plot("ORDER")
     desk.picture_of_panels("btf_model", "MATERIAL", "Model")
 

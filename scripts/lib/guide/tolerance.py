@@ -33,5 +33,7 @@ def steps(desk, measurement, facts):
     scenes.velour_node(material).velour.use_reference = False
     parts = [*(f"part-{number}" for number in range(len(FITS))), "part-measured"]
     desk.side_by_side("tolerances", parts)
+    for label in ("Advanced", "Plots"):
+        yield from desk.fold("MATERIAL", label, is_open=True)
     yield from desk.plot("ORDER")
     desk.picture_of_panels("size_plot", "MATERIAL", "Plots")

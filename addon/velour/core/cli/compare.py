@@ -44,7 +44,7 @@ def run(args: argparse.Namespace) -> dict:
     with contextlib.ExitStack() as handles:
         measurement = handles.enter_context(Measurement.load(args.input))
         report = handles.enter_context(_job(args, measurement, handles)).run(output.progress_of(args))
-    keys = (*KEYS, *PEER_KEYS, args.peer) if args.peer else KEYS
+    keys = (*KEYS, *PEER_KEYS, args.peer) if args.peer else (*KEYS, "verdict")
     return {key: report[key] for key in keys}
 
 

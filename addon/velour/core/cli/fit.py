@@ -6,6 +6,7 @@ import argparse
 import contextlib
 
 from ...native import Measurement, fit_job, table
+from ..verdict import with_text
 from . import numbers, output, scene_options
 
 KEYS = (
@@ -18,6 +19,7 @@ KEYS = (
     "albedo_max",
     "reciprocity",
     "measured_reciprocity",
+    "verdict",
     "warning_codes",
     "order",
 )
@@ -85,6 +87,7 @@ def run(args: argparse.Namespace) -> dict:
         report = job.run(output.progress_of(args))
         with job.result_model() as model:
             model.save(args.output)
+            report["verdict"] = with_text(model.info())
     if args.json:  # otherwise the summary lists them
         output.warn(report["warning_codes"])
     return {key: report[key] for key in (*KEYS, *OWN_KEYS) if key in report}

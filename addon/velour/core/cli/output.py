@@ -9,6 +9,7 @@ import tempfile
 from pathlib import Path
 
 from .. import files
+from ..verdict import with_text
 from ..warning_table import COMMAND_LINE, sentences
 from .progress import ProgressBar, ProgressLines
 
@@ -60,12 +61,12 @@ def deliver(args: argparse.Namespace, report: dict) -> None:
 
 
 def _with_sentences(report: dict) -> dict:
-    """The report with "warnings", a list of sentences, before the library's "warning_codes"."""
+    """The report with the sentences of its "warning_codes" ("warnings") and the text of its verdict."""
     told = {}
     for key, value in report.items():
         if key == "warning_codes":
             told["warnings"] = sentences(value, COMMAND_LINE)
-        told[key] = value
+        told[key] = with_text(report) if key == "verdict" and value and "text" not in value else value
     return told
 
 
@@ -75,7 +76,9 @@ def summary(report: dict) -> str:
 
 def _lines(report: dict, indent: str):
     for key, value in report.items():
-        if isinstance(value, dict):
+        if key == "verdict" and value:
+            yield f"{indent}{key}: {value['text']}"
+        elif isinstance(value, dict):
             yield f"{indent}{key}:"
             yield from _lines(value, indent + "  ")
         elif key == "warning_codes":

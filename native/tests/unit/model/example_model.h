@@ -29,7 +29,8 @@ inline Model example_record() {
                .warnings = {warning<WarningCode::stored_sentence>({{"text", "\"quoted\" and accented: \xc3\xa9"}}),
                             warning<WarningCode::views_exceed_tolerance>({{"views", std::vector<double>{60}},
                                                                           {"errors", std::vector<double>{0.03}},
-                                                                          {"tolerance", 0.02}})}};
+                                                                          {"tolerance", 0.02}})},
+               .verdict = Verdict{LookQuality::fair, 0.0625, 0.125, LookReason::brightness, 1.25}};
   model.fit.order.points = {{1, 52, 12.5, 0.25}, {2, 80, 2.125, 0.0425}, {4, 136, 0.875, 0.0175}};
   model.fit.order.chosen = 2;
   model.source = {"metal", "merl", std::string(64, 'a')};

@@ -184,6 +184,22 @@ TEST(HostileModel, TheOrderIsChecked) {
   }
 }
 
+TEST(HostileModel, TheVerdictIsChecked) {
+  const auto verdict = [](const std::string& json) {
+    return complaint(attribute("velour.fit", "{\"verdict\": " + json + "}"));
+  };
+  const std::string numbers = R"(, "flip_mean": 0.1, "flip_95": 0.2, "value": 0)";
+  EXPECT_EQ(verdict(R"({"quality": "poor", "reason": "color")" + numbers + "}"), "");
+  EXPECT_EQ(verdict(R"({"quality": "good", "reason": null)" + numbers + "}"), "");
+  EXPECT_EQ(verdict(R"({"quality": "fair", "reason": "of a later version")" + numbers + "}"), "");
+  expect_named(verdict("3"), "verdict");
+  expect_named(verdict("{}"), "'quality'");
+  expect_named(verdict(R"({"quality": "fine", "reason": null)" + numbers + "}"), "'quality'");
+  expect_named(verdict(R"({"quality": "good", "reason": 7)" + numbers + "}"), "'reason'");
+  expect_named(verdict(R"({"quality": "good", "reason": null, "flip_mean": -1, "flip_95": 0, "value": 0})"),
+               "'flip_mean'");
+}
+
 /// Not by the end of the stack.
 TEST(HostileModel, WhatIsNestedDeepIsRefused) {
   const std::string deep = std::string(300000, '[') + std::string(300000, ']');

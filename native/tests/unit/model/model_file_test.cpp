@@ -35,6 +35,7 @@ void expect_same_record(const Model& a, const Model& b) {
   EXPECT_EQ(a.fit.all_data, b.fit.all_data);
   EXPECT_EQ(a.fit.order, b.fit.order);
   EXPECT_EQ(a.fit.warnings, b.fit.warnings);
+  EXPECT_EQ(a.fit.verdict, b.fit.verdict);
   EXPECT_EQ(a.source.name, b.source.name);
   EXPECT_EQ(a.source.format, b.source.format);
   EXPECT_EQ(a.source.sha256, b.source.sha256);

@@ -50,11 +50,11 @@ ClosureSolution with_lobe(const ClosureSolution& from, const ScannedLobe& lobe, 
 }
 
 /// The best weights of all lobes at a view for given shapes, and their cost without luminance.
-struct ViewWeights {
+struct LobeWeights {
   Eigen::Matrix<double, 1 + kMaxClosureLobes, 3> weight = Eigen::Matrix<double, 1 + kMaxClosureLobes, 3>::Zero();
   double cost = 0;
 
-  ViewWeights(const ClosureView& view, const ViewProducts& products) {
+  LobeWeights(const ClosureView& view, const ViewProducts& products) {
     const int lobes = products.rows;
     Eigen::MatrixXd gram(lobes, lobes);
     Eigen::VectorXd moment(lobes), mass(lobes);
@@ -88,7 +88,7 @@ class ClosureScan {
   /// Cost over one view in three.
   double cost(const ClosureSolution& s) const {
     double sum = 0;
-    for (size_t v = 1; v < views_.size(); v += 3) sum += ViewWeights(views_[v], products_at(s, views_[v])).cost;
+    for (size_t v = 1; v < views_.size(); v += 3) sum += LobeWeights(views_[v], products_at(s, views_[v])).cost;
     return sum;
   }
 

@@ -240,32 +240,31 @@ std::optional<double> noise_of_view(const Measurement& measurement, int degrees,
 
 namespace {
 
-constexpr int kEvenLights = 4096, kCloseRings = 72, kCloseSpokes = 40;
 constexpr double kInnerRadius = 1e-4;  // radians; the width of a Gaussian of bandwidth 1e8
 
-CloseRings rings_about(const Vec3& axis) { return {axis, kInnerRadius, 0.5 * kPiD, kCloseRings, kCloseSpokes}; }
-
-constexpr int kOwnLights = 2048;
+CloseRings rings_about(const Vec3& axis, const LightCounts& counts) {
+  return {axis, kInnerRadius, 0.5 * kPiD, counts.rings, counts.spokes};
+}
 
 /// Appends directions that the material's own sampler generates from a rank-1 lattice.
-void append_own(const PreparedBrdf& point, std::vector<Vec3>& out) {
-  for (int i = 0; i < kOwnLights; ++i) {
-    const double u = (i + 0.5) / kOwnLights, v = kGoldenRatio * i;
+void append_own(const PreparedBrdf& point, int count, std::vector<Vec3>& out) {
+  for (int i = 0; i < count; ++i) {
+    const double u = (i + 0.5) / count, v = kGoldenRatio * i;
     out.push_back(point.sample_one(Vec2(u, v - std::floor(v))));
   }
 }
 
 }  // namespace
 
-WeightedLights close_lights(const Material& material, const Vec3& wv) {
+WeightedLights close_lights(const Material& material, const Vec3& wv, const LightCounts& counts) {
   ScratchArena arena;
   const PreparedBrdf* const point = material.prepare(wv, arena);
-  const CloseRings mirror = rings_about({-wv.x, -wv.y, wv.z}), retro = rings_about(wv);
-  std::vector<Vec3> all = hemisphere_fibonacci(kEvenLights);
+  const CloseRings mirror = rings_about({-wv.x, -wv.y, wv.z}, counts), retro = rings_about(wv, counts);
+  std::vector<Vec3> all = hemisphere_fibonacci(counts.even);
   mirror.append(all);
   retro.append(all);
   const size_t not_own = all.size();
-  append_own(*point, all);
+  append_own(*point, counts.own, all);
   std::vector<float> own(all.size());
   evaluate(material, wv, all, {}, own);
   WeightedLights lights;
@@ -273,8 +272,8 @@ WeightedLights close_lights(const Material& material, const Vec3& wv) {
     const bool drawn_with_density = i < not_own || own[i] > 0.0f;
     if (all[i].z <= 0 || !drawn_with_density) continue;
     lights.wl.push_back(all[i]);
-    lights.weight.push_back(1 / (kEvenLights / (2 * kPiD) + mirror.density(all[i]) + retro.density(all[i]) +
-                                 kOwnLights * static_cast<double>(own[i])));
+    lights.weight.push_back(1 / (counts.even / (2 * kPiD) + mirror.density(all[i]) + retro.density(all[i]) +
+                                 counts.own * static_cast<double>(own[i])));
   }
   return lights;
 }

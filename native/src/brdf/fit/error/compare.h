@@ -82,11 +82,16 @@ struct WeightedLights {
   std::vector<double> weight;
 };
 
+/// Sizes of the sets of close_lights.
+struct LightCounts {
+  int even = 4096, rings = 72, spokes = 40, own = 2048;
+};
+
 /// Directions for the error of `material` at the view `wv`: equal-area directions, rings about the mirror direction of
 /// `wv` and about `wv` itself, and directions from the material's own sampler. The radii of the rings grow
 /// geometrically from 1e-4 radians, so the two places where measured materials are sharp are resolved at every scale.
 /// The sampled directions resolve narrow lobes of the material anywhere. Each weight is one over the summed densities
 /// of the four sets: the balance heuristic [VG95] as a quadrature.
-WeightedLights close_lights(const Material& material, const Vec3& wv);
+WeightedLights close_lights(const Material& material, const Vec3& wv, const LightCounts& counts = {});
 
 }  // namespace velour

@@ -1,0 +1,114 @@
+#include "brdf/verdict/verdict.h"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+#include "brdf/verdict/pictures.h"
+
+namespace velour {
+
+namespace {
+
+constexpr double kGrazing = 60;     // degrees
+constexpr float kBright = 0.5f;     // exposed luminance of highlights
+constexpr double kTwice = 2;        // FLIP of a part of the pixels that stands out
+constexpr double kExplained = 0.5;  // of FLIP remains, at most, if its reason is taken away
+
+/// A mean over some of the pixels.
+class Mean {
+ public:
+  void add(double value) { sum_ += value, ++count_; }
+  double value() const { return count_ > 0 ? sum_ / count_ : 0; }
+
+ private:
+  double sum_ = 0, count_ = 0;
+};
+
+/// FLIP of all pixels of the pictures, and its means over parts of them.
+struct Differences {
+  std::vector<float> flip;
+  Mean all, grazing, facing, bright, dim;
+  Mean log_luminance;  // of the ratio of the pictures' means
+
+  double percentile_95() {
+    const auto at = flip.begin() + static_cast<std::ptrdiff_t>(0.95 * static_cast<double>(flip.size() - 1));
+    std::nth_element(flip.begin(), at, flip.end());
+    return *at;
+  }
+};
+
+void add_pair(const PicturePair& pair, Differences& out) {
+  const std::vector<float> flip = flip_map(pair.measured, pair.shown);
+  for (size_t i = 0; i < pair.object.size(); ++i) {
+    const float value = flip[pair.object[i]];
+    out.flip.push_back(value);
+    out.all.add(value);
+    (pair.view_angle[i] > static_cast<float>(radians_from(kGrazing)) ? out.grazing : out.facing).add(value);
+    const float brighter =
+        std::max(luminance(pair.measured.pixels[pair.object[i]]), luminance(pair.shown.pixels[pair.object[i]]));
+    (brighter > kBright ? out.bright : out.dim).add(value);
+  }
+  out.log_luminance.add(std::log(std::clamp(pair.luminance_ratio, 1e-6, 1e6)));
+}
+
+Differences differences_of(const std::vector<PicturePair>& pairs, const Progress& progress) {
+  Differences out;
+  for (const PicturePair& pair : pairs) {
+    progress.check();
+    add_pair(pair, out);
+  }
+  return out;
+}
+
+/// Mean FLIP after a change of every pair.
+template <class Change>
+double flip_after(std::vector<PicturePair> pairs, const Progress& progress, const Change& change) {
+  for (PicturePair& pair : pairs) change(pair);
+  return differences_of(pairs, progress).all.value();
+}
+
+void equal_brightness(PicturePair& pair) {
+  const auto scale = static_cast<float>(1 / std::clamp(pair.luminance_ratio, 1e-6, 1e6));
+  for (const uint32_t i : pair.object) pair.shown.pixels[i] = glm::min(scale * pair.shown.pixels[i], 1.0f);
+}
+
+void without_color(PicturePair& pair) {
+  for (LinearPicture* picture : {&pair.measured, &pair.shown}) {
+    for (Rgb& c : picture->pixels) c = Rgb(luminance(c));
+  }
+}
+
+/// What stands out: first what the measurement itself is to blame for, then what is wrong everywhere, then parts.
+void explain(const Measurement& measurement, const Material& material, const std::vector<PicturePair>& pairs,
+             const Differences& found, int threads, Progress& progress, Verdict& verdict) {
+  const double enough = kExplained * verdict.flip_mean;
+  const auto because = [&](LookReason reason, double value = 0) { verdict.reason = reason, verdict.value = value; };
+  const auto smooth = picture_pairs(measurement, material, Against::reciprocal_mean, threads, progress);
+  const double against_smooth = differences_of(smooth, progress).all.value();
+  if (against_smooth < enough) return because(LookReason::measurement_noise, against_smooth);
+  if (flip_after(pairs, progress, equal_brightness) < enough) {
+    return because(LookReason::brightness, std::exp(found.log_luminance.value()));
+  }
+  if (flip_after(pairs, progress, without_color) < enough) return because(LookReason::color);
+  if (found.bright.value() > kTwice * found.dim.value()) return because(LookReason::highlights);
+  if (found.grazing.value() > kTwice * found.facing.value()) return because(LookReason::grazing_views, kGrazing);
+  because(LookReason::everywhere);
+}
+
+}  // namespace
+
+std::optional<Verdict> judge_look(const Measurement& measurement, const Material& material, int threads,
+                                  Progress& progress) {
+  const auto pairs = picture_pairs(measurement, material, Against::measurement, threads, progress);
+  Differences found = differences_of(pairs, progress);
+  if (found.flip.empty()) return std::nullopt;
+  Verdict verdict;
+  verdict.flip_mean = found.all.value();
+  verdict.flip_95 = found.percentile_95();
+  const bool good = verdict.flip_mean <= kGoodMean && verdict.flip_95 <= kGoodPercentile;
+  verdict.quality = good ? LookQuality::good : verdict.flip_mean <= kFairMean ? LookQuality::fair : LookQuality::poor;
+  if (!good) explain(measurement, material, pairs, found, threads, progress, verdict);
+  return verdict;
+}
+
+}  // namespace velour
