@@ -313,8 +313,3 @@ class Refusals(BlenderTest):
         copy = next(o for o in bpy.data.objects if o.velour.is_repeat)
         bpy.context.view_layer.objects.active = copy
         self._refused(["Plane Repeat", "the tile itself"])
-
-    def test_without_a_place(self):
-        scenes.add_plane()
-        with self.assertRaisesRegex(RuntimeError, "save the .blend file first"):
-            bpy.ops.velour.capture_btf(**_SMALL)

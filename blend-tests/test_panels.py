@@ -249,6 +249,8 @@ class Panels(BlenderTest):
             inputs.model_bytes(inputs.lambert_measurement())
         )
         return SimpleNamespace(
+            preferences=bpy.context.preferences,
+            region=SimpleNamespace(width=400),
             engine="VELOUR",
             scene=self.scene,
             view_layer=bpy.context.view_layer,
@@ -287,8 +289,9 @@ class Panels(BlenderTest):
         """How often each setting stands in a tab."""
         manager = bpy.context.window_manager
         nothing = {"object": None, "light": None, "world": None, "material": None}
+        drawn = {"preferences": bpy.context.preferences, "region": SimpleNamespace(width=400)}
         context = SimpleNamespace(
-            engine="VELOUR", scene=self.scene, window_manager=manager, **{**nothing, **context}
+            engine="VELOUR", scene=self.scene, window_manager=manager, **{**drawn, **nothing, **context}
         )
         return Counter(
             name

@@ -12,7 +12,7 @@ _TURNS = 300  # of 0.1 s that a capture may take
 
 def start(folder):
     """Called by the harness once the window is there."""
-    for panel in (bpy.types.VELOUR_OBJECT_PT_tile, bpy.types.VELOUR_COLLECTION_PT_tile):
+    for panel in (bpy.types.VELOUR_OBJECT_PT_tile_fit, bpy.types.VELOUR_COLLECTION_PT_tile_fit):
         bpy.utils.unregister_class(panel)
         panel.bl_options = set()  # open, to be looked at
         bpy.utils.register_class(panel)
@@ -195,7 +195,7 @@ def material(folder):
     with window.override():
         bpy.ops.velour.capture_btf(collection="Collection", directory=str(folder / "material.btf"), **small)
         bpy.ops.velour.compress_btf(collection="Collection", tolerance=0.2)
-    assert bpy.data.collections["Collection"].velour.model is not None
+    assert bpy.data.collections["Collection"].velour.material is not None
     for _ in range(_TURNS // 10):
         yield 1.0  # the model is read, and its curve drawn, between two redraws
         for _ in range(12):  # turns of a wheel: the curve stands below the settings

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 from velour.core import photometric_stereo
-from velour.core.normal_map import _AZIMUTHS, _RINGS, _rings
 from velour.core.photometric_stereo import normals_of, root_mean_square_slope
+from velour.core.tile_maps import _AZIMUTHS, _RINGS, _rings
 
 LIGHTS = _rings(_RINGS, _AZIMUTHS)
 SIZE = 24

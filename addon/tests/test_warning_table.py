@@ -149,12 +149,18 @@ def test_the_environment_image_has_no_file():
 
 
 def test_a_bad_fit_is_told_in_plain_words(model_file):
+    """By its verdict, or where there is none, by the errors."""
     from velour.core.model_warnings import panel_warnings
     from velour.native import Model
 
     with Model.load(model_file) as model:
-        warnings, told = model.info()["warning_codes"], panel_warnings(model.info())
-    assert told
-    for warning in warnings:
+        info = model.info()
+    errors = {"views_exceed_tolerance", "fitted_views_exceed_tolerance", "noise_exceeds_tolerance"}
+    assert info["verdict"]
+    assert errors & {warning["code"] for warning in info["warning_codes"]}
+    for warning in info["warning_codes"]:
         assert set(warning["values"]) == set(KINDS[warning["code"]])
-        assert warning_table.sentence(warning) in told or warning["code"] == "fitted_views_exceed_tolerance"
+        said = warning_table.sentence(warning)
+        assert (said in panel_warnings(info)) != (warning["code"] in errors)
+        without = panel_warnings({**info, "verdict": None})
+        assert said in without or warning["code"] == "fitted_views_exceed_tolerance"

@@ -35,6 +35,7 @@ def add_owners():
     bpy.data.node_groups.new("Owner", "ShaderNodeTree")
     bpy.data.images.new("Owner", 1, 1)
     bpy.data.images.new("Pointed at", 1, 1)
+    bpy.data.materials.new("Pointed at")
     for name in ("Owner", "Pointed at"):
         bpy.data.objects.new(name, None)
     bpy.data.collections.new("Owner")
@@ -146,7 +147,7 @@ def _places(table):
 
 
 def _datablock(entry):
-    lists = {"Image": bpy.data.images, "Object": bpy.data.objects}
+    lists = {"Image": bpy.data.images, "Material": bpy.data.materials, "Object": bpy.data.objects}
     return lists[entry["to"]][entry["saved"]]
 
 

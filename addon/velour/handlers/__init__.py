@@ -1,6 +1,6 @@
 """Handlers that Blender calls by itself."""
 
-from . import saved_files, solid_mode
+from . import saved_files, solid_mode, temporary_captures
 
 CLASSES = ()
 
@@ -8,8 +8,10 @@ CLASSES = ()
 def attach():
     saved_files.attach()
     solid_mode.attach()
+    temporary_captures.attach()
 
 
 def detach():
+    temporary_captures.detach()
     solid_mode.detach()
     saved_files.detach()

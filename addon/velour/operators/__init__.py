@@ -10,6 +10,7 @@ from .add_mesostructure import VELOUR_OT_add_mesostructure
 from .add_preset import VELOUR_OT_add_preset
 from .add_presets import VELOUR_OT_add_presets
 from .add_votf import VELOUR_OT_add_votf
+from .apply_material import VELOUR_OT_apply_material
 from .approximate import VELOUR_OT_approximate
 from .browse import (
     VELOUR_OT_choose_measurement,
@@ -72,6 +73,7 @@ CLASSES = (
     VELOUR_OT_capture_btf,
     VELOUR_OT_compress_btf,
     VELOUR_OT_add_votf,
+    VELOUR_OT_apply_material,
     VELOUR_OT_describe_placement,
     VELOUR_OT_keep_uv_density,
     VELOUR_OT_check_scene,

@@ -10,6 +10,7 @@ from ..export.color import rec709_to_working
 from ..export.nodes import first_input
 from ..export.units import metres_per_unit
 from ..native import Tile, VelourError
+from .slots import takes_materials
 
 _TYPES = (
     ("WEAVE", "Plain Weave", "Each yarn passes over one, then under one", 0),
@@ -119,12 +120,14 @@ class VELOUR_OT_add_mesostructure(bpy.types.Operator, AddObjectHelper):
         except VelourError as error:
             self.report({"ERROR"}, str(error))
             return {"CANCELLED"}
+        worn_by = _wearer(context.object)
         name = next(label for key, label, *_ in _TYPES if key == self.type)
         data = _mesh_data(name, mesh, unit)
         for material in info["materials"]:
             data.materials.append(_material(name, material))
         obj = object_data_add(context, data, operator=self)
         obj.velour.is_tile = True
+        obj.velour.target = worn_by
         obj.velour.period = [side / unit for side in info["period"]]
         self._fill_in(info["shape"], unit)
         return {"FINISHED"}
@@ -141,6 +144,12 @@ class VELOUR_OT_add_mesostructure(bpy.types.Operator, AddObjectHelper):
         """Sets the properties to the values used, for the Adjust Last Operation panel."""
         for name in {"seed", *_own_shape(self.type)}:
             setattr(self, name, shape[name] / unit if name == "size" else shape[name])
+
+
+def _wearer(obj):
+    """The object that a new tile is for: the selected one, unless it is a tile itself."""
+    is_one = takes_materials(obj) and obj.select_get() and not obj.velour.is_shown()
+    return obj if is_one else None
 
 
 def _own_shape(kind):

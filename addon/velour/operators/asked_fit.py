@@ -13,7 +13,7 @@ from ..export.nodes import velour_node
 from ..native import Btf
 from ..properties.btf_fit_settings import METHODS, NAMES, SHAPE_OF
 from . import measured
-from .tiles import find_tile, tile_folder
+from .tiles import capture_folder, find_tile
 
 
 class Chosen(NamedTuple):
@@ -90,7 +90,10 @@ class AskedFit:
         if self.filepath:
             return Chosen(_normal(self.filepath))
         tile = find_tile(context, self.collection)
-        return Chosen(_normal(tile_folder(tile)), tile.owner.velour, tile)
+        folder = capture_folder(tile.owner)
+        if not os.path.exists(folder):
+            raise ExportError(f"{tile.label} has not been captured: there is no {folder}; press Capture BTF.")
+        return Chosen(folder, tile.owner.velour, tile)
 
     def _of_material(self, material):
         measured.refuse_linked(material)

@@ -11,7 +11,7 @@ from ..export.tiles import export_tile
 from ..native import capture_job
 from ..properties.tile_settings import SIDES
 from .background_job import OneJob
-from .tiles import CAPTURE_NUMBERS, capture_options, find_tile, held_out_folder, new_folder, tile_folder
+from .tiles import CAPTURE_NUMBERS, capture_folder, capture_options, find_tile, held_out_folder, new_folder
 
 _NEW_FOLDER = "Capture into a new folder. The previous capture is kept"
 _SETTINGS = ("directory", *CAPTURE_NUMBERS, "sides", "use_approximate")
@@ -31,12 +31,12 @@ class VELOUR_OT_capture_btf(OneJob, bpy.types.Operator):
     )
     # If set, these replace the settings of the tile.
     directory: StringProperty(name="Folder", subtype="DIR_PATH", options={"SKIP_SAVE"})
-    texels: IntProperty(name="Texels", min=1, default=128, options={"SKIP_SAVE"})
-    views: IntProperty(name="Views", min=1, default=105, options={"SKIP_SAVE"})
-    lights: IntProperty(name="Lights", min=1, default=105, options={"SKIP_SAVE"})
-    samples: IntProperty(name="Samples", min=1, default=16, options={"SKIP_SAVE"})
+    texels: IntProperty(name="Texels", min=1, default=64, options={"SKIP_SAVE"})
+    views: IntProperty(name="Views", min=1, default=81, options={"SKIP_SAVE"})
+    lights: IntProperty(name="Lights", min=1, default=81, options={"SKIP_SAVE"})
+    samples: IntProperty(name="Samples", min=1, default=8, options={"SKIP_SAVE"})
     bounces: IntProperty(name="Bounces", min=0, default=1, options={"SKIP_SAVE"})
-    sides: EnumProperty(name="Sides", items=SIDES, options={"SKIP_SAVE"})
+    sides: EnumProperty(name="Sides", items=SIDES, default="ONE", options={"SKIP_SAVE"})
     held_out: IntProperty(
         name="Held-Out Pairs",
         description="Capture this many held-out view-light pairs for validation, in a folder next to the BTF."
@@ -102,7 +102,7 @@ class VELOUR_OT_capture_btf(OneJob, bpy.types.Operator):
 
     def _folder_of(self, tile):
         if not self.held_out:
-            return tile_folder(tile)
+            return capture_folder(tile.owner)
         if self.directory:
             return os.path.normpath(bpy.path.abspath(self.directory))
         return held_out_folder(tile)

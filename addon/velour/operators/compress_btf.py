@@ -89,11 +89,11 @@ class VELOUR_OT_compress_btf(AskedFit, MakesModel, bpy.types.Operator):
     def _refitted(self, context):
         return super()._refitted(context) if self.material else None
 
-    def _remember(self, image):
-        """Stores the model for the tile's panel."""
+    def _remember(self, material):
+        """Stores the material for the tile's panel."""
         owner = self._owner.take() if self._owner else None
         if owner is not None:
-            owner.velour.model = image
+            owner.velour.material = material
 
     def _put(self):
         if self._fit is not None:
@@ -116,7 +116,7 @@ class VELOUR_OT_compress_btf(AskedFit, MakesModel, bpy.types.Operator):
         node.image = measured.packed_model(self._data, self._subject)
         node.velour.measurement = measured.measurement_image(self._path, self._digest)
         keep(self._asked_for, node.velour.btf)
-        self._remember(node.image)
+        self._remember(material)
         if self._slot:
             self._slot.put(material, self.report)
         else:

@@ -68,7 +68,7 @@ def _find(paths):
 
 class VELOUR_OT_load_material(OneJob, bpy.types.Operator, ImportHelper):
     bl_idname = "velour.load_material"
-    bl_label = "Import Measured Material"
+    bl_label = "Import Material"
     bl_description = "Import materials from model files (.velour) or measurements (MERL, RGL, Cornell, BTFs)"
     bl_options = {"UNDO"}
 

@@ -1,7 +1,9 @@
 """The tile of an operator, and its capture options."""
 
+import glob
 import os
 import re
+import shutil
 
 import bpy
 
@@ -31,18 +33,31 @@ def tile_of(context, owner):
     return make(owner, context.evaluated_depsgraph_get())
 
 
-def tile_folder(tile):
-    """Absolute folder of the tile's BTF, which may not exist yet."""
-    chosen = tile.owner.velour.directory
-    if not chosen and not bpy.data.filepath:
-        raise ExportError(f"{tile.label}: save the .blend file first, or choose a folder for the capture.")
-    name = bpy.path.clean_name(tile.owner.name)
-    return os.path.normpath(bpy.path.abspath(chosen or f"//{name}.btf"))
+def capture_folder(owner):
+    """Absolute folder of the BTF of a tile, which may not exist yet. Safe in draw()."""
+    if is_temporary(owner):
+        return os.path.join(bpy.app.tempdir, _folder_name(owner))
+    return os.path.normpath(bpy.path.abspath(owner.velour.directory or f"//{_folder_name(owner)}"))
+
+
+def is_temporary(owner):
+    """Whether the BTF of a tile is lost with the file: neither its folder nor the file has a place."""
+    return not owner.velour.directory and not bpy.data.filepath
+
+
+def remove_temporary():
+    """Removes all temporary BTFs: those of a file that is closed would be taken for those of the next one."""
+    for folder in glob.glob(os.path.join(glob.escape(bpy.app.tempdir), "*.btf")):
+        shutil.rmtree(folder, ignore_errors=True)
+
+
+def _folder_name(owner):
+    return f"{bpy.path.clean_name(owner.name)}.btf"
 
 
 def held_out_folder(tile):
     """Folder of the held-out pairs, beside the tile's BTF."""
-    return _held_out_beside(tile_folder(tile))
+    return _held_out_beside(capture_folder(tile.owner))
 
 
 def _held_out_beside(folder):
@@ -51,7 +66,7 @@ def _held_out_beside(folder):
 
 def new_folder(tile):
     """Value for the tile's setting: the first unused folder, numbered as in Blender."""
-    folder = tile_folder(tile)
+    folder = capture_folder(tile.owner)
     name = re.sub(r"\.\d{3,}$", "", folder.removesuffix(".btf"))
     number = 0
     while os.path.exists(folder) or os.path.exists(_held_out_beside(folder)):

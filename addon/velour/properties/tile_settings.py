@@ -22,6 +22,10 @@ SIDES = (
 _OVERRIDABLE = {"LIBRARY_OVERRIDABLE"}
 
 
+def _takes_material(settings, obj):
+    return hasattr(obj.data, "materials") and obj != settings.id_data
+
+
 class VelourTileSettings(BtfFitSettings, bpy.types.PropertyGroup):
     """`object.velour`, `collection.velour`; includes the settings of the BTF fit."""
 
@@ -51,12 +55,12 @@ class VelourTileSettings(BtfFitSettings, bpy.types.PropertyGroup):
 
     def is_shown(self):
         """Whether its panel is shown: on request, or because settings of a tile have been made."""
-        return self.is_tile or any(self.period) or bool(self.directory) or self.model is not None
+        return self.is_tile or any(self.period) or bool(self.directory) or self.material is not None
 
     # Marks of jobs with results for the tile, separated by blanks.
     jobs: StringProperty(options={"HIDDEN", "SKIP_SAVE"})
 
-    # Settings of a capture.
+    # Settings of a capture. Smaller than the library's, so that a first cloth takes minutes.
     directory: StringProperty(
         name="Folder",
         description="Output folder of the capture. Empty: next to the .blend file, named after the tile",
@@ -68,7 +72,7 @@ class VelourTileSettings(BtfFitSettings, bpy.types.PropertyGroup):
         description="Number of texels along each side",
         min=1,
         max=4096,
-        default=128,
+        default=64,
         override=_OVERRIDABLE,
     )
     views: IntProperty(
@@ -77,7 +81,7 @@ class VelourTileSettings(BtfFitSettings, bpy.types.PropertyGroup):
         " ring at 85 degrees; other numbers: spread evenly over the hemisphere",
         min=1,
         max=4096,
-        default=105,
+        default=81,
         override=_OVERRIDABLE,
     )
     lights: IntProperty(
@@ -85,7 +89,7 @@ class VelourTileSettings(BtfFitSettings, bpy.types.PropertyGroup):
         description="Number of light directions, which are placed like the views",
         min=1,
         max=4096,
-        default=105,
+        default=81,
         override=_OVERRIDABLE,
     )
     samples: IntProperty(
@@ -93,7 +97,7 @@ class VelourTileSettings(BtfFitSettings, bpy.types.PropertyGroup):
         description="Number of paths per texel and view",
         min=1,
         max=65536,
-        default=16,
+        default=8,
         override=_OVERRIDABLE,
     )
     bounces: IntProperty(
@@ -104,7 +108,7 @@ class VelourTileSettings(BtfFitSettings, bpy.types.PropertyGroup):
         default=1,
         override=_OVERRIDABLE,
     )
-    sides: EnumProperty(name="Sides", items=SIDES, default="AUTOMATIC", override=_OVERRIDABLE)
+    sides: EnumProperty(name="Sides", items=SIDES, default="ONE", override=_OVERRIDABLE)
     use_approximate: BoolProperty(
         name="Approximate",
         description="Also capture materials that Velour can only approximate",
@@ -120,9 +124,16 @@ class VelourTileSettings(BtfFitSettings, bpy.types.PropertyGroup):
         override=_OVERRIDABLE,
     )
 
-    model: PointerProperty(
-        name="Model",
-        description="Model that was last fitted to the tile",
-        type=bpy.types.Image,
+    material: PointerProperty(
+        name="Material",
+        description="Material that was last made from the tile's BTF",
+        type=bpy.types.Material,
+        override=_OVERRIDABLE,
+    )
+    target: PointerProperty(
+        name="Target",
+        description="Object that gets the material of the tile. Empty: all other selected objects",
+        type=bpy.types.Object,
+        poll=_takes_material,
         override=_OVERRIDABLE,
     )

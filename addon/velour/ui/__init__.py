@@ -11,6 +11,7 @@ from . import (
     progress,
     stock_panels,
     summaries,
+    tile_panel,
 )
 from .advanced_panel import VELOUR_MATERIAL_PT_advanced
 from .approximation_panel import VELOUR_MATERIAL_PT_approximation
@@ -47,7 +48,6 @@ from .render_panel import (
     VELOUR_RENDER_PT_viewport,
 )
 from .scene_model_panel import VELOUR_MATERIAL_PT_scene_model
-from .tile_panel import VELOUR_COLLECTION_PT_tile, VELOUR_OBJECT_PT_tile
 from .viewport_panel import VELOUR_VIEW3D_PT_lighting
 from .visibility_panels import VELOUR_OBJECT_PT_ray_visibility, VELOUR_WORLD_PT_ray_visibility
 
@@ -85,8 +85,7 @@ CLASSES = (
     VELOUR_OBJECT_PT_ray_visibility,
     VELOUR_WORLD_PT_ray_visibility,
     VELOUR_VIEW3D_PT_lighting,
-    VELOUR_OBJECT_PT_tile,
-    VELOUR_COLLECTION_PT_tile,
+    *tile_panel.CLASSES,
     *file_handler.CLASSES,
 )
 

@@ -15,10 +15,18 @@ def draw_sentence(context, layout, text, icon="NONE"):
     preferences = context.preferences
     taken = _BESIDE + (_ICON if icon != "NONE" else 0)
     room = context.region.width - taken * button_height(preferences.system)
-    points = preferences.ui_styles[0].widget.points * preferences.system.ui_scale
     column = layout.column(align=True)
-    for number, line in enumerate(_lines(text, room, points)):
+    for number, line in enumerate(_lines(text, room, _points(preferences))):
         column.label(text=line, icon=icon if number == 0 or icon == "NONE" else "BLANK1")
+
+
+def label_width(context, text):
+    """Width of a text on the screen, in pixels."""
+    return _width(text, _points(context.preferences))
+
+
+def _points(preferences):
+    return preferences.ui_styles[0].widget.points * preferences.system.ui_scale
 
 
 @functools.lru_cache(maxsize=256)

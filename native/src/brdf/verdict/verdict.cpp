@@ -11,7 +11,8 @@ namespace {
 
 constexpr double kGrazing = 60;     // degrees
 constexpr float kBright = 0.5f;     // exposed luminance of highlights
-constexpr double kTwice = 2;        // FLIP of a part of the pixels that stands out
+constexpr double kTwice = 2;        // FLIP of a part of the pixels that stands out, relative to the others
+constexpr double kLeast = 1e-9;     // FLIP of pixels that do not differ
 constexpr double kExplained = 0.5;  // of FLIP remains, at most, if its reason is taken away
 
 /// A mean over some of the pixels.
@@ -90,9 +91,12 @@ void explain(const Measurement& measurement, const Material& material, const std
     return because(LookReason::brightness, std::exp(found.log_luminance.value()));
   }
   if (flip_after(pairs, progress, without_color) < enough) return because(LookReason::color);
-  if (found.bright.value() > kTwice * found.dim.value()) return because(LookReason::highlights);
-  if (found.grazing.value() > kTwice * found.facing.value()) return because(LookReason::grazing_views, kGrazing);
-  because(LookReason::everywhere);
+  // A part that differs may also be the brighter one: the reason is what stands out most.
+  const double bright = found.bright.value() / std::max(found.dim.value(), kLeast);
+  const double grazing = found.grazing.value() / std::max(found.facing.value(), kLeast);
+  if (std::max(bright, grazing) <= kTwice) return because(LookReason::everywhere);
+  if (bright > grazing) return because(LookReason::highlights);
+  because(LookReason::grazing_views, kGrazing);
 }
 
 }  // namespace
