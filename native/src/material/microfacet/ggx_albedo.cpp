@@ -112,6 +112,58 @@ const Rises& rises(size_t entry) {
   return tables[entry];
 }
 
+/// The masking of the refracted direction relative to that of the view, G2 / G1; 0 if light is reflected totally or
+/// does not leave the surface.
+float refracted_masking(float view, float facet, float up, float alpha, float eta) {
+  const float inside_sq = eta * eta - 1 + facet * facet;
+  if (inside_sq <= 0) return 0;
+  const float down = view - (facet - std::sqrt(inside_sq)) * up;  // eta times the cosine of the refracted direction
+  if (down <= 0) return 0;
+  const float cosine = std::min(down / eta, 1.0f);
+  const auto stretch = [alpha](float c) { return std::sqrt(1 + alpha * alpha * std::max(1 / (c * c) - 1, 0.0f)); };
+  return (1 + stretch(view)) / (stretch(view) + stretch(cosine));
+}
+
+float glass_albedo(float roughness, float cosine, float eta) {
+  const float alpha = roughness * roughness;
+  const VisibleFacets facets(view_of(cosine), Vec2(alpha));
+  double sum = 0;
+  for (int i = 0; i < VisibleFacets::kCount; ++i) {
+    const float c = facets.cosine[i], reflected = dielectric_fresnel(c, eta);
+    const float through = (1 - reflected) * refracted_masking(cosine, c, facets.up[i], alpha, eta);
+    sum += VisibleFacets::weights()[i] * static_cast<double>(reflected * facets.masking[i] + through);
+  }
+  return std::clamp(static_cast<float>(sum), 0.01f, 1.0f);
+}
+
+/// Indexed by roughness, for one index of refraction.
+struct Glass {
+  Table<kRiseEntries> albedo;
+  std::array<float, kRiseEntries> mean;
+
+  void fill(float eta) {
+    const Quadrature cosines = gauss_legendre(32, 0, 1);
+    parallel_fill(kRiseEntries, [&](size_t i) {
+      const float roughness = at(i, kRiseEntries);
+      for (size_t k = 0; k < kRiseEntries; ++k) albedo[k][i] = glass_albedo(roughness, at(k, kRiseEntries), eta);
+      double sum = 0;
+      for (size_t k = 0; k < cosines.node.size(); ++k) {
+        const double mu = cosines.node[k];
+        sum += 2 * mu * cosines.weight[k] * static_cast<double>(glass_albedo(roughness, static_cast<float>(mu), eta));
+      }
+      mean[i] = static_cast<float>(sum);
+    });
+  }
+};
+
+const Glass& glass(size_t entry, bool inside) {
+  static std::array<std::once_flag, 2 * kRiseEntries> made;
+  static std::array<Glass, 2 * kRiseEntries> tables;
+  const size_t place = entry + (inside ? kRiseEntries : 0);
+  std::call_once(made[place], [&] { tables[place].fill(inside ? 1 / index_at(entry) : index_at(entry)); });
+  return tables[place];
+}
+
 }  // namespace
 
 float ggx_albedo::of_white(float roughness, float cosine) {
@@ -126,6 +178,21 @@ float ggx_albedo::mean_of_white(float roughness) {
 float ggx_albedo::mean_rise(float roughness, float cosine, float eta) {
   const Place<kRiseEntries> x(roughness), y(cosine), z(place_of_index(eta));
   return z.between(read(rises(z.low), x, y), read(rises(z.high), x, y));
+}
+
+float ggx_albedo::of_glass(float roughness, float cosine, float eta) {
+  const Place<kRiseEntries> x(roughness), y(cosine), z(place_of_index(eta));
+  const auto entry = [&](size_t i) { return read(glass(i, eta < 1).albedo, x, y); };
+  return z.between(entry(z.low), entry(z.high));
+}
+
+float ggx_albedo::mean_of_glass(float roughness, float eta) {
+  const Place<kRiseEntries> x(roughness), z(place_of_index(eta));
+  const auto entry = [&](size_t i) {
+    const Glass& table = glass(i, eta < 1);
+    return x.between(table.mean[x.low], table.mean[x.high]);
+  };
+  return z.between(entry(z.low), entry(z.high));
 }
 
 namespace {
@@ -185,6 +252,7 @@ VisibleFacets::VisibleFacets(const Vec3& wv, const Vec2& alpha) {
     const float length_l = std::sqrt(lz * lz + ax * ax + ay * ay);
     const float kept = lz * (wv.z + length_v) / (lz * length_v + wv.z * length_l);
     cosine[i] = facing;
+    up[i] = z * scale;
     masking[i] = facing > 0 && lz > 0 ? kept : 0.0f;
   }
 }
