@@ -40,7 +40,7 @@ def set_size(effort):
 def set_up_cycles(cycles, bounces):
     """Without what is biased, and with a filter of one pixel."""
     cycles.use_denoising = cycles.use_adaptive_sampling = False
-    cycles.max_bounces = cycles.diffuse_bounces = cycles.glossy_bounces = bounces
+    cycles.max_bounces = cycles.diffuse_bounces = cycles.glossy_bounces = cycles.transmission_bounces = bounces
     cycles.sample_clamp_direct = cycles.sample_clamp_indirect = 0.0
     cycles.light_sampling_threshold = 0.0
     cycles.pixel_filter_type = "BOX"
