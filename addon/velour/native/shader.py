@@ -17,7 +17,12 @@ if TYPE_CHECKING:
     from .model import Model
 
 _COLORS = {"base_color": 3, "emission": 3, "specular_tint": 3, "coat_tint": 3, "sheen_tint": 3}
-_CHOICES = {"formula": table.FORMULAS, "lobe": table.LOBES, "coat_lobe": table.LOBES, "glass_fresnel": table.GLASS_FRESNELS}
+_CHOICES = {
+    "formula": table.FORMULAS,
+    "lobe": table.LOBES,
+    "coat_lobe": table.LOBES,
+    "glass_fresnel": table.GLASS_FRESNELS,
+}
 
 
 class Shader(Handle):

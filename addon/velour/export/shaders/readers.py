@@ -24,7 +24,7 @@ _IGNORED = (
     "Diffuse Roughness",
     "Thin Film Thickness",
 )
-# No property reveals them: facets divide light by their own angles since these versions (native, GlassFresnel).
+# No property reveals it: whether facets or the surface divide light between reflection and refraction.
 _GLASS_FRESNEL = "facets" if bpy.app.version >= (3, 6) else "surface"
 _REFRACTION_FRESNEL = "facets" if bpy.app.version >= (4, 0) else "surface"
 # No property reveals the masking-shadowing function.

@@ -240,10 +240,10 @@ VisibleFacets::VisibleFacets(const Vec3& wv, const Vec2& alpha) {
   const Vec3 t1 = tilted ? Vec3(0, 1, 0) : Vec3(1, 0, 0), t2 = glm::cross(stretched, t1);
   for (int i = 0; i < kCount; ++i) {
     const float p1 = points.along[i], p2 = (1 - s) * points.beside[i] + s * points.radius[i] * points.sine[i];
-    const float up = std::sqrt(std::max(0.0f, 1 - p1 * p1 - p2 * p2));
-    const float x = alpha.x * (p1 * t1.x + p2 * t2.x + up * stretched.x);
-    const float y = alpha.y * (p1 * t1.y + p2 * t2.y + up * stretched.y);
-    const float z = std::max(0.0f, p1 * t1.z + p2 * t2.z + up * stretched.z);
+    const float upright = std::sqrt(std::max(0.0f, 1 - p1 * p1 - p2 * p2));
+    const float x = alpha.x * (p1 * t1.x + p2 * t2.x + upright * stretched.x);
+    const float y = alpha.y * (p1 * t1.y + p2 * t2.y + upright * stretched.y);
+    const float z = std::max(0.0f, p1 * t1.z + p2 * t2.z + upright * stretched.z);
     const float scale = 1 / std::sqrt(x * x + y * y + z * z);
     const float facing = std::min(wv.x * (x * scale) + wv.z * (z * scale), 1.0f);
     const float lx = 2 * facing * (x * scale) - wv.x, ly = 2 * facing * (y * scale);
