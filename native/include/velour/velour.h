@@ -489,7 +489,7 @@ typedef struct vlr_principled_desc {
   float coat_tint[3];   /* not negative: its transmission straight down and back; white */
   int32_t coat_lobe;    /* VLR_GGX_WHOLE since Blender 4.5; VLR_GGX_SINGLE: 4.0 to 4.4, which dim the layers below as a
                            smooth coat does */
-  float transmission;           /* 0..1: share of glass in what is not metal; 0 */
+  float transmission;   /* 0..1: share of glass in what is not metal; 0 */
   float transmission_roughness; /* 0..1, VLR_PRINCIPLED_DISNEY: adds to that of refraction; 0 */
   float index;                  /* > 0: index of refraction of glass; 1.5. Below 1 it inverts that of the dielectric
                                    (VLR_PRINCIPLED_LAYERED) */
@@ -919,9 +919,9 @@ enum {
   VLR_LAYER_GLOSSY = 2,      /* base_color, roughness and lobe: GGX with this reflectance at every angle */
   VLR_LAYER_TRANSPARENT = 3, /* base_color: factor of light that passes straight through */
   VLR_LAYER_EMISSION = 4,    /* base_color: radiance */
-  VLR_LAYER_GLASS = 5,       /* base_color, roughness, index, lobe, glass_fresnel: GGX facets that reflect and refract */
-  VLR_LAYER_REFRACTION = 6,  /* the same, without reflection */
-  VLR_LAYER_TRANSLUCENT = 7  /* base_color: diffuse light from the other side */
+  VLR_LAYER_GLASS = 5,      /* base_color, roughness, index, lobe, glass_fresnel: GGX facets that reflect and refract */
+  VLR_LAYER_REFRACTION = 6, /* the same, without reflection */
+  VLR_LAYER_TRANSLUCENT = 7 /* base_color: diffuse light from the other side */
 };
 /* The weight of a layer is the product of its factors. For a mix, SHARE is its factor and REST 1 minus that, both
  * within [0, 1]; GAIN is any non-negative number. */

@@ -270,9 +270,9 @@ void DirectLight::add_continuations(const Vertex& vertex, const Work& work, Inci
 
 void DirectLight::go_on_along(const Receiver& receiver, int i, int term, Work& work) {
   const Vertex& vertex = receiver.vertex;
-  work.continuation = continuation_along(vertex, local_.get(i), world_.get(i),
-                                         receiver.throughput * reflectance(vertex, i) / work.along_share,
-                                         surface_pdf_.v[i]);
+  work.continuation =
+      continuation_along(vertex, local_.get(i), world_.get(i),
+                         receiver.throughput * reflectance(vertex, i) / work.along_share, surface_pdf_.v[i]);
   const bool shares_ray = work.continuation && finite(work.continuation->throughput) && shares_rays_;
   if (shares_ray && vertex.rays_agree(world_.get(i))) work.shared_term = term;
 }
@@ -349,11 +349,11 @@ void DirectLight::add_incident(const Vertex& vertex, int term, const Contributio
 std::optional<Continuation> DirectLight::extend(const Receiver& receiver, size_t place) {
   const Work& work = work_[place];
   if (work.along_delta < 0 && !(work.along_share > 0.0f)) return std::nullopt;
-  const auto continuation = work.goes_on_drawn || work.along_delta >= 0
-                                ? work.continuation
-                                : sample_continuation(receiver.vertex, work.prepared, working_space_,
-                                                      receiver.throughput / work.along_share,
-                                                      receiver.numbers->point(Purpose::continuation));
+  const auto continuation =
+      work.goes_on_drawn || work.along_delta >= 0
+          ? work.continuation
+          : sample_continuation(receiver.vertex, work.prepared, working_space_, receiver.throughput / work.along_share,
+                                receiver.numbers->point(Purpose::continuation));
   if (!continuation || finite(continuation->throughput)) return continuation;
   ++nan_samples_;
   return std::nullopt;

@@ -191,10 +191,10 @@ class DirectLight {
     bool goes_on_drawn;                             // continues along its only surface-sampled direction
     bool goes_on_along_all;                         // along all of them, for incident light
     DeltaLobes deltas;
-    int along_delta;                                // the lobe that the path continues along; -1: none
-    float along_share;                              // probability of continuing so
-    std::optional<Continuation> continuation;       // the ray along it
-    int shared_term;                                // index of the term waiting for `continuation`; -1: none
+    int along_delta;                           // the lobe that the path continues along; -1: none
+    float along_share;                         // probability of continuing so
+    std::optional<Continuation> continuation;  // the ray along it
+    int shared_term;                           // index of the term waiting for `continuation`; -1: none
   };
   /// Either shadow rays for camera samples, or incident light.
   struct Output {

@@ -59,13 +59,14 @@ def _read_principled(plug, reader):
 def _transmission(plug, reader):
     """Glass of a Principled BSDF, and whether its index is below 1, if they have an effect."""
     share = min(max(reader.value(plug.input("Transmission Weight", "Transmission")), 0.0), 1.0)
+    if share <= 0.0 and not _is_layered(plug):
+        return {}
     index = max(reader.value(plug.input("IOR")), 1e-5)
-    values = {"index": index} if index < 1.0 and _is_layered(plug) else {}
     if share <= 0.0:
-        return values
-    values |= {"transmission": share, "index": index}
+        return {"index": index} if index < 1.0 else {}
     added = plug.input("Transmission Roughness")
-    return values | ({"transmission_roughness": reader.value(added)} if added else {})
+    values = {"transmission_roughness": reader.value(added)} if added else {}
+    return {"transmission": share, "index": index, **values}
 
 
 def _is_layered(plug):

@@ -9,7 +9,7 @@
 namespace velour {
 namespace {
 
-constexpr float kLeastBend = 1e-4f;  // of the index from 1, below which Cycles refracts without scattering
+constexpr float kLeastBend = 1e-4f;   // of the index from 1, below which Cycles refracts without scattering
 constexpr float kLeastShare = 1e-4f;  // of the refracted part where the surface reflects totally, as in Cycles
 
 float mean(const Rgb& c) { return (c.r + c.g + c.b) / 3; }
@@ -97,8 +97,8 @@ PreparedBrdf::Reflection GlassLobe::refraction(const Vec3& wl) const {
   if (!is_facet && light.refracted == Rgb(0.0f)) return none;
   const Vec2& alpha = refraction_alpha_;
   const float spread = ggx_spread(h, alpha), a = stretch(wv_, alpha), b = stretch(wl, alpha);
-  const float facets = alpha.x * alpha.y / (kPi * spread * spread) / wv_.z * (eta_ * eta_ / length_sq) *
-                       std::abs(view * light_cosine);
+  const float facets =
+      alpha.x * alpha.y / (kPi * spread * spread) / wv_.z * (eta_ * eta_ / length_sq) * std::abs(view * light_cosine);
   const float first = 2 / (1 + a), both = p_.lobe == GgxLobe::separable ? first * 2 / (1 + b) : 2 / (a + b);
   return {light.refracted * (facets * both / -wl.z), (1 - light.share) * facets * first};
 }

@@ -63,7 +63,7 @@ inline auto sheen_value(const PrincipledPoint& point, const W& wl) {
 template <class W>
 inline auto principled_parts(const PrincipledPoint& point, const Vec3& wv, const W& wl, const W& h) {
   using T = decltype(dot(wv, h));
-  PrincipledParts<T> parts{principled_base(point, wv, wl), T(0.0f), T(0.0f), T(0.0f), T(0.0f),
+  PrincipledParts<T> parts{principled_base(point, wv, wl),         T(0.0f), T(0.0f), T(0.0f), T(0.0f),
                            smaller(larger(dot(wv, h), 0.0f), 1.0f)};
   parts.lobe = point.lobe == GgxLobe::separable ? ggx_brdf_of_independent_shadows(wv, wl, h, point.alpha)
                                                 : ggx_brdf_without_fresnel(wv, wl, h, point.alpha);

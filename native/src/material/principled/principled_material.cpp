@@ -71,7 +71,8 @@ class PreparedPrincipled final : public PreparedBrdf {
 
   Vec3 coat_normal(const Vec2& u) const {
     const bool is_disney = point_.formula == PrincipledFormula::disney;
-    return is_disney ? sample_gtr1_normal(point_.coat_alpha.x, u) : sample_ggx_visible_normal(wv_, point_.coat_alpha, u);
+    return is_disney ? sample_gtr1_normal(point_.coat_alpha.x, u)
+                     : sample_ggx_visible_normal(wv_, point_.coat_alpha, u);
   }
 
   Vec3 sheen_direction(const Vec2& u) const {
@@ -88,8 +89,7 @@ class PreparedPrincipled final : public PreparedBrdf {
 };
 
 bool has_glass(const PrincipledParameters& p) {
-  return p.transmission > 0 && p.metallic < 1 &&
-         (p.part == PrincipledPart::whole || p.part == PrincipledPart::glass);
+  return p.transmission > 0 && p.metallic < 1 && (p.part == PrincipledPart::whole || p.part == PrincipledPart::glass);
 }
 
 }  // namespace

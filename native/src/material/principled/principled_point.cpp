@@ -74,8 +74,7 @@ constexpr float kMinClearCoatAlpha = 3.2e-4f;  // below it the clear coat is a m
 SheenLobe::SheenLobe(float roughness, float cosine) {
   const float x = cosine, y = roughness;
   a = (2.58126f * x + 0.813703f * y) * y / (1 + 0.310327f * x * x + 2.60994f * x * y);
-  b = std::sqrt(1 - x) * (y - 1) * y * y * y /
-      (0.0000254053f + 1.71228f * x - 1.71506f * x * y + 1.34174f * y * y);
+  b = std::sqrt(1 - x) * (y - 1) * y * y * y / (0.0000254053f + 1.71228f * x - 1.71506f * x * y + 1.34174f * y * y);
   const float s = y * (0.0206607f + 1.58491f * y) / (0.0379424f + y * (1.32227f + y));
   const float m = y * (-0.193854f + y * (-1.14885f + y * (1.7932f - 0.95943f * y * y))) / (0.046391f + y);
   const float o = y * (0.000654023f + (-0.0207818f + 0.119681f * y) * y) / (1.26264f + y * (-1.92021f + y));
@@ -91,7 +90,8 @@ Rgb through_top(const PrincipledParameters& p, float cosine, const LobeFilter& f
 
 GlassParameters glass_of(const PrincipledParameters& p) {
   const Rgb color = within_one(p.base_color);
-  GlassParameters glass{.roughness = p.roughness, .refraction_roughness = p.roughness, .index = p.index, .lobe = p.lobe};
+  GlassParameters glass{
+      .roughness = p.roughness, .refraction_roughness = p.roughness, .index = p.index, .lobe = p.lobe};
   if (p.formula == PrincipledFormula::layered) {
     glass.refracted = glm::sqrt(color);
     glass.at_normal = glm::max(p.specular_tint, Rgb(0));
@@ -167,9 +167,9 @@ void PrincipledPoint::set_layered(const PrincipledParameters& p, float cosine, c
     const Rgb mean = glm::mix(normal, Rgb(1), mean_rise()), weight = rest * facets.gain(mean);
     at_normal = weight * normal;
     rise = weight * (1.0f - normal);
-    const Rgb albedo =
+    const Rgb of_lobe =
         facets.gain_of_whole(mean) * glm::mix(normal, Rgb(1), ggx_albedo::mean_rise(roughness, cosine, eta));
-    if (!filter.diffuse_only) passing = std::clamp(1 - std::max({albedo.r, albedo.g, albedo.b}), 0.0f, 1.0f);
+    if (!filter.diffuse_only) passing = std::clamp(1 - std::max({of_lobe.r, of_lobe.g, of_lobe.b}), 0.0f, 1.0f);
   }
   diffuse = base_color * (rest * passing / kPi);
 }
@@ -178,7 +178,8 @@ void PrincipledPoint::set_disney(const PrincipledParameters& p, float cosine, co
   const float metallic = std::clamp(p.metallic, 0.0f, 1.0f), transmission = std::clamp(p.transmission, 0.0f, 1.0f);
   coat = 0.25f * std::clamp(p.coat, 0.0f, 1.0f);
   coat_eta = 1.5f;
-  coat_alpha = Vec2(std::clamp(p.coat_roughness * p.coat_roughness, std::max(kMinClearCoatAlpha, filter.min_alpha), 0.999f));
+  coat_alpha =
+      Vec2(std::clamp(p.coat_roughness * p.coat_roughness, std::max(kMinClearCoatAlpha, filter.min_alpha), 0.999f));
   metal = Rgb(0);
   sheen = glm::max(p.sheen_tint, Rgb(0)) * (std::max(p.sheen, 0.0f) * (1 - metallic) * (1 - transmission));
   glass = Rgb(transmission * (1 - metallic));

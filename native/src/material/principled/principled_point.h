@@ -37,9 +37,9 @@ struct PrincipledParameters {
   Rgb specular_tint{1.0f, 1.0f, 1.0f};  // tints a dielectric at normal incidence and a metal near 82 degrees
   float coat = 0;                       // weight of a dielectric layer on top, or of Disney's clear coat
   float coat_roughness = 0.03f;
-  float coat_index = 1.5f;          // at least 1
-  Rgb coat_tint{1.0f, 1.0f, 1.0f};  // transmittance of the coat at normal incidence, down and back
-  float transmission = 0;           // share of glass in what is not metal
+  float coat_index = 1.5f;           // at least 1
+  Rgb coat_tint{1.0f, 1.0f, 1.0f};   // transmittance of the coat at normal incidence, down and back
+  float transmission = 0;            // share of glass in what is not metal
   float transmission_roughness = 0;  // Disney's: adds to that of refraction
   /// Index of the glass, > 0. Below 1 it also inverts that of the dielectric (layered).
   float index = 1.5f;

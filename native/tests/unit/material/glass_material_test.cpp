@@ -73,7 +73,8 @@ TEST(GlassMaterial, SmoothGlassFollowsSnell) {
   EXPECT_NEAR(glm::length(through), 1, 1e-6f);
   EXPECT_NEAR(lobes.lobe[0].weight.g, dielectric_fresnel(wv.z, 1.5f), 1e-6f);
   // Total reflection, seen from inside beyond the critical angle.
-  const DeltaLobes inside = deltas_of(point_of(*make_glass_material(glass(0, 1.5f)), direction(0.8f, 0), true, kOfPath));
+  const DeltaLobes inside =
+      deltas_of(point_of(*make_glass_material(glass(0, 1.5f)), direction(0.8f, 0), true, kOfPath));
   ASSERT_EQ(inside.count, 1);
   EXPECT_GT(inside.lobe[0].wl.z, 0);
 }
@@ -175,7 +176,8 @@ TEST(GlassMaterial, FilterRoughensAndLeavesOutReflection) {
   const PreparedBrdf& rough = point_of(*material, wv, false, {.of_path = true, .filter = {.min_alpha = 0.3f}});
   EXPECT_EQ(deltas_of(rough).count, 0);
   EXPECT_GT(rough.eval_one(Vec3(0, 0, -1)).f.g, 0);
-  const DeltaLobes through = deltas_of(point_of(*material, wv, false, {.of_path = true, .filter = {.diffuse_only = true}}));
+  const DeltaLobes through =
+      deltas_of(point_of(*material, wv, false, {.of_path = true, .filter = {.diffuse_only = true}}));
   ASSERT_EQ(through.count, 1);
   EXPECT_LT(through.lobe[0].wl.z, 0);
 }
