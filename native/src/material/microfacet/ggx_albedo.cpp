@@ -112,26 +112,31 @@ const Rises& rises(size_t entry) {
   return tables[entry];
 }
 
-/// The masking of the refracted direction relative to that of the view, G2 / G1; 0 if light is reflected totally or
-/// does not leave the surface.
-float refracted_masking(float view, float facet, float up, float alpha, float eta) {
-  const float inside_sq = eta * eta - 1 + facet * facet;
-  if (inside_sq <= 0) return 0;
-  const float down = view - (facet - std::sqrt(inside_sq)) * up;  // eta times the cosine of the refracted direction
-  if (down <= 0) return 0;
-  const float cosine = std::min(down / eta, 1.0f);
-  const auto stretch = [alpha](float c) { return std::sqrt(1 + alpha * alpha * std::max(1 / (c * c) - 1, 0.0f)); };
-  return (1 + stretch(view)) / (stretch(view) + stretch(cosine));
-}
+constexpr size_t kGlassRadii = 64, kGlassTurns = 64;  // total reflection by facets has an edge in the quadrature
 
+/// Quadrature over visible normals, which lie symmetrically about the plane of incidence.
 float glass_albedo(float roughness, float cosine, float eta) {
+  static const Quadrature radii = gauss_legendre(kGlassRadii, 0, 1);
   const float alpha = roughness * roughness;
-  const VisibleFacets facets(view_of(cosine), Vec2(alpha));
+  const Vec3 wv = view_of(std::min(cosine, 0.999999f));  // its azimuth must be that of the plane
+  const auto stretch = [alpha](float c) { return std::sqrt(1 + alpha * alpha * std::max(1 / (c * c) - 1, 0.0f)); };
+  const float of_view = stretch(wv.z);
+  const auto kept = [&](float c) { return (1 + of_view) / (of_view + stretch(std::max(c, 1e-6f))); };  // G2 / G1
   double sum = 0;
-  for (int i = 0; i < VisibleFacets::kCount; ++i) {
-    const float c = facets.cosine[i], reflected = dielectric_fresnel(c, eta);
-    const float through = (1 - reflected) * refracted_masking(cosine, c, facets.up[i], alpha, eta);
-    sum += VisibleFacets::weights()[i] * static_cast<double>(reflected * facets.masking[i] + through);
+  for (size_t i = 0; i < kGlassRadii; ++i) {
+    const auto radius = static_cast<float>(radii.node[i]);
+    double ring = 0;
+    for (size_t k = 0; k < kGlassTurns; ++k) {
+      const float turn = 0.5f * (static_cast<float>(k) + 0.5f) / kGlassTurns - 0.25f;
+      const Vec3 h = sample_ggx_visible_normal(wv, Vec2(alpha), {radius * radius, turn});
+      const float facet = std::clamp(glm::dot(wv, h), 0.0f, 1.0f), reflected = dielectric_fresnel(facet, eta);
+      const float inside_sq = eta * eta - 1 + facet * facet, up = 2 * facet * h.z - wv.z;
+      if (up > 0) ring += static_cast<double>(reflected * kept(up));
+      if (inside_sq <= 0) continue;
+      const float down = std::abs(wv.z - (facet - std::sqrt(inside_sq)) * h.z) / eta;
+      ring += static_cast<double>((1 - reflected) * kept(std::min(down, 1.0f)));
+    }
+    sum += 2 * radii.node[i] * radii.weight[i] * ring / kGlassTurns;
   }
   return std::clamp(static_cast<float>(sum), 0.01f, 1.0f);
 }
@@ -142,7 +147,7 @@ struct Glass {
   std::array<float, kRiseEntries> mean;
 
   void fill(float eta) {
-    const Quadrature cosines = gauss_legendre(32, 0, 1);
+    const Quadrature cosines = gauss_legendre(16, 0, 1);
     parallel_fill(kRiseEntries, [&](size_t i) {
       const float roughness = at(i, kRiseEntries);
       for (size_t k = 0; k < kRiseEntries; ++k) albedo[k][i] = glass_albedo(roughness, at(k, kRiseEntries), eta);
@@ -156,7 +161,7 @@ struct Glass {
   }
 };
 
-const Glass& glass(size_t entry, bool inside) {
+const Glass& glass_tables(size_t entry, bool inside) {
   static std::array<std::once_flag, 2 * kRiseEntries> made;
   static std::array<Glass, 2 * kRiseEntries> tables;
   const size_t place = entry + (inside ? kRiseEntries : 0);
@@ -182,14 +187,14 @@ float ggx_albedo::mean_rise(float roughness, float cosine, float eta) {
 
 float ggx_albedo::of_glass(float roughness, float cosine, float eta) {
   const Place<kRiseEntries> x(roughness), y(cosine), z(place_of_index(eta));
-  const auto entry = [&](size_t i) { return read(glass(i, eta < 1).albedo, x, y); };
+  const auto entry = [&](size_t i) { return read(glass_tables(i, eta < 1).albedo, x, y); };
   return z.between(entry(z.low), entry(z.high));
 }
 
 float ggx_albedo::mean_of_glass(float roughness, float eta) {
   const Place<kRiseEntries> x(roughness), z(place_of_index(eta));
   const auto entry = [&](size_t i) {
-    const Glass& table = glass(i, eta < 1);
+    const Glass& table = glass_tables(i, eta < 1);
     return x.between(table.mean[x.low], table.mean[x.high]);
   };
   return z.between(entry(z.low), entry(z.high));
@@ -240,10 +245,10 @@ VisibleFacets::VisibleFacets(const Vec3& wv, const Vec2& alpha) {
   const Vec3 t1 = tilted ? Vec3(0, 1, 0) : Vec3(1, 0, 0), t2 = glm::cross(stretched, t1);
   for (int i = 0; i < kCount; ++i) {
     const float p1 = points.along[i], p2 = (1 - s) * points.beside[i] + s * points.radius[i] * points.sine[i];
-    const float upright = std::sqrt(std::max(0.0f, 1 - p1 * p1 - p2 * p2));
-    const float x = alpha.x * (p1 * t1.x + p2 * t2.x + upright * stretched.x);
-    const float y = alpha.y * (p1 * t1.y + p2 * t2.y + upright * stretched.y);
-    const float z = std::max(0.0f, p1 * t1.z + p2 * t2.z + upright * stretched.z);
+    const float up = std::sqrt(std::max(0.0f, 1 - p1 * p1 - p2 * p2));
+    const float x = alpha.x * (p1 * t1.x + p2 * t2.x + up * stretched.x);
+    const float y = alpha.y * (p1 * t1.y + p2 * t2.y + up * stretched.y);
+    const float z = std::max(0.0f, p1 * t1.z + p2 * t2.z + up * stretched.z);
     const float scale = 1 / std::sqrt(x * x + y * y + z * z);
     const float facing = std::min(wv.x * (x * scale) + wv.z * (z * scale), 1.0f);
     const float lx = 2 * facing * (x * scale) - wv.x, ly = 2 * facing * (y * scale);
@@ -252,7 +257,6 @@ VisibleFacets::VisibleFacets(const Vec3& wv, const Vec2& alpha) {
     const float length_l = std::sqrt(lz * lz + ax * ax + ay * ay);
     const float kept = lz * (wv.z + length_v) / (lz * length_v + wv.z * length_l);
     cosine[i] = facing;
-    up[i] = z * scale;
     masking[i] = facing > 0 && lz > 0 ? kept : 0.0f;
   }
 }

@@ -22,7 +22,8 @@ float mean_of_white(float roughness);
 float mean_rise(float roughness, float cosine, float eta);
 
 /// Light that the facets of a lossless dielectric reflect and refract without meeting other facets, in (0, 1]. `eta` >
-/// 0: relative index.
+/// 0: relative index. As in Blender's tables, light that is refracted out of the surface again counts; only an `eta`
+/// below 1 refracts so, at grazing angles.
 float of_glass(float roughness, float cosine, float eta);
 /// Cosine-weighted mean of of_glass() over the hemisphere.
 float mean_of_glass(float roughness, float eta);
@@ -36,7 +37,6 @@ float mean_of_glass(float roughness, float eta);
 struct VisibleFacets {
   static constexpr int kCount = 24 * 24;
   float cosine[kCount];   // between view and facet
-  float up[kCount];       // z of the facet's normal
   float masking[kCount];  // G2 / G1 of the mirrored direction; 0: it is below the horizon
 
   /// Requires wv.y = 0.
