@@ -23,6 +23,7 @@ _IGNORED = (
     "Anisotropic",
     "Diffuse Roughness",
     "Thin Film Thickness",
+    "Thin Wall",
 )
 # No property reveals it: whether facets or the surface divide light between reflection and refraction.
 _GLASS_FRESNEL = "facets" if bpy.app.version >= (3, 6) else "surface"
