@@ -9,8 +9,8 @@
 namespace velour {
 namespace {
 
-constexpr float kLeastBend = 1e-4f;   // of the index from 1, below which Cycles refracts without scattering
-constexpr float kLeastShare = 1e-4f;  // of the refracted part where the surface reflects totally, as in Cycles
+constexpr float kMinBend = 1e-4f;       // of the index from 1, below which Cycles refracts without scattering
+constexpr float kMinRefracted = 1e-4f;  // of the refracted part where the surface reflects totally, as in Cycles
 
 float mean(const Rgb& c) { return (c.r + c.g + c.b) / 3; }
 
@@ -32,10 +32,10 @@ GlassLobe::GlassLobe(const GlassParameters& parameters, const Vec3& wv, bool bac
   alpha_ = slope_of(p_.roughness, options.filter);
   const bool is_one = p_.fresnel == GlassFresnel::facets;
   refraction_alpha_ = is_one ? alpha_ : slope_of(p_.refraction_roughness, options.filter);
-  const bool bends = std::abs(eta_ - 1) >= kLeastBend;
+  const bool bends = std::abs(eta_ - 1) >= kMinBend;
   mirrors_ = options.of_path && alpha_.x < kMinGgxAlpha;
   passes_straight_ = options.of_path && (refraction_alpha_.x < kMinGgxAlpha || !bends);
-  if (!options.of_path && !bends) eta_ = eta_ < 1 ? 1 - kLeastBend : 1 + kLeastBend;
+  if (!options.of_path && !bends) eta_ = eta_ < 1 ? 1 - kMinBend : 1 + kMinBend;
   alpha_ = glm::max(alpha_, Vec2(kMinGgxAlpha));
   refraction_alpha_ = glm::max(refraction_alpha_, Vec2(kMinGgxAlpha));
   f0_ = dielectric_fresnel(1.0f, eta_);
@@ -64,7 +64,7 @@ GlassLobe::Divided GlassLobe::divide(float cosine) const {
     light.refracted = gain_ * p_.refracted * (1.0f - reflectance);
   } else {
     light.reflected = gain_ * p_.reflected * (surface_ * glm::mix(p_.at_normal, Rgb(1), rise));
-    light.refracted = gain_ * p_.refracted * std::max(1 - surface_, kLeastShare);
+    light.refracted = gain_ * p_.refracted * std::max(1 - surface_, kMinRefracted);
   }
   const float reflected = mirrors_ ? 0.0f : mean(light.reflected);
   const float refracted = passes_straight_ ? 0.0f : mean(light.refracted);

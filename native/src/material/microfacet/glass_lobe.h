@@ -56,7 +56,7 @@ class GlassLobe {
     Rgb reflected, refracted;
     float share;  // probability of reflection
   };
-  /// Of the light of a facet at a cosine >= 0 with the view.
+  /// Division by a facet whose cosine with the view is `cosine` >= 0.
   Divided divide(float cosine) const;
   PreparedBrdf::Reflection reflection(const Vec3& wl) const;
   PreparedBrdf::Reflection refraction(const Vec3& wl) const;
