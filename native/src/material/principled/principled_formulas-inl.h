@@ -45,8 +45,10 @@ inline auto principled_coat(const PrincipledPoint& point, const Vec3& wv, const 
 template <class W>
 inline auto principled_coat_pdf(const PrincipledPoint& point, const Vec3& wv, const W& h) {
   if (point.formula != PrincipledFormula::disney) return pdf_ggx_reflection(wv, h, point.coat_alpha);
+  // A normal that faces away from the view mirrors it below the horizon, where the half vector is its opposite.
   const auto cosine = dot(wv, h);
-  return select(cosine > 0.0f, gtr1_distribution(h, point.coat_alpha.x) * h.z / (4.0f * larger(cosine, 1e-6f)), 0.0f);
+  const auto density = gtr1_distribution(h, point.coat_alpha.x) * larger(h.z, -1.0f * h.z);
+  return select(cosine > 0.0f, density / (4.0f * larger(cosine, 1e-6f)), 0.0f);
 }
 
 /// Value of a sheen lobe at a direction above the horizon, which times the cosine is also its density.

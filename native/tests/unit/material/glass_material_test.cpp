@@ -3,13 +3,12 @@
 
 #include <gtest/gtest.h>
 
-#include <numbers>
-
 #include "material/microfacet/ggx_albedo.h"
 #include "material/principled/principled_material.h"
 #include "material/shader_layers.h"
 #include "math/sphere/frame.h"
 #include "math/sphere/random.h"
+#include "math/sphere/warp.h"
 #include "support/materials.h"
 
 namespace velour {
@@ -119,12 +118,14 @@ TEST(GlassMaterial, IsReciprocalUpToTheSquareOfTheIndex) {
       const Vec3 wv = sample_cosine_hemisphere(random.next2()), wl = mirrored(sample_cosine_hemisphere(random.next2()));
       const float there = point_of(*material, wv).eval_one(wl).f.g;
       const float back = point_of(*material, mirrored(wl), true).eval_one(mirrored(wv)).f.g;
-      EXPECT_NEAR(there, index * index * back, 1e-4f * (there + 1e-3f)) << i;
-      if (there > 1e-3f) EXPECT_GT(std::abs(there - back), 0.1f * there);  // the control
-      lit += there > 1e-3f ? 1 : 0;
+      EXPECT_NEAR(there, index * index * back, 5e-4f * (there + 1e-3f)) << i;
+      if (there > 1e-3f) {
+        EXPECT_GT(std::abs(there - back), 0.1f * there);  // the control
+        ++lit;
+      }
       const Vec3 above = mirrored(wl);
       const float reflected = point_of(*material, wv).eval_one(above).f.g;
-      EXPECT_NEAR(reflected, point_of(*material, above).eval_one(wv).f.g, 1e-4f * (reflected + 1e-3f));
+      EXPECT_NEAR(reflected, point_of(*material, above).eval_one(wv).f.g, 5e-4f * (reflected + 1e-3f));
     }
     EXPECT_GT(lit, 30);
   }
@@ -133,12 +134,12 @@ TEST(GlassMaterial, IsReciprocalUpToTheSquareOfTheIndex) {
 /// Cycles evaluates refraction where no facet could refract, but samples nothing there.
 TEST(GlassMaterial, OnlyPathsSeeRefractionWithoutFacets) {
   const auto material = make_glass_material(glass(0.8f, 1.5f));
-  const Vec3 wv = direction(radians_from(70), 0);
-  const Vec3 wl = mirrored(direction(radians_from(85), 0.5f));  // |wl.z| < wv.z / 1.5: the half vector points down
+  const Vec3 wv = direction(radians_from(70.0f), 0);
+  const Vec3 wl = mirrored(direction(radians_from(85.0f), 0.5f));  // |wl.z| < wv.z / 1.5: the half vector points down
   EXPECT_EQ(point_of(*material, wv).eval_one(wl).f, Rgb(0.0f));
   EXPECT_EQ(point_of(*material, wv).eval_one(wl).pdf, 0);
   EXPECT_GT(point_of(*material, wv, false, kOfPath).eval_one(wl).f.g, 0);
-  const Vec3 usual = mirrored(direction(radians_from(40), kPi));
+  const Vec3 usual = mirrored(direction(radians_from(40.0f), kPi));
   EXPECT_EQ(point_of(*material, wv, false, kOfPath).eval_one(usual).f, point_of(*material, wv).eval_one(usual).f);
 }
 
