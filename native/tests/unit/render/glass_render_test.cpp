@@ -99,7 +99,7 @@ TEST(GlassRender, MixesShowBothLobesAndLayers) {
 TEST(GlassRender, IsOpaqueToShadowRays) {
   const auto under_sun = [](std::shared_ptr<const Material> pane) {
     Scene scene = window(std::move(pane), wall(0.5f));
-    scene.add_light({.type = Light::Type::sun, .color = Rgb(2.0f)});
+    scene.add_light({.type = Light::Type::sun, .color = Rgb(2.0f), .light_to_world = {}});
     scene.commit(2);
     return mean(scene, Strategy::mis, 2, 16);
   };
