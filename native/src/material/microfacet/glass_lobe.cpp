@@ -1,10 +1,13 @@
 #include "material/microfacet/glass_lobe.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
+#include <cstdint>
 
 #include "material/microfacet/ggx_albedo.h"
 #include "math/sphere/frame.h"
+#include "math/sphere/random.h"
 
 namespace velour {
 namespace {
@@ -110,9 +113,10 @@ Vec3 GlassLobe::refracted(const Vec3& normal, float cosine) const {
 }
 
 Vec3 GlassLobe::sample(const Vec2& u) const {
-  // Reflection is chosen by the fine bits of a number whose coarse ones place the normal.
-  constexpr float kStrata = 1024;
-  const float choice = u.x * kStrata - std::floor(u.x * kStrata);
+  // A third number. The low bits of one of the two would not do: in a scrambled sequence they depend on the index of
+  // the point as those of other sequences do.
+  const uint64_t bits = (uint64_t{std::bit_cast<uint32_t>(u.x)} << 32) + std::bit_cast<uint32_t>(u.y);
+  const float choice = unit_float(mix64(bits));
   // Roughnesses differ only where the share is the same for all facets.
   const bool is_refracted = p_.fresnel == GlassFresnel::surface && choice >= share_;
   const Vec3 h = sample_ggx_visible_normal(wv_, is_refracted ? refraction_alpha_ : alpha_, u);
