@@ -176,7 +176,7 @@ class Scenes(ParityTest):
         self.assert_parity("Glass BSDF: smooth, mixed with a Transparent BSDF")
 
     def test_rough_in_part_transparent(self):
-        """Strategies of Velour agree with each other; the reason is not known."""
+        """Cycles gives what passes straight a density of 1, and averages it with what is refracted straight on."""
         self._in_part_transparent(0.3)
         self.assert_approximate("Glass BSDF: rough, mixed with a Transparent BSDF", 12)
 
