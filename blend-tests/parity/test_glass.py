@@ -176,7 +176,7 @@ class Scenes(ParityTest):
         self.assert_parity("Glass BSDF: smooth, mixed with a Transparent BSDF")
 
     def test_rough_in_part_transparent(self):
-        """Cycles gives what passes straight a density of 1, and averages it with what is refracted straight on."""
+        """Where light goes straight on, Cycles averages what passes with what is refracted."""
         self._in_part_transparent(0.3)
         self.assert_approximate("Glass BSDF: rough, mixed with a Transparent BSDF", 12)
 
