@@ -131,7 +131,7 @@ class Scenes(ParityTest):
 
     def test_rough_pane(self):
         self._pane()
-        self.tree.end(self._glass(0.5))
+        self.tree.end(self._glass(0.3))
         self.assert_parity("Glass BSDF: rough pane")
 
     def test_refraction(self):
