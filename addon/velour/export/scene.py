@@ -64,19 +64,24 @@ class SceneExport:
         has_pictures = any(map(self.materials.has_pictures, changes.changed_materials(depsgraph)))
         return not (changes.everything or has_pictures or self._meshes.are_worn)
 
-    def take(self, depsgraph, view, check_break=lambda: None):
-        """Returns an Export. `check_break` is called often and raises to cancel. After any error, close()."""
+    def take(self, depsgraph, view, check_break=lambda: None, motion=None):
+        """Returns an Export. `check_break` is called often and raises to cancel. After any error, close().
+
+        `motion`: Motion of the frame, with the depsgraph in its middle; None: nothing moves.
+        """
         if self._strict:
             refuse_missing_libraries(depsgraph.scene)
         if self._changes is None:
             set_working_space(self.scene)
         else:
             self._drop_changed(depsgraph)
-        objects = self._add_objects(depsgraph, check_break)
+        for sentence in motion.sentences if motion else ():
+            self.notes.add(sentence)
+        objects = self._add_objects(depsgraph, check_break, motion)
         self._add_world(depsgraph)
         if self._strict:
             refuse_black(depsgraph, objects, self.materials, self._world_shines, self.notes)
-        view.add_to(self.scene)
+        (motion.on(view) if motion else view).add_to(self.scene)
         note_scene(depsgraph.scene_eval, self.notes)
         note_layer(depsgraph.view_layer_eval, self.notes)
         check_break()
@@ -96,10 +101,15 @@ class SceneExport:
         self.scene.clear_lights()
         self._meshes.begin(self._changes.geometry)
 
-    def _add_objects(self, depsgraph, check_break):
-        shows_uvs = "uv" in self._asked
+    def _add_objects(self, depsgraph, check_break, motion):
         objects = ObjectExport(
-            self.scene, self.materials, self.notes, check_break, meshes=self._meshes, shows_uvs=shows_uvs
+            self.scene,
+            self.materials,
+            self.notes,
+            check_break,
+            meshes=self._meshes,
+            shows_uvs="uv" in self._asked,
+            motion=motion,
         )
         objects.add_all(depsgraph)
         if self._changes is not None:

@@ -30,11 +30,11 @@ PixelFootprint::PixelFootprint(const Scene& scene, int width, int height, int ca
   pitch_ = part_ * window / Vec2(static_cast<float>(width), static_cast<float>(height));
 }
 
-RayCone PixelFootprint::cone_of(const Ray& ray) const {
+RayCone PixelFootprint::cone_along(const Vec3& direction, float time) const {
   const float side = std::sqrt(std::abs(pitch_.x * pitch_.y));
   if (camera_.type == Camera::Type::orthographic) return {side, 0.0f, part_};
   // A pixel lies at distance 1 / cosine from the eye, and its area appears scaled by the cosine.
-  const float cosine = std::max(0.0f, -glm::dot(ray.direction, camera_.place(ray.time).column(2)));
+  const float cosine = std::max(0.0f, -glm::dot(direction, camera_.place(time).column(2)));
   return {0.0f, side * std::sqrt(cosine) * cosine, part_};
 }
 

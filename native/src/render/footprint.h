@@ -38,14 +38,16 @@ class PixelFootprint {
   /// `width`, `height`: of the image; `camera_rays`: requested per pixel, even if the render ends early.
   PixelFootprint(const Scene& scene, int width, int height, int camera_rays);
 
-  /// Cone of a camera ray, at the camera: as wide as its pixel's solid angle, or an orthographic
+  /// Cone of a camera ray along unit `direction`, at the camera: as wide as its pixel's solid angle, or an orthographic
   /// pixel's area. Empty if no material of the scene varies.
-  RayCone cone(const Ray& ray) const { return needed_ ? cone_of(ray) : RayCone{}; }
+  RayCone cone(const Vec3& direction, float time = kMiddleTime) const {
+    return needed_ ? cone_along(direction, time) : RayCone{};
+  }
   /// Sides for a camera ray that ends at `position`: exact, by ray differentials [Ige99].
   RaySides sides(const Vec3& position, float time = kMiddleTime) const;
 
  private:
-  RayCone cone_of(const Ray& ray) const;
+  RayCone cone_along(const Vec3& direction, float time) const;
 
   const Camera& camera_;
   const bool needed_;

@@ -108,7 +108,7 @@ void TileRenderer::aim_paths(const PixelRect& run, int count) {
       const Vec2 through = has_lens ? camera.aperture.sample(on_lens[i - first]) : Vec2(0.0f);
       const float time = camera.shutter ? camera.shutter->time(times[i - first].x) : kMiddleTime;
       flight_.rays.push_back(camera.ray((pixel_of(i) + places[i - first]) / size, through, time));
-      flight_.paths[i].cone = pixel_.cone(flight_.rays.back());
+      flight_.paths[i].cone = pixel_.cone(flight_.rays.back().direction, time);
     }
   }
 }

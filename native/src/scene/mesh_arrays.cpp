@@ -104,7 +104,7 @@ void MeshArrays::check() const {
 MeshArrays MeshArrays::at(size_t step) const {
   MeshArrays arrays = *this;
   const auto part = [step](std::span<const Vec3> all, std::span<const Vec3>& of) {
-    if (!all.empty()) of = all.subspan(step * of.size(), of.size());
+    of = all.empty() ? all : all.subspan(step * of.size(), of.size());
   };
   part(moved_positions, arrays.positions);
   part(moved_corner_normals, arrays.corner_normals);
