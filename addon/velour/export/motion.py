@@ -27,20 +27,22 @@ def shutter_is_open(scene, layer):
     return scene.render.use_motion_blur and getattr(layer, "use_motion_blur", True)
 
 
-@contextlib.contextmanager
-def motion_of_frame(engine, depsgraph, asked, check_break):
-    """Yields the Motion of a frame, with the depsgraph in the middle of it; None: no image shows it.
+def shows_motion(depsgraph, asked):
+    """Whether an image shows what moves. `asked`: keys of table.PASSES."""
+    return "vector" in asked or shutter_is_open(depsgraph.scene_eval, depsgraph.view_layer_eval)
 
-    `asked`: keys of table.PASSES. `check_break` is called often and raises to cancel.
+
+@contextlib.contextmanager
+def motion_of_frame(engine, depsgraph, check_break):
+    """Yields the Motion of a frame, with the depsgraph in the middle of it.
+
+    `check_break` is called often and raises to cancel.
     """
-    blurs = shutter_is_open(depsgraph.scene_eval, depsgraph.view_layer_eval)
-    if not blurs and "vector" not in asked:
-        yield None
-        return
     scene = depsgraph.scene
+    blurs = shutter_is_open(depsgraph.scene_eval, depsgraph.view_layer_eval)
     frame, subframe = scene.frame_current, scene.frame_subframe
     try:
-        motion = Motion(depsgraph, blurs)
+        motion = Motion(depsgraph, frame, blurs)
         for key, time in motion.times(frame + subframe):
             check_break()
             engine.frame_set(math.floor(time), time - math.floor(time))
@@ -54,8 +56,9 @@ def motion_of_frame(engine, depsgraph, asked, check_break):
 class Motion:
     """What moves: camera, instances and meshes, each with its own number of keys at even times."""
 
-    def __init__(self, depsgraph, blurs):
-        """`blurs`: false if only the pass Vector shows it."""
+    def __init__(self, depsgraph, frame, blurs):
+        """`frame`: the one that is rendered. `blurs`: false if only the pass Vector shows what moves."""
+        self.frame = frame
         scene, render = depsgraph.scene, depsgraph.scene_eval.render
         self._depsgraph, self._blurs = depsgraph, blurs
         self._frames = render.motion_blur_shutter if blurs else _FRAMES_OF_VECTOR  # from the first key to the last

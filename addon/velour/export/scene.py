@@ -78,10 +78,10 @@ class SceneExport:
         for sentence in motion.sentences if motion else ():
             self.notes.add(sentence)
         objects = self._add_objects(depsgraph, check_break, motion)
-        self._add_world(depsgraph)
+        self._add_world(depsgraph, motion.frame if motion else depsgraph.scene.frame_current)
         if self._strict:
             refuse_black(depsgraph, objects, self.materials, self._world_shines, self.notes)
-        (motion.on(view) if motion else view).add_to(self.scene)
+        view.add_to(self.scene)
         note_scene(depsgraph.scene_eval, self.notes)
         note_layer(depsgraph.view_layer_eval, self.notes)
         check_break()
@@ -116,10 +116,9 @@ class SceneExport:
             self._meshes.remove_unused(self.scene)
         return objects
 
-    def _add_world(self, depsgraph):
+    def _add_world(self, depsgraph, frame):
         world = shown_world(depsgraph)
         if self._changes is None or self._changes.world or has_moving_picture(world):
-            frame = depsgraph.scene.frame_current
             self._world_shines = add_world(self._world, world, frame, self.notes)
 
     def _passes(self, depsgraph, objects):
