@@ -26,9 +26,7 @@ class View(NamedTuple):
 
     def add_to(self, scene):
         clips = {"clip_start": self.clip_start, "clip_end": self.clip_end}
-        scene.set_camera(
-            self.kind, self.camera_to_world, self.window, **clips, **self.lens, **self.motion
-        )
+        scene.set_camera(self.kind, self.camera_to_world, self.window, **clips, **self.lens, **self.motion)
 
     def along_axes(self, directions):
         """World directions [n x 3] along the camera's axes: right, up and into the scene."""

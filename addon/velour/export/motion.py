@@ -1,7 +1,7 @@
-"""Motion while the shutter is open, read when Cycles reads it (blender/sync.cpp, sync_motion).
+"""Motion while the shutter is open, read when Cycles reads it (sync_motion in blender/sync.cpp).
 
-The engine steps through the times before anything is exported, and then stays in the middle until it returns to
-the frame. For the pass Vector, the times are those of the previous and of the next frame.
+The engine steps through the times before anything is exported, stays in the middle for the export, and then
+returns to the frame. For the pass Vector, the times are those of the previous and of the next frame.
 """
 
 import contextlib
@@ -61,7 +61,9 @@ class Motion:
         self.frame = frame
         scene, render = depsgraph.scene, depsgraph.scene_eval.render
         self._depsgraph, self._blurs = depsgraph, blurs
-        self._frames = render.motion_blur_shutter if blurs else _FRAMES_OF_VECTOR  # from the first key to the last
+        self._frames = (
+            render.motion_blur_shutter if blurs else _FRAMES_OF_VECTOR
+        )  # from the first key to the last
         self._middle = _MIDDLE[_position(depsgraph.scene_eval)] * self._frames if blurs else 0.0
         self._shutter = _shutter_curve(render) if blurs else None
         self._camera = scene.camera
@@ -181,7 +183,7 @@ class Motion:
         return min((2 << (max(steps, 1) - 1)) + 1, _MOST_KEYS)
 
     def _asks(self, obj, parent, name):
-        """Whether the object and what instances it both have a setting of Cycles; they have it without Cycles."""
+        """Whether a setting of Cycles is on for the object and for what instances it; without Cycles it is."""
         settings = (getattr(each, "cycles", None) for each in (obj, parent))
         return not self._blurs or all(getattr(each, name, True) for each in settings)
 
@@ -206,14 +208,14 @@ class Motion:
             return None
         if not all(shape is not None and middle.fits(shape) for shape in shapes):
             self.sentences.append(
-                f"Object '{self._names[owner]}': its number of vertices changes while the shutter is open; its"
-                " deformation is not blurred. Keep that number, or disable Deformation in its motion blur."
+                f"Object '{self._names[owner]}': its number of vertices changes while the shutter is open, so"
+                " its deformation is not blurred; keep the number, or disable Deformation in its Motion Blur."
             )
             return None
         if all((shape.positions == middle.positions).all() for shape in shapes):
             return None
         return {
-            f"moved_{field}": None if middle[i] is None else np.concatenate([each[i].ravel() for each in shapes])
+            f"moved_{field}": None if middle[i] is None else np.stack([each[i] for each in shapes])
             for i, field in enumerate(middle._fields)
         }
 

@@ -99,10 +99,15 @@ class Scene(Handle):
         object_to_world [3 x 4], or [steps x 3 x 4] of an instance that moves, at even times while the shutter
         is open.
         """
-        steps = len(object_to_world) if np.ndim(object_to_world) == 3 else 1
+        moves = getattr(object_to_world, "ndim", 2) == 3
+        steps = len(object_to_world) if moves else 1
         self._set_looks(hidden, terminator, steps)
         numbers = (c_uint32 * len(materials))(*materials)
-        matrix = small("object_to_world", object_to_world, 12 * steps)
+        matrix = (
+            small("object_to_world", object_to_world, 12 * steps)
+            if moves
+            else affine("object_to_world", object_to_world)
+        )
         if placements is not None:
             placements = small("placements", placements, 6 * len(materials))
         self._lib.vlr_scene_add_placed_instance(self.pointer, mesh, matrix, numbers, placements, len(numbers))
@@ -115,7 +120,7 @@ class Scene(Handle):
 
         Otherwise like add_instance().
         """
-        rest = (None, 3, 4) if np.ndim(object_to_world) == 4 else (3, 4)
+        rest = (None, 3, 4) if getattr(object_to_world, "ndim", 3) == 4 else (3, 4)
         matrices = checked("object_to_world", object_to_world, (None, *rest))
         meshes = checked("meshes", meshes, (len(matrices),), np.uint32)
         self._set_looks(hidden, terminator, matrices.shape[1] if matrices.ndim == 4 else 1)
@@ -276,8 +281,8 @@ class Scene(Handle):
         (orthographic). clip_start, clip_end in meters. aperture: radius of the lens, focus: focus distance,
         meters; blades, blade_rotation (radians), aperture_ratio (height over width): shape of the aperture.
 
-        shutter, float32 [n]: how far it is open, at even times; None: nothing blurs. motion [steps x 3 x 4] and
-        motion_window [steps x 4], float32: in place of camera_to_world and window, if the camera moves or zooms.
+        shutter, float32 [n]: how far it is open, at even times; None: nothing blurs. motion [steps x 3 x 4]
+        and motion_window [steps x 4], float32: in place of camera_to_world and window, if they change.
         """
         values = {"type": choice("camera", kind, table.CAMERAS), "window": window, **values}
         desc = self._desc(structs.CameraDesc, "vlr_camera_desc_init", values)

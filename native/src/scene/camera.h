@@ -36,10 +36,10 @@ struct Camera {
 
   /// Where the camera is at even times while its shutter is open, linear in between; camera_to_world and window are
   /// those of the middle. Empty: it does not move, or does not zoom.
-  std::vector<Affine> steps;
-  std::vector<std::array<float, 4>> windows;
+  std::vector<Affine> steps = {};
+  std::vector<std::array<float, 4>> windows = {};
   /// Empty: the shutter opens for an instant in the middle, and nothing blurs.
-  std::optional<Shutter> shutter;
+  std::optional<Shutter> shutter = std::nullopt;
 
   Affine place(float time) const { return steps.empty() ? camera_to_world : interpolated(steps, time); }
   std::array<float, 4> window_at(float time) const;

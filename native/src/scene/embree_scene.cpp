@@ -119,8 +119,8 @@ struct EmbreeScene::Impl {
       hit.instance = kNoHit;
       return;
     }
-    const bool is_placed = from.hit.instID[0] == RTC_INVALID_GEOMETRY_ID;
-    hit.instance = is_placed ? from.hit.geomID : from.hit.instID[0];
+    const bool in_top = from.hit.instID[0] == RTC_INVALID_GEOMETRY_ID;
+    hit.instance = in_top ? from.hit.geomID : from.hit.instID[0];
     hit.distance = from.ray.tfar;
     hit.u = from.hit.u;
     hit.v = from.hit.v;
@@ -129,7 +129,7 @@ struct EmbreeScene::Impl {
     hit.time = from.ray.time;
     const Vec3 normal(from.hit.Ng_x, from.hit.Ng_y, from.hit.Ng_z);
     const Instance& of = instances[hit.instance];
-    if (is_placed) {
+    if (in_top) {
       hit.geometric_normal = of.front * normal;
     } else {
       hit.geometric_normal =

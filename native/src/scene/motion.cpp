@@ -1,6 +1,7 @@
 #include "scene/motion.h"
 
 #include <cmath>
+#include <functional>
 #include <glm/gtc/quaternion.hpp>
 
 namespace velour {
