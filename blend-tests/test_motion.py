@@ -79,9 +79,9 @@ class MotionBlur(BlenderTest):
 
     def test_the_frame_is_back_after_an_error(self):
         module = importlib.import_module(f"{inputs.ADDON}.export.motion")
-        with mock.patch.object(module.Motion, "finish", side_effect=ZeroDivisionError):
-            with self.assertRaisesRegex(RuntimeError, "ZeroDivisionError"):
-                self._rendered()
+        breaks = mock.patch.object(module.Motion, "finish", side_effect=ZeroDivisionError)
+        with breaks, self.assertRaisesRegex(RuntimeError, "ZeroDivisionError"):
+            self._rendered()
         self.assertEqual(self.read[-1], 3.0)
         self.assertEqual(self.scene.frame_current, 3)
 

@@ -183,7 +183,7 @@ class Motion:
         return min((2 << (max(steps, 1) - 1)) + 1, _MOST_KEYS)
 
     def _asks(self, obj, parent, name):
-        """Whether a setting of Cycles is on for the object and for what instances it; without Cycles it is."""
+        """Whether a setting of Cycles is on for the object and for what instances it; without Cycles: yes."""
         settings = (getattr(each, "cycles", None) for each in (obj, parent))
         return not self._blurs or all(getattr(each, name, True) for each in settings)
 

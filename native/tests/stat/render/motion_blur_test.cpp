@@ -179,6 +179,24 @@ TEST(MotionBlur, ADeformingSquareCoversWhatIsLeftOfIt) {
   EXPECT_TRUE(tests.agree());
 }
 
+TEST(MotionBlur, ShadowsMoveWithWhatCastsThem) {
+  Scene scene = moving_ball({1.0f});
+  scene.clear_instances();
+  scene.set_environment(Environment::constant(Rgb(0.0f)));
+  const uint32_t ground = scene.add_mesh(test::square(4));
+  const uint32_t gray = scene.add_material({std::make_shared<test::Lambert>(0.5f), Rgb(0.0f), false});
+  scene.add_instance(ground, shift({0, 0, -1}), {gray});
+  const std::vector<Affine> steps = {shift({-1, 0, 0}, Vec3(0.5f)), shift({1, 0, 0}, Vec3(0.5f))};
+  scene.add_moving_instance(0, steps, {0}, {}, hidden::kFromCamera);
+  Light sun;  // straight down
+  sun.color = Rgb(2 * kPi);
+  scene.add_light(sun);
+  scene.commit(1);
+  ZTests tests;
+  compare_pixels(scene, ball_clear, tests);
+  EXPECT_TRUE(tests.agree());
+}
+
 /// Light of a square that moves, on a plane: sampled as a light and found by directions of the surface.
 TEST(MotionBlur, StrategiesAgreeOnTheLightOfWhatMoves) {
   ZTests tests, control;
