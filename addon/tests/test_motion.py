@@ -42,8 +42,10 @@ def test_a_square_that_moves_covers_its_share_of_the_time():
     ends = np.arange(17) / 4 - 2
     x = (ends[1:] + ends[:-1]) / 2
     np.testing.assert_allclose(alpha, 1 - np.abs(x) / 2, atol=0.02)
-    np.testing.assert_allclose(_rendered(_shifted(0), -moving, shutter=_EVEN)[8, :, 3], alpha, atol=0.03)
-    shapes = np.stack([_SQUARE - (1, 0, 0), _SQUARE + (1, 0, 0)]).astype(np.float32)
+    back = moving[::-1].copy()
+    np.testing.assert_allclose(_rendered(_shifted(0), back, shutter=_EVEN)[8, :, 3], alpha, atol=0.03)
+    way = np.array((1, 0, 0), np.float32)
+    shapes = np.stack([_SQUARE - way, _SQUARE + way])
     np.testing.assert_allclose(_rendered(_shifted(0), moved=shapes, shutter=_EVEN)[8, :, 3], alpha, atol=0.03)
     late = _rendered(moving, shutter=np.array([0, 0, 0, 1], np.float32))[8, :, 3]
     assert late[:4].max() < 0.1 < alpha[3]
