@@ -14,7 +14,7 @@ struct Decomposed {
   Vec3d shift;
 };
 
-/// Polar decomposition by Newton's iteration (Higham 1986). A mirrored stretch keeps the rotation proper.
+/// Polar decomposition by Newton's iteration [SD92]. A mirrored stretch keeps the rotation proper.
 Decomposed decomposed(const Affine& map) {
   const glm::dmat3 linear(Vec3d(map.column(0)), Vec3d(map.column(1)), Vec3d(map.column(2)));
   glm::dmat3 turn = linear;
