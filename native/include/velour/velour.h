@@ -1143,7 +1143,7 @@ enum {
   VLR_PASS_CRYPTO_MATERIAL = 256, /* "CryptoMaterial00", ...: likewise */
   VLR_PASS_CRYPTO_ASSET = 512,    /* "CryptoAsset00", ...: likewise */
   VLR_PASS_DENOISING_ALBEDO =
-      1024,              /* "Denoising Albedo" 3: albedo plus emission of surfaces and environment; may exceed 1 */
+      1024,               /* "Denoising Albedo" 3: albedo plus emission of surfaces and environment; may exceed 1 */
   VLR_PASS_HALVES = 2048, /* "Halves" 18: means of color, denoising albedo and normal (3 each) over the even camera
                              rays, then over the odd ones */
   /* "Vector" 4: motion of what is seen, in pixels, x to the right and y up: its place when the shutter opens minus that

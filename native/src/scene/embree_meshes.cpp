@@ -203,8 +203,7 @@ RTCScene EmbreeMeshes::scene_of(std::span<const Vec3> positions, std::span<const
   for (const glm::uvec3& t : triangles) {
     if (std::max({t.x, t.y, t.z}) >= vertices) {
       throw Error(Status::invalid_argument, "A triangle has vertex index " + std::to_string(std::max({t.x, t.y, t.z})) +
-                                                ", but the mesh has only " + std::to_string(vertices) +
-                                                " vertices.");
+                                                ", but the mesh has only " + std::to_string(vertices) + " vertices.");
     }
   }
   RTCGeometry geometry = api_.rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_TRIANGLE);

@@ -132,8 +132,7 @@ struct EmbreeScene::Impl {
     if (in_top) {
       hit.geometric_normal = of.front * normal;
     } else {
-      hit.geometric_normal =
-          (of.moves() ? interpolated(of.steps, hit.time).normal_map() : of.normal_to_world) * normal;
+      hit.geometric_normal = (of.moves() ? interpolated(of.steps, hit.time).normal_map() : of.normal_to_world) * normal;
     }
   }
 };

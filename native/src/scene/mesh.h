@@ -114,7 +114,7 @@ class Mesh {
   std::vector<Vec3> positions_;
   Bounds bounds_;
   std::vector<glm::uvec3> triangles_;
-  std::vector<Vec3> normals_;                // 3 per triangle
+  std::vector<Vec3> normals_;  // 3 per triangle
   uint32_t steps_ = 0;
   std::vector<Vec3> moved_positions_;        // by step and vertex
   std::vector<Vec3> moved_normals_;          // by step, 3 per triangle

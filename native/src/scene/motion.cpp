@@ -60,7 +60,8 @@ std::vector<Affine> motion_steps(std::span<const Affine> keys) {
     if (parts.size() > 1) turn = std::max(turn, angle_between(parts[parts.size() - 2], parts.back()));
   }
   const size_t most = (kMaxMotionSteps - 1) / (keys.size() - 1);
-  const size_t pieces = std::clamp<size_t>(static_cast<size_t>(std::ceil(turn / kMaxTurn)), 1, std::max<size_t>(1, most));
+  const size_t pieces =
+      std::clamp<size_t>(static_cast<size_t>(std::ceil(turn / kMaxTurn)), 1, std::max<size_t>(1, most));
   if (pieces == 1) return steps;
   steps.clear();
   for (size_t i = 0; i + 1 < keys.size(); ++i) {

@@ -215,7 +215,7 @@ class Scene {
     const ShellTop* top = nullptr;
     uint32_t traced = kNoHit;
     std::vector<float> tile_width = {};
-    uint32_t sides = kNoHit;  // number of the instance of the shell's sides alone; kNoHit: none
+    uint32_t sides = kNoHit;         // number of the instance of the shell's sides alone; kNoHit: none
     std::vector<Affine> steps = {};  // if it moves: motion_steps()
 
     bool moves() const { return !steps.empty(); }

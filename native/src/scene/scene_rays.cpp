@@ -123,8 +123,7 @@ Scene::ShellFoot Scene::shell_foot(const Hit& hit) const {
   foot.top.triangle = point.triangle;
   foot.top.u = point.uv.x;
   foot.top.v = point.uv.y;
-  foot.top.geometric_normal =
-      instance.normal_map(hit.time) * glm::cross(corner[1] - corner[0], corner[2] - corner[0]);
+  foot.top.geometric_normal = instance.normal_map(hit.time) * glm::cross(corner[1] - corner[0], corner[2] - corner[0]);
   return foot;
 }
 

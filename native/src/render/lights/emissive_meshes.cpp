@@ -101,8 +101,9 @@ Hit EmissiveMeshes::sample(uint32_t light, const LightPlace& place, double x, fl
   const Vec3 to_point = instance.place(time).point(mesh.position(triangle, weights, time)) - place.position;
   const float distance = glm::length(to_point);
   direction = distance > 0.0f ? to_point / distance : Vec3(0.0f);
-  Hit hit{distance,       instance.normal_map(time) * double_area(mesh, triangle, {}, time), weights.x, weights.y, triangle,
-          chosen.instance};
+  Hit hit{distance,  instance.normal_map(time) * double_area(mesh, triangle, {}, time),
+          weights.x, weights.y,
+          triangle,  chosen.instance};
   hit.time = time;
   return hit;
 }

@@ -55,7 +55,7 @@ class EmissiveMeshes {
     uint32_t instance;  // index in the scene
     uint32_t group;
     Affine to_object;  // in the middle of its motion
-    uint32_t light;  // index in lights_, or EmissiveGroup::kNone
+    uint32_t light;    // index in lights_, or EmissiveGroup::kNone
   };
   bool stops(const Hit& hit) const;
   const EmissiveGroup& group(const Place& place) const { return groups_[place.group]; }

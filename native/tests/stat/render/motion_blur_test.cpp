@@ -213,11 +213,14 @@ TEST(MotionBlur, StrategiesAgreeOnTheLightOfWhatMoves) {
     camera.shutter.emplace();
     scene.set_camera(camera);
     scene.commit(1);
-    return test::independent_renders(scene, [&] {
-      RenderOptions options = test::small_options(strategy, 256);
-      options.split = 1;
-      return options;
-    }(), kRenders, 1, 2);
+    return test::independent_renders(
+        scene,
+        [&] {
+          RenderOptions options = test::small_options(strategy, 256);
+          options.split = 1;
+          return options;
+        }(),
+        kRenders, 1, 2);
   };
   const auto expected = lit(Strategy::mis, 1);
   compare("cosine", lit(Strategy::cosine, 1), expected, tests);

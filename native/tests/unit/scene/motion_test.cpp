@@ -209,7 +209,8 @@ TEST(MovingMesh, HasShapesAndNormalsOfItsSteps) {
   // A flat triangle has the normal of its corners at that time, not a mean of normals.
   const Vec3 exact = glm::normalize(Vec3(-2.5f, 0, 1));
   EXPECT_NEAR(glm::dot(glm::normalize(flat.shading_normal(0, {0.2f, 0.2f}, 0.75f)), exact), 1, 1e-6f);
-  const std::vector<Vec3> given = {{0, 0, 1}, {0, 0, 1}, {0, 0.6f, 0.8f}}, tilted = {{0, 0, 1}, {1, 0, 0}, {0, 0.6f, 0.8f}};
+  const std::vector<Vec3> given = {{0, 0, 1}, {0, 0, 1}, {0, 0.6f, 0.8f}},
+                          tilted = {{0, 0, 1}, {1, 0, 0}, {0, 0.6f, 0.8f}};
   std::vector<Vec3> normals = given;
   normals.insert(normals.end(), given.begin(), given.end());
   normals.insert(normals.end(), tilted.begin(), tilted.end());
