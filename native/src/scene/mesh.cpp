@@ -62,6 +62,12 @@ void Mesh::copy_shapes(const MeshArrays& arrays, std::span<const uint32_t> kept)
   for (Vec3& p : moved_positions_) {
     if (!usable_position(p)) p = Vec3(0.0f);
   }
+  flat_.resize(triangles_.size());
+  for (size_t i = 0; i < flat_.size(); ++i) {
+    const glm::uvec3& t = triangles_[i];
+    const Vec3 flat = unit(area_normal(positions_[t.x], positions_[t.y], positions_[t.z]));
+    flat_[i] = std::all_of(&normals_[3 * i], &normals_[3 * i] + 3, [&](const Vec3& n) { return n == flat; });
+  }
   moved_normals_.resize(steps_ * normals_.size());
   for (size_t step = 0; step < steps_; ++step) {
     const MeshArrays shape = arrays.at(step);
@@ -199,13 +205,11 @@ std::array<Vec3, 3> Mesh::corner_normals(uint32_t triangle, float time) const {
   const Vec3* const one = &moved_normals_[at.before * normals_.size() + first];
   const Vec3* const other = one + normals_.size();
   std::array<Vec3, 3> n;
-  if (one[0] == one[1] && one[0] == one[2] && other[0] == other[1] && other[0] == other[2]) {
-    // A flat triangle turns evenly only if its corners do.
+  if (triangle < flat_.size() && flat_[triangle]) {  // it turns as its corners move, not evenly
     const std::array<Vec3, 3> p = corners(triangle, time);
     const Vec3d flat = area_normal(p[0], p[1], p[2]);
-    const Vec3 mean = at.between(one[0], other[0]);
     if (glm::length(flat) > 0.0) {
-      n.fill(glm::dot(flat, Vec3d(mean)) < 0.0 ? -unit(flat) : unit(flat));
+      n.fill(unit(flat));
       return n;
     }
   }
@@ -328,6 +332,7 @@ Mesh Mesh::lifted(std::span<const ShellHeights> heights, const Mat3& metric) con
   add_raised(positions_, normals_, mesh.positions_);
   mesh.moved_positions_.clear();
   mesh.moved_normals_.clear();
+  mesh.flat_.clear();  // the shell follows the normals
   for (size_t step = 0; step < steps_; ++step) {
     const auto normals = std::span(moved_normals_).subspan(step * normals_.size(), normals_.size());
     add_raised(std::span(moved_positions_).subspan(step * count, count), normals, mesh.moved_positions_);

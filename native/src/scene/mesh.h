@@ -118,6 +118,7 @@ class Mesh {
   uint32_t steps_ = 0;
   std::vector<Vec3> moved_positions_;        // by step and vertex
   std::vector<Vec3> moved_normals_;          // by step, 3 per triangle
+  std::vector<bool> flat_;                   // by triangle of a mesh that deforms: shaded with its own normal
   std::vector<Vec2> uvs_;                    // 3 per triangle, or none
   std::vector<std::vector<Vec2>> more_uvs_;  // further sets, without sides
   std::vector<Vec2> relief_uvs_;             // 3 per triangle until tangents exist; none: the first set is used
