@@ -62,12 +62,17 @@ void Mesh::copy_shapes(const MeshArrays& arrays, std::span<const uint32_t> kept)
   for (Vec3& p : moved_positions_) {
     if (!usable_position(p)) p = Vec3(0.0f);
   }
-  flat_.resize(triangles_.size());
-  for (size_t i = 0; i < flat_.size(); ++i) {
-    const glm::uvec3& t = triangles_[i];
-    const Vec3 flat = unit(area_normal(positions_[t.x], positions_[t.y], positions_[t.z]));
-    flat_[i] = std::all_of(&normals_[3 * i], &normals_[3 * i] + 3, [&](const Vec3& n) { return n == flat; });
-  }
+  flat_.assign(triangles_.size(), true);
+  const auto keep_flat = [&](std::span<const Vec3> positions, std::span<const Vec3> normals) {
+    constexpr double kMinCosine = 1 - 1e-6;
+    for (size_t i = 0; i < flat_.size(); ++i) {
+      const glm::uvec3& t = triangles_[i];
+      const Vec3d own = area_normal(positions[t.x], positions[t.y], positions[t.z]);
+      const double least = kMinCosine * glm::length(own);
+      for (size_t k = 0; k < 3; ++k) flat_[i] = flat_[i] && glm::dot(own, Vec3d(normals[3 * i + k])) >= least;
+    }
+  };
+  keep_flat(positions_, normals_);
   moved_normals_.resize(steps_ * normals_.size());
   for (size_t step = 0; step < steps_; ++step) {
     const MeshArrays shape = arrays.at(step);
@@ -78,8 +83,9 @@ void Mesh::copy_shapes(const MeshArrays& arrays, std::span<const uint32_t> kept)
           normals[3 * i + static_cast<size_t>(k)] = shape.normal(kept[i], k, triangles_[i][k]);
       }
     });
-    finish_normals(shape, kept, std::span(moved_positions_).subspan(step * positions_.size(), positions_.size()),
-                   normals);
+    const auto positions = std::span(moved_positions_).subspan(step * positions_.size(), positions_.size());
+    finish_normals(shape, kept, positions, normals);
+    keep_flat(positions, normals);
   }
 }
 

@@ -201,7 +201,9 @@ TEST(MovingMesh, HasShapesAndNormalsOfItsSteps) {
     for (const Vec3& p : kCorners) shapes.push_back(p + Vec3(0, 0, rise * p.x));
   }
   const std::vector<Vec3> middle(shapes.begin() + 3, shapes.begin() + 6);
-  const Mesh flat({.positions = middle, .triangles = kTriangle, .steps = 3, .moved_positions = shapes});
+  const std::vector<uint8_t> not_smooth = {0};
+  const Mesh flat(
+      {.positions = middle, .triangles = kTriangle, .smooth = not_smooth, .steps = 3, .moved_positions = shapes});
   ASSERT_TRUE(flat.deforms());
   EXPECT_EQ(flat.position(0, {1, 0}), Vec3(1, 0, 1));
   EXPECT_EQ(flat.position(0, {1, 0}, 0.75f), Vec3(1, 0, 2.5f));
