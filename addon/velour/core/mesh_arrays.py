@@ -21,7 +21,7 @@ class MeshArrays(NamedTuple):
     more_uvs: np.ndarray | None = None
     relief_uvs: np.ndarray | None = None
     corner_colors: np.ndarray | None = None
-    # Of a mesh that deforms: [steps x ...] of the arrays of these names.
+    # Shapes of a mesh that deforms: [steps x ...] of the arrays of these names.
     moved_positions: np.ndarray | None = None
     moved_corner_normals: np.ndarray | None = None
     moved_vertex_normals: np.ndarray | None = None
