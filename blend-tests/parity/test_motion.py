@@ -79,7 +79,7 @@ class Motion(ParityTest):
         self.assert_parity("Motion blur: shape key")
 
     def test_smooth_shape_key(self):
-        """Moved by a key: as Cycles shows it moved as a whole, since Cycles 3.4 shades the two differently."""
+        """Moved by a key, as Cycles shows it moved as a whole: Cycles 3.4 shades the two differently."""
         ball = self._ball(smooth=True)
         self._bend(ball, lambda p: (p.x + 1.2, p.y, p.z))
         blur(self.scene)
