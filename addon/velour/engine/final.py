@@ -58,10 +58,8 @@ def render_final(engine, depsgraph):
     moves = not engine.is_preview and shows_motion(depsgraph, asked)
     with engine.kept_scene.frame(depsgraph, not engine.is_preview, asked, moves) as export:
         notes = export.notes
-        read = motion_of_frame(engine, depsgraph, check_break) if moves else contextlib.nullcontext()
-        with read as motion:
-            view = motion.on(final_view(depsgraph)) if motion else final_view(depsgraph)
-            native_scene, materials, surroundings, passes = export.take(depsgraph, view, check_break, motion)
+        view, taken = _take(engine, depsgraph, export, moves, check_break)
+        native_scene, materials, surroundings, passes = taken
         engine.update_stats("Velour", _exported(native_scene.info(), time.monotonic() - begin))
         stamps = {}
         if not engine.is_preview:
@@ -93,6 +91,14 @@ def render_final(engine, depsgraph):
         engine.stamps.add(result, depsgraph, materials.models, stamps, fields)
         if passes:
             stamp_cryptomattes(result, depsgraph.view_layer_eval, passes.names)
+
+
+def _take(engine, depsgraph, export, moves, check_break):
+    """The View and the Export of a frame. `moves`: with its motion."""
+    read = motion_of_frame(engine, depsgraph, check_break) if moves else contextlib.nullcontext()
+    with read as motion:
+        view = motion.on(final_view(depsgraph)) if motion else final_view(depsgraph)
+        return view, export.take(depsgraph, view, check_break, motion)
 
 
 def _render_layer(engine, depsgraph, view, shown, surroundings, film, denoise):
