@@ -10,7 +10,7 @@ import sys
 from collections.abc import Callable, Sequence
 from pathlib import Path
 
-from .velour_cli import ROOT
+from .project import ROOT
 
 sys.path.append(str(ROOT / "blend-tests"))
 
@@ -60,8 +60,9 @@ def in_window(
     options: Sequence[str] = (),
     files: Sequence[Path] = (),
     seconds: float = 3600,
-) -> None:
-    """Calls start(folder) of a script in a window of `screen` pixels, and waits for the report of its steps.
+) -> dict:
+    """Calls start(folder) of a script in a window of `screen` pixels, waits for the report of its steps, and
+    returns the result.json that it leaves in the folder.
 
     The folder is new, with copies of `files` and the task as task.json. `program`: Blender's name or path.
     """
@@ -83,6 +84,7 @@ def in_window(
     found = report.read(folder)
     if status != 0 or not found or any(test.outcome == report.FAILED for test in found):
         raise BlenderError(f"{folder.name} failed in Blender; {_ending(log)}")
+    return json.loads((folder / "result.json").read_text())
 
 
 def _ending(log: Path) -> str:

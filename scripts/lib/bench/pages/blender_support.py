@@ -11,11 +11,12 @@ import re
 import subprocess
 from collections.abc import Iterator
 
-from .. import blender, page, provenance
+from .. import blender
+from ..project import ROOT
 from ..run import Run
-from ..velour_cli import ROOT
 
 SETTINGS = {"last": (False, False), "renders": (3, 1)}  # renders: of each engine, in turn; the fastest counts
+PAGES = {"blender_parity.md": "blender_parity", "blender_export.md": "blender_export"}
 _ROWS = ROOT / "build/blend-tests/parity"
 _SCENES = {
     "one mesh of 5 million triangles": {"kind": "grid", "count": 5_000_000},
@@ -51,28 +52,11 @@ def _export(run: Run, name: str, task: dict) -> dict:
     return {"scene": name, "hierarchies": min(float(tracing) for _, _, tracing in ours), **numbers}
 
 
-def write(run: Run, found: dict) -> None:
+def values(found: dict) -> dict:
     rows = found["parity"]
-    sentence = f"{provenance.sentence(found['conditions'])} Blender and Cycles {rows[0]['blender']}."
-    agreeing = page.table(
-        _groups([row for row in rows if row["verdict"] == "honored"]),
-        "honored | features | largest block difference, % | in standard errors",
-        "{group} | {features} | {percent:.2f} | {errors:s}",
-    )
-    others = page.table(
-        (row | {"errors": _errors([row])} for row in rows if row["verdict"] != "honored"),
-        "feature | verdict | largest block difference, % | in standard errors",
-        "{feature} | {verdict} | {percent:.2f} | {errors:s}",
-    )
-    parity = f"{agreeing}\n{others}"
-    export = page.table(
-        found["export"],
-        "scene | export, s | Cycles' synchronisation, s | ratio | hierarchies for tracing, s | MiB",
-        "{scene} | {seconds:.2f} | {cycles:.2f} | {ratio:.2f} | {hierarchies:.2f} | {mib}",
-    )
-    for name, text in (("parity", parity), ("export", export)):
-        part = {name: f"\n{sentence}\n\n{text}\n"}
-        page.write_parts(run.output, f"blender_{name}.md", "blender_support", **part)
+    others = [row | {"errors": _errors([row])} for row in rows if row["verdict"] != "honored"]
+    groups = _groups([row for row in rows if row["verdict"] == "honored"])
+    return {"blender": rows[0]["blender"], "groups": groups, "others": others, "export": found["export"]}
 
 
 def _groups(rows: list[dict]) -> Iterator[dict]:

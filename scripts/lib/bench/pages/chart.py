@@ -11,24 +11,16 @@ import numpy as np
 from velour.native import images
 from velour.native.table import STRATEGIES
 
-from .. import charts, mitsuba, page
+from .. import charts, mitsuba
 from ..curve import Curve, Reading, ratio, shown
+from ..page import judged
+from ..project import BUILT
 from ..reference import Reference, points
-from ..run import BUILT, Run
-from ..scenes import (
-    STUDIO,
-    SUN,
-    SUN_DIAMETER,
-    SUN_SHARE,
-    SUNSET,
-    Scene,
-    Subject,
-    made,
-    subjects,
-    write_sunny_sky,
-)
+from ..run import Run, words_of
+from ..scenes import STUDIO, SUN, SUN_DIAMETER, SUN_SHARE, SUNSET, Scene, Subject, subjects, write_sunny_sky
 
 CSV = "chart/chart.csv"
+PAGES = {"chart/README.md": "chart"}
 SETTINGS = {
     "size": ((320, 240), (48, 36)),
     "worlds": ((STUDIO, SUNSET), (SUNSET,)),
@@ -64,7 +56,7 @@ _MOST_GGX_ERROR = 0.2  # relative L2 above which SRBF lobes must be clearly fast
 def measure(run: Run) -> dict:
     shown_ = subjects(run)
     scenes = [(s, world, s.scene(world, run.data)) for s in shown_ for world in run.settings.worlds]
-    sky, bunny = made(run.kept / "sunny.exr", write_sunny_sky), shown_[0]
+    sky, bunny = run.made("sunny.exr", write_sunny_sky), shown_[0]
     scenes.append((bunny, SKY, Scene(f"{bunny.name}, {SKY}", bunny.mesh, "y", sky, bunny.model)))
     for _ in scenes:
         for name in _curves(run):
@@ -119,8 +111,7 @@ def _bound(run: Run, scene: Scene) -> dict | None:
     f cos times radiance at some hits; None if it is not built."""
     options = {"mesh": scene.mesh, "material": scene.material, "world": scene.world}
     options |= {"size": "{}x{}".format(*run.settings.size), "hits": run.settings.bound_hits, "seed": run.seed}
-    words = [word for name, value in options.items() for word in (f"--{name}", value)]
-    found = run.program(f"{scene.name}, bound", BUILT / "bench/product_bound", *words)
+    found = run.program(f"{scene.name}, bound", BUILT / "bench/product_bound", *words_of(options))
     return found and found["variance"]
 
 
@@ -146,11 +137,8 @@ def _sun_lobes(run: Run, scene: Scene) -> dict:
     diameter = 4 / np.sqrt(bandwidth)
     kept = (center @ SUN > np.cos(SUN_DIAMETER)) & (diameter <= 2 * SUN_DIAMETER)
     mean = np.degrees(np.average(diameter[kept], weights=energy[kept])) if kept.any() else 0.0
-    return {
-        "count": int(kept.sum()),
-        "energy": float(energy[kept].sum() / energy.sum()),
-        "diameter": float(mean),
-    }
+    share = float(energy[kept].sum() / energy.sum())
+    return {"count": int(kept.sum()), "energy": share, "diameter": float(mean)}
 
 
 class Result:
@@ -244,9 +232,6 @@ def peers_of(found: Mapping) -> list[Mapping]:
 def verdicts(results: list[Result], sun: Mapping, peers: list[Mapping], spp: int) -> Iterator[dict]:
     """Targets and whether they are met. `spp`: the number of samples at which equal samples are compared."""
 
-    def judged(target: str, where: str, measured: str, met: bool | None) -> dict:
-        return {"target": target, "where": where, "measured": measured, "met": met}
-
     def limit(target: str, result: Result, found: Reading | None, most: float) -> dict:
         return judged(target, result.about["name"], shown(found), found and found.value <= most)
 
@@ -254,10 +239,8 @@ def verdicts(results: list[Result], sun: Mapping, peers: list[Mapping], spp: int
     for result in figures:
         most = _EQUAL_SAMPLES.get((result.about["material"], result.about["world"]))
         if most is not None:
-            gain, target = (
-                result.gain("product", DEFAULT, spp),
-                f"relmse of `product` / `mis` at {spp} spp at most {most}",
-            )
+            gain = result.gain("product", DEFAULT, spp)
+            target = f"relmse of `product` / `mis` at {spp} spp at most {most}"
             yield judged(target, result.about["name"], _gain(gain), gain[0] <= most)
     for result in figures:
         target = "relmse of `product` / `mis` at equal time at most 1.2"
@@ -285,117 +268,76 @@ def verdicts(results: list[Result], sun: Mapping, peers: list[Mapping], spp: int
         yield judged(target, peer["material"], f"{100 * peer['relative']:.2f} %", peer["relative"] <= 0.01)
 
 
-def write(run: Run, found: dict) -> None:
+def values(found: dict) -> dict:
     results, conditions, sun = results_of(found), found["conditions"], found["sun"]
-    for result in results:
-        _draw(run.output / "chart" / _picture(result), result)
-    peers = [] if isinstance(found["mitsuba"], str) else peers_of(found["mitsuba"])
+    absent = found["mitsuba"] if isinstance(found["mitsuba"], str) else ""
+    peers = [] if absent else peers_of(found["mitsuba"])
     equal_spp, most_spp = int(conditions["equal_spp"]), max(results[-1].means("product"))
     targets = list(verdicts(results, sun, peers, equal_spp))
-    for target in targets:
-        target["word"] = page.verdict(target["met"])
     bounded = all(result.about["bound"] for result in results)
-    values = {
-        "scenes": "\n".join(map(_scene_text, results)),
-        "targets": page.table(
-            (target for target in targets if not target["met"]),
-            "target | where | measured | ",
-            "{target} | {where} | {measured} | {word}",
-        ),
+    every = sorted({p["spp"] for p in results[0].points["product"]})
+    bound_titles = " | exact / `mis`, variance | `product` / `mis`, variance | share of the gain"
+    return {
+        "scenes": [result.about | {"picture": _picture(result)} for result in results],
+        "missed": [target for target in targets if not target["met"]],
         "met": sum(target["met"] is True for target in targets),
         "judged": len(targets),
-        "equal_error": _equal_error(results),
-        "equal_samples": _equal_samples(results, equal_spp, bounded),
-        "bound": _BOUND.format(conditions["bound_hits"]) if bounded else _NO_BOUND,
+        "curves": " | ".join(results[0].points),
+        "equal_error": list(map(_equal_error, results)),
+        "bounded": [{}] if bounded else [],
+        "unbounded": [] if bounded else [{}],
+        "every": " | ".join(f"{spp} spp" for spp in every)
+        + " | `mis` / `mis-dissertation`"
+        + bound_titles * bounded,
+        "equal_samples": [_equal_samples(result, every, equal_spp, bounded) for result in results],
         "sun": sun,
         "sun_share": 100 * sun["energy"],
         "sun_gain": _gain(results[-1].gain("product", DEFAULT, most_spp)),
         "most_spp": most_spp,
-        "mitsuba": _mitsuba(found["mitsuba"], peers, conditions) if peers else f"{found['mitsuba']}\n",
+        "absent": [{"why": absent}] if absent else [],
+        "present": [] if absent else [_mitsuba(found["mitsuba"], peers, conditions)],
     }
-    page.write(run.output, "chart/README.md", page.text("chart", conditions | values))
 
 
-_NO_BOUND = "The bound is left out: the program `product_bound` is not built."
-_BOUND = """Variance: of one light direction at {} hits, over the squared
-mean; exact: proportional to f cos times radiance on the environment's pixels. A pixel has noise of its own
-besides (edges, curvature, visibility), so its relmse gains less."""
+def draw(output: Path, found: dict) -> None:
+    for result in results_of(found):
+        means = {name: list(result.means(name).values()) for name in result.points}
+        panels = [
+            (error, {name: [(point[0], point[k]) for point in points] for name, points in means.items()})
+            for k, error in ((1, "relmse"), (2, "rmse"))
+        ]
+        title = f"{result.about['name']}; dotted: {DEFAULT} at {result.level_spp} samples a pixel"
+        axes, path = ("seconds", "error against the reference"), output / "chart" / _picture(result)
+        charts.curves(path, panels, *axes, levels={"relmse": result.level}, shared=False, title=title)
 
 
 def _picture(result: Result) -> str:
     return result.about["name"].replace(", ", "-").replace(" ", "_").lower() + ".png"
 
 
-def _scene_text(result: Result) -> str:
-    noise = f"relmse of the reference, which is subtracted: {result.about['noise']:.1e}."
-    return f"![{result.about['name']}]({_picture(result)})\n\n{noise}\n"
-
-
-def _draw(path: Path, result: Result) -> None:
-    means = {name: list(result.means(name).values()) for name in result.points}
-    panels = [
-        (error, {name: [(point[0], point[k]) for point in points] for name, points in means.items()})
-        for k, error in ((1, "relmse"), (2, "rmse"))
-    ]
-    title = f"{result.about['name']}; dotted: {DEFAULT} at {result.level_spp} samples a pixel"
-    axes = ("seconds", "error against the reference")
-    charts.curves(path, panels, *axes, levels={"relmse": result.level}, shared=False, title=title)
-
-
 def _gain(gain: tuple[float, float]) -> str:
     return f"{gain[0]:.2f} ± {gain[1]:.2f}"
 
 
-def _equal_error(results: list[Result]) -> str:
-    """A table with a column per curve."""
-    names, rows = list(results[0].points), []
-    for result in results:
-        cells = [*map(result.seconds_to_level, names), result.time_ratio("uniform", DEFAULT)]
-        texts = " | ".join(map(shown, cells))
-        rows.append({"name": result.about["name"], "level": result.level, "cells": texts})
-    titles = f"scene | relmse | {' | '.join(names)} | `uniform` / `mis`"
-    return page.table(rows, titles, "{name} | {level:.2e} | {cells}")
+def _equal_error(result: Result) -> dict:
+    cells = [*map(result.seconds_to_level, result.points), result.time_ratio("uniform", DEFAULT)]
+    return {"name": result.about["name"], "level": result.level, "cells": " | ".join(map(shown, cells))}
 
 
-def _equal_samples(results: list[Result], equal_spp: int, bounded: bool) -> str:
-    every, rows = sorted({p["spp"] for p in results[0].points["product"]}), []
-    for result in results:
-        gains = [_gain(result.gain("product", DEFAULT, spp)) for spp in every]
-        gained = result.gain(DEFAULT, DISSERTATION, equal_spp)[0]
-        rows.append({"name": result.about["name"], "gains": " | ".join(gains), "gained": gained})
-        if bounded:
-            bound = result.about["bound"]
-            shares = {name: bound[name] / bound["mis"] for name in ("exact", "product")}
-            rows[-1] |= shares | {"share": 100 * result.share_of_bound}
-    titles, cells = " | ".join(f"{spp} spp" for spp in every), "{name} | {gains} | {gained:.2f}"
-    titles = f"scene | {titles} | `mis` / `mis-dissertation`"
+def _equal_samples(result: Result, every: list[int], equal_spp: int, bounded: bool) -> dict:
+    cells = [_gain(result.gain("product", DEFAULT, spp)) for spp in every]
+    cells.append(f"{result.gain(DEFAULT, DISSERTATION, equal_spp)[0]:.2f}")
     if bounded:
-        titles += " | exact / `mis`, variance | `product` / `mis`, variance | share of the gain"
-        cells += " | {exact:.3f} | {product:.3f} | {share:.0f} %"
-    return page.table(rows, titles, cells)
+        bound = result.about["bound"]
+        cells += [f"{bound[name] / bound['mis']:.3f}" for name in ("exact", "product")]
+        cells.append(f"{100 * result.share_of_bound:.0f} %")
+    return {"name": result.about["name"], "cells": " | ".join(cells)}
 
 
-def _mitsuba(found: Mapping, peers: list[Mapping], conditions: Mapping) -> str:
-    rows = [
-        {"material": p["material"], "level": p["level"], "speed_up": shown(p["speed_up"])}
-        | {name: shown(reading) for name, reading in p["seconds"].items()}
-        for p in peers
-    ]
-    titles = " | ".join(f"`{name}`" for name in mitsuba.STRATEGIES)
-    cells = " | ".join(f"{{{name}}}" for name in mitsuba.STRATEGIES)
-    values = {
-        "version": found["version"],
-        "variant": found["variant"],
-        "most_rays": conditions["peer_rays"].split(", ")[-1],
-        "times": page.table(
-            rows,
-            f"material | relmse | Mitsuba | {titles} | Mitsuba / fastest",
-            f"{{material}} | {{level:.2e}} | {{mitsuba}} | {cells} | {{speed_up}}",
-        ),
-        "differences": page.table(
-            peers,
-            "material | means | difference | of which noise",
-            "{material} | {means:.4f} | {relative:.4f} | {noise:.4f}",
-        ),
-    }
-    return page.text("chart_mitsuba", conditions | values)
+def _mitsuba(found: Mapping, peers: list[Mapping], conditions: Mapping) -> dict:
+    for peer in peers:
+        peer["cells"] = " | ".join(map(shown, [*peer["seconds"].values(), peer["speed_up"]]))
+    strategies = " | ".join(f"`{name}`" for name in mitsuba.STRATEGIES)
+    most = conditions["peer_rays"].split(", ")[-1]
+    own = {"most_rays": most, "peers": peers, "strategies": strategies}
+    return {"version": found["version"], "variant": found["variant"], **own}

@@ -6,10 +6,11 @@ import json
 import os
 import subprocess
 
-from .. import page
-from ..run import BUILT, Run
+from ..project import BUILT
+from ..run import Run
 
 SETTINGS = {}
+PAGES = {"failure_modes.md": "failure_modes"}
 _PROGRAM = BUILT / "tests/unit/brdf/fit/test_failure_modes"
 _KINDS = ("scattered", "parametric")
 _VIEWS = ("5", "30", "60", "75", "85")
@@ -51,14 +52,8 @@ def _least_honest(cells: list[str]) -> str:
     return f"{cell} at {view}°"
 
 
-def write(run: Run, found: dict) -> None:
-    commit, date = (found["conditions"][name] for name in ("commit", "date"))
+def values(found: dict) -> dict:
     cases: dict[str, dict] = {}
     for case, kind, *cells in found["rows"]:
         cases.setdefault(case, dict.fromkeys(_KINDS) | {"case": case})[kind] = _least_honest(cells)
-    claims = f"""
-Claimed / true relative L2, at the reported view where they differ most, of scattered models of at most 6
-Gaussian lobes a view and of parametric models of at most 6 lobes in all. Commit {commit}, {date}.
-
-{page.table(cases.values(), "case | scattered | parametric", "{case} | {scattered:s} | {parametric:s}")}"""
-    page.write_parts(run.output, "failure_modes.md", "failure_modes", claims=claims)
+    return {"cases": cases.values()}

@@ -7,14 +7,15 @@ from dataclasses import asdict
 import numpy as np
 from velour.native import images
 
-from .. import page
 from ..agreement import LEVEL, agreement
+from ..project import BUILT
 from ..reference import FIRST_SEED, Reference, silhouette
-from ..run import BUILT, Run
+from ..run import Run, words_of
 from ..scenes import SUNSET, Scene, Subject, subjects
 from ..tail_bound import Moments
 from ..uniform_check import uniform_agreement
 
+PAGES = {"figures/check.md": "figures_check"}
 SETTINGS = {
     "size": ((80, 60), (16, 12)),
     "batches": (16, 2),
@@ -89,37 +90,19 @@ def _moments(run: Run, scene: Scene, size: tuple[int, int], rays: int, seed: int
     options = {name: value for name, value in scene.options.items() if name != "up"}
     options |= {"size": "{}x{}".format(*size), "rays": rays, "seed": seed}
     out = run.stem("moments", options | {"program": _PROGRAM}).with_suffix(".exr")
-    words = [word for name, value in options.items() for word in (f"--{name}", value)]
     label = f"{scene.name}, moments of uniform samples, {rays} rays"
-    run.program(label, _PROGRAM, *words, threads=run.threads, output=out)
+    run.program(label, _PROGRAM, *words_of(options), threads=run.threads, output=out)
     return images.read(out)
 
 
-def write(run: Run, found: dict) -> None:
+def values(found: dict) -> dict:
     checks, pairs, spreads = found["checks"], [], []
     for check in checks:
         figure = {"figure": check["figure"]}
         pairs += [figure | {"pair": name} | _agree(check[name]) for name in ("uniform", "control")]
         spreads += [figure | {"pair": name} | _agree(of) for name, of in check["by_spread"].items()]
-    titles = "figure | pair | tests | largest z | Sidak's bound | p | ratio of means | agree"
-    cells = "{figure} | {pair} | {tests} | {largest_z:.2f} | {sidak_z:.2f} | {p_value:.2g} | {ratio:.5f}"
-    cells += " | {agree}"
-    parts = {
-        "level": LEVEL,
-        "control": f"{TOO_BRIGHT - 1:.0%} too bright",
-        "uniform": page.table(
-            pairs,
-            f"{titles} | seen in all | seen in a pixel",
-            f"{cells} | {{factor_seen:.2%}} | {{pixel_bias_seen:.1%}}",
-        ),
-        "moments": page.table(
-            checks,
-            "figure | second moment's error, median | worst | standard deviation of z",
-            "{figure} | {moment_error:.2e} | {worst_moment_error:.2e} | {uniform[spread_of_z]:.3f}",
-        ),
-        "by_spread": page.table(spreads, titles, cells),
-    }
-    page.write(run.output, "figures/check.md", page.text("figures_check", found["conditions"] | parts))
+    control = f"{TOO_BRIGHT - 1:.0%} too bright"
+    return {"level": LEVEL, "control": control, "pairs": pairs, "checks": checks, "spreads": spreads}
 
 
 def _agree(found: dict) -> dict:

@@ -7,17 +7,12 @@ import textwrap
 import xml.etree.ElementTree as ET
 
 from .. import page
-from ..run import BUILT, Run
-from ..velour_cli import ROOT
+from ..project import BUILT, ROOT
+from ..run import Run
 
 SETTINGS = {}
-_PROGRAMS = (
-    "image/test_image",
-    "image/test_portable_picture",
-    "scene/test_mesh",
-    "brdf/test_brdf",
-    "btf/test_btf",
-)
+_PROGRAMS = ("image/test_image", "image/test_portable_picture", "scene/test_mesh", "brdf/test_brdf")
+_PROGRAMS += ("btf/test_btf",)
 _MARK = "input|"
 
 
@@ -31,14 +26,13 @@ def measure(run: Run) -> None:
             if each.get("name").startswith(_MARK):
                 file_format, variant = each.get("name").removeprefix(_MARK).split("|", 1)
                 found.setdefault(file_format, {})[variant] = each.get("value")
-    page.write(ROOT / "docs/reference", "inputs.md", page.text("inputs", {"formats": _lists(found)}))
+    formats = [{"name": name, "lines": _lines(own)} for name, own in sorted(found.items())]
+    page.write(ROOT / "docs/reference", "inputs.md", page.text("inputs", {"formats": formats}))
 
 
-def _lists(found: dict[str, dict[str, str]]) -> str:
-    """A heading per format, with a line per variant: what Velour does with it."""
-    parts = []
-    for file_format, variants in sorted(found.items()):
-        lines = (f"- {variant}: {verdict}" for variant, verdict in sorted(variants.items()))
-        wrapped = (textwrap.fill(line, 120, subsequent_indent="  ", break_on_hyphens=False) for line in lines)
-        parts.append("\n".join((f"## {file_format}\n", *wrapped)) + "\n")
-    return "\n".join(parts)
+def _lines(variants: dict[str, str]) -> str:
+    """A line per variant: what Velour does with it."""
+    lines = (f"- {variant}: {verdict}" for variant, verdict in sorted(variants.items()))
+    return "\n".join(
+        textwrap.fill(line, 120, subsequent_indent="  ", break_on_hyphens=False) for line in lines
+    )

@@ -8,11 +8,12 @@ from pathlib import Path
 
 from velour.native import Measurement, fit_job, table
 
-from .. import charts, data_files, page, provenance
-from ..run import BUILT, Run
-from ..velour_cli import velour
+from .. import charts, project
+from ..project import BUILT, velour
+from ..run import Run
 
 CSV = "models/models.csv"
+PAGES = {f"{name}.md": name for name in ("models", "fit", "ggx", "principled")}
 SETTINGS = {
     "materials": (99, 1),
     "lobes": ((1, 2, 4, 8, 16, 32), (1, 4)),
@@ -23,14 +24,11 @@ TOLERANCE, UNBOUND = 0.02, 1e-6  # the latter is met by no fit, so that only the
 UNTURNED = "scattered, unturned"  # the per-view fit that mixes slices without aligning them
 ANGLES = ("5", "30", "60", "75", "85")
 SIZES = ("relative_l2", "lobes", "bytes", "parameter_bytes", "seconds")
-COSTS = {"f": "f, ns", "sample_pdf": "sample, pdf", "f_16": "f, 16", "sample_pdf_16": "sample, pdf, 16"}
-# Targets of the parametric model, in the columns of the summary.
-TARGETS = "| *target* |  | all |  | 2700 | 2.00 | 60 | 120 | 30 | 60 |\n"
+COSTS = ("f", "sample_pdf", "f_16", "sample_pdf_16")
 
 
 def measure(run: Run) -> dict:
-    conditions = run.conditions(load=provenance.busy_threads())
-    subjects = data_files.materials(run.data)[: run.settings.materials]
+    conditions, subjects = run.conditions(load=project.busy_threads()), run.materials()
     points = len(run.settings.lobes) + len(run.settings.bytes)
     each = 2 + len(table.MODELS) * (points + 2) + 2 * len(PEERS)
     run.progress.expect(1, 1 + len(subjects) * each)
@@ -46,33 +44,20 @@ def _rows(run: Run, name: str, measurement: Path) -> tuple[list[dict], dict]:
     """The rows of a material, and the values of its Principled material."""
 
     def row(model: str, report: Mapping, cost: Mapping = {}, **more) -> dict:
-        errors = report.get("by_view_angle", {})
-        sizes = {key: report.get(key) for key in SIZES}
-        angles = {f"error_{angle}": errors.get(angle) for angle in ANGLES}
-        return {
-            "material": name,
-            "model": model,
-            "bound": None,
-            "value": None,
-            **sizes,
-            **angles,
-            **cost,
-            **more,
-        }
+        errors, first = report.get("by_view_angle", {}), {"bound": None, "value": None}
+        numbers = {key: report.get(key) for key in SIZES}
+        numbers |= {f"error_{angle}": errors.get(angle) for angle in ANGLES}
+        return {"material": name, "model": model, **first, **numbers, **cost, **more}
 
     fits, options = [], {"threads": run.threads, "tolerance": TOLERANCE}
     for model in table.MODELS:
         path, report = run.fit(measurement, model, **options)
-        more = {"views": velour("info", path).get("views")}
-        fits.append(row(model, report, _cost(run, f"{name}, {model}", path), **more))
+        views = velour("info", path).get("views")
+        fits.append(row(model, report, _cost(run, f"{name}, {model}", path), views=views))
     peers = {peer: run.compare_peer(measurement, peer) for peer in PEERS}
-    noise = peers["ggx"]["noise_by_view_angle"]
+    noise = {"by_view_angle": peers["ggx"]["noise_by_view_angle"]}
     raw = {"bytes": measurement.stat().st_size}
-    rows = [
-        row("noise", {"by_view_angle": noise}),
-        row("measurement", raw, _cost(run, name, measurement)),
-        *fits,
-    ]
+    rows = [row("noise", noise), row("measurement", raw, _cost(run, name, measurement)), *fits]
     for peer, report in peers.items():
         more = {"alpha": report["ggx"]["alpha"][0]} if peer == "ggx" else {}
         rows.append(row(peer, report, _cost(run, f"{name}, {peer}", measurement, peer), **more))
@@ -118,138 +103,77 @@ def met(row: Mapping, noise: Mapping = {}) -> int:
     return sum(meets(row, angle, noise) for angle in ANGLES)
 
 
-def write(run: Run, found: dict) -> None:
-    rows, conditions = found["rows"], found["conditions"]
-    floor = next((row for row in rows if row["model"] == "floor"), {})
+def values(found: dict) -> dict:
+    materials, rows = _by_material(found), []
+    for own in materials.values():
+        # Pages of their own have the errors of the peers.
+        rows += [_marked(own[m], own["noise"]) for m in ("noise", "scattered", "parametric") if m in own]
+    floor = next((row for row in found["rows"] if row["model"] == "floor"), {})
+    return {
+        "count": len(materials),
+        "busy": project.busy(found["conditions"]["load"]),
+        "floors": [floor] if floor.get("f") is not None else [],
+        "summary": _summary(materials),
+        "rows": rows,
+        "turned": [own["scattered"] | {"mixed": own[UNTURNED]} for own in materials.values()],
+        "ggx": [own["ggx"] for own in materials.values()],
+        **_principled(materials, found["principled"]),
+    }
+
+
+def _by_material(found: dict) -> dict[str, dict[str, dict]]:
+    """The rows without a bound, by material and model."""
     materials: dict[str, dict[str, dict]] = {}
-    for row in rows:
+    for row in found["rows"]:
         if row["material"] and not row["bound"]:
             materials.setdefault(row["material"], {})[row["model"]] = row
-    values = {
-        "count": len(materials),
-        "summary": _summary(materials) + TARGETS,
-        "errors": _errors(materials),
-        "neighbors": _neighbors(float(conditions["load"])),
-        "floor": _floor(floor),
-    }
-    page.write_parts(run.output, "models.md", "models", models=page.text("models", conditions | values))
-    parts = {"fit": _turned(materials), "ggx": _ggx(materials)}
-    parts["principled"] = _principled(materials, found["principled"])
-    for name, part in parts.items():
-        text = f"{provenance.sentence(conditions)}\n\n{part}"
-        page.write_parts(run.output, f"{name}.md", "models", **{name: text})
-    _draw(run.output / "models", rows, materials)
+    return materials
 
 
-def _models(own: Mapping) -> list[dict]:
-    """The rows of the models of a material, with and without peers."""
-    return [row for model, row in own.items() if model not in ("noise", "measurement", UNTURNED)]
-
-
-_COST_TITLES = " | ".join(COSTS.values())
-_COST_CELLS = " | ".join(f"{{{name}:.0f}}" for name in COSTS)
-_ANGLE_TITLES = " | ".join(f"{angle}°" for angle in ANGLES)
-# Pages of their own have the errors of the peers.
-_WITH_ERRORS = ("noise", "scattered", "parametric")
-_ANGLE_CELLS = " | ".join(f"{{error_{angle}:.4f}}" for angle in ANGLES)
-
-
-def _summary(materials: Mapping) -> str:
-    def of(model: str) -> dict:
-        rows = [own[model] for own in materials.values()]
-        numbers = ("relative_l2", "parameter_bytes", "seconds", *COSTS)
-        medians = {
-            name: statistics.median(row[name] for row in rows)
-            for name in numbers
-            if all(row.get(name) is not None for row in rows)
-        }
+def _summary(materials: Mapping) -> list[dict]:
+    """A row per model: medians over the materials, and how many views meet their target."""
+    models = [m for m in next(iter(materials.values())) if m not in ("noise", "measurement", UNTURNED)]
+    summary = []
+    for model in models:
+        rows, found = [own[model] for own in materials.values()], dict.fromkeys(COSTS)
+        for name in ("relative_l2", "parameter_bytes", "seconds", *COSTS):
+            if all(row.get(name) is not None for row in rows):
+                found[name] = statistics.median(row[name] for row in rows)
         covered = sum(row[f"error_{angle}"] is not None for row in rows for angle in ANGLES)
         good = sum(met(own[model], own["noise"]) for own in materials.values())
-        counts = {"met": f"{good} of {covered}", "plain": sum(map(met, rows))}
-        return dict.fromkeys(COSTS) | medians | counts | {"model": model}
-
-    first = next(iter(materials.values()))
-    return page.table(
-        (of(row["model"]) for row in _models(first)),
-        f"model | relative_l2 | met | without noise | parameter bytes | seconds | {_COST_TITLES}",
-        f"{{model}} | {{relative_l2:.4f}} | {{met}} | {{plain}} | {{parameter_bytes:.0f}} | "
-        f"{{seconds:.2f}} | {_COST_CELLS}",
-    )
+        summary.append(
+            found | {"model": model, "good": good, "covered": covered, "plain": sum(map(met, rows))}
+        )
+    return summary
 
 
-def _errors(materials: Mapping) -> str:
-    def cells(row: Mapping, noise: Mapping) -> dict:
-        texts = {angle: "-" if (e := row[f"error_{angle}"]) is None else f"{e:.4f}" for angle in ANGLES}
-        good = {angle for angle in ANGLES if row is not noise and meets(row, angle, noise)}
-        marked = [f"**{text}**" if angle in good else text for angle, text in texts.items()]
-        whole = "" if row is noise else f"{row['relative_l2']:.4f}"
-        return {**row, "whole": whole, "angles": " | ".join(marked)}
-
-    rows = [cells(own[m], own["noise"]) for own in materials.values() for m in _WITH_ERRORS if m in own]
-    return page.table(
-        rows, f"material | model | relative_l2 | {_ANGLE_TITLES}", "{material} | {model} | {whole} | {angles}"
-    )
+def _marked(row: Mapping, noise: Mapping) -> dict:
+    """A row with its errors as text, bold where they meet the target."""
+    texts = {angle: "-" if (e := row[f"error_{angle}"]) is None else f"{e:.4f}" for angle in ANGLES}
+    good = {angle for angle in ANGLES if row is not noise and meets(row, angle, noise)}
+    marked = {f"error_{angle}": f"**{text}**" if angle in good else text for angle, text in texts.items()}
+    return {**row, **marked, "relative_l2": "" if row is noise else f"{row['relative_l2']:.4f}"}
 
 
-def _turned(materials: Mapping) -> str:
-    """Per-view models with slices aligned to the mirror direction, beside models with unaligned slices."""
-    errors = "{relative_l2:.4f}, " + " / ".join(f"{{error_{angle}:.4f}}" for angle in ANGLES)
-    rows = []
-    for own in materials.values():
-        turned, mixed = (page.filled(errors, own[model]) for model in ("scattered", UNTURNED))
-        rows.append(own["scattered"] | {"turned": turned, "mixed": mixed})
-    return page.table(
-        rows,
-        f"material | views, lobes | bytes | turned: all, {' / '.join(ANGLES)} | mixed as they are",
-        "{material} | {views}, {lobes} | {bytes} | {turned} | {mixed}",
-    )
-
-
-def _ggx(materials: Mapping) -> str:
-    return page.table(
-        (own["ggx"] for own in materials.values()),
-        f"material | alpha | relative_l2 | {_ANGLE_TITLES}",
-        f"{{material}} | {{alpha:.3f}} | {{relative_l2:.4f}} | {_ANGLE_CELLS}",
-    )
-
-
-def _principled(materials: Mapping, values: Mapping) -> str:
+def _principled(materials: Mapping, values: Mapping) -> dict:
     """The errors, and the fitted parameters."""
-    errors = page.table(
-        (own["principled"] for own in materials.values()),
-        f"material | relative_l2 | {_ANGLE_TITLES}",
-        f"{{material}} | {{relative_l2:.4f}} | {_ANGLE_CELLS}",
-    )
     names = list(next(iter(values.values())))
-    rows = [
-        {"material": name}
-        | {key: ", ".join(f"{v:.3f}" for v in (x if isinstance(x, list) else [x])) for key, x in own.items()}
-        for name, own in values.items()
-    ]
-    titles, cells = " | ".join(names), " | ".join(f"{{{name}}}" for name in names)
-    return f"{errors}\n{page.table(rows, f'material | {titles}', '{material} | ' + cells)}"
+    parameters = []
+    for name, own in values.items():
+        texts = (", ".join(f"{v:.3f}" for v in (x if isinstance(x, list) else [x])) for x in own.values())
+        parameters.append({"material": name, "cells": " | ".join(texts)})
+    errors = [own["principled"] for own in materials.values()]
+    return {"principled": errors, "names": " | ".join(names), "parameters": parameters}
 
 
-def _neighbors(load: float) -> str:
-    if load < 0.2:
-        return ""
-    return f"; **other programs kept {load:.1f} processors busy**, so they are too many"
-
-
-def _floor(floor: Mapping) -> str:
-    if floor.get("f") is None:
-        return "They need `evaluation_cost`, which was not built."
-    one, many = ([f"{floor[key + n]:.1f}" for key in ("f", "sample_pdf")] for n in ("", "_16"))
-    return f"The calls alone, without\narithmetic, take {' and '.join(one)} ns, {' and '.join(many)} with 16."
-
-
-def _draw(folder: Path, rows: list[dict], materials: Mapping) -> None:
+def draw(output: Path, found: dict) -> None:
+    materials = _by_material(found)
     for name, bound, x in (
         ("error_by_lobes", "max-lobes", "lobes (scattered: a view)"),
         ("error_by_bytes", "bytes", "bytes"),
     ):
         panels = {material: {} for material in materials}
-        for row in rows:
+        for row in found["rows"]:
             if row["bound"] == bound:
                 size = row["value"] if bound == "max-lobes" else row["bytes"]
                 panels[row["material"]].setdefault(row["model"], []).append((size, row["relative_l2"]))
@@ -257,4 +181,5 @@ def _draw(folder: Path, rows: list[dict], materials: Mapping) -> None:
             for peer, lobes in PEERS.items():
                 size = lobes if bound == "max-lobes" else own[peer]["parameter_bytes"]
                 panels[material][peer] = [(size, own[peer]["relative_l2"])]
-        charts.curves(folder / f"{name}.png", [*panels.items()], x, "relative L2", levels=[TOLERANCE])
+        path = output / f"models/{name}.png"
+        charts.curves(path, [*panels.items()], x, "relative L2", levels=[TOLERANCE])

@@ -7,12 +7,12 @@ import json
 import re
 import shutil
 import subprocess
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 
-from .. import data_files, page, provenance
-from ..run import Run, flags
+from .. import project
+from ..project import ROOT, flags, velour
+from ..run import Run
 from ..scenes import SUNSET
-from ..velour_cli import ROOT, velour
 
 SETTINGS = {
     "size": ((640, 480), (320, 240)),
@@ -23,6 +23,7 @@ SETTINGS = {
     "lobes": ((2, 4, 8, 16, 32), (2, 16)),
     "repeats": (3, 1),
 }
+PAGES = {"performance.md": "performance"}
 MATERIAL, DEFAULT_LOBES = "blue-metallic-paint", 16
 TARGETS = {"mis": 0.5, "product": 0.35}  # minimum ray_share of a strategy
 # The first pattern that matches counts the function. Functions without a match belong to loading, which is
@@ -42,10 +43,10 @@ _PARTS = [
 
 
 def measure(run: Run) -> dict:
-    own, load = run.settings, provenance.busy_threads()
-    measurement = data_files.merl(run.data, MATERIAL)
+    own, load = run.settings, project.busy_threads()
+    measurement = project.merl(run.data, MATERIAL)
     models = {n: run.fit(measurement, tolerance=1e-6, max_lobes=n)[0] for n in own.lobes}
-    scene = {"mesh": data_files.mesh(run.data, "bunny"), "world": data_files.world(run.data, SUNSET)}
+    scene = {"mesh": project.mesh(run.data, "bunny"), "world": run.world(SUNSET)}
     scene |= {"seed": run.seed, "cache": run.work, "output": run.work / "out.exr"}
     first = scene | {"material": models[DEFAULT_LOBES]}
 
@@ -53,20 +54,18 @@ def measure(run: Run) -> dict:
         """The report of the fastest of a few renders: only other programs make one slower."""
         words = _words(scene, size, spp, **options)
         print("rendering", *words[-3:], "...", flush=True)
-        return min(
-            (velour("render", *words) for _ in range(own.repeats)), key=lambda report: report["seconds"]
-        )
+        reports = [velour("render", *words) for _ in range(own.repeats)]
+        return min(reports, key=lambda report: report["seconds"])
 
+    threads = {s: [best(first, own.size, own.spp, strategy=s, threads=t) for t in (1, 2)] for s in TARGETS}
+    lobes = [
+        {"lobes": n} | best(scene | {"material": model}, own.small_size, own.lobes_spp, threads=2)
+        for n, model in models.items()
+    ]
     return {
         "conditions": run.conditions(load=load),
-        "threads": {
-            strategy: [best(first, own.size, own.spp, strategy=strategy, threads=t) for t in (1, 2)]
-            for strategy in TARGETS
-        },
-        "lobes": [
-            {"lobes": n} | best(scene | {"material": model}, own.small_size, own.lobes_spp, threads=2)
-            for n, model in models.items()
-        ],
+        "threads": threads,
+        "lobes": lobes,
         "profile": {s: _profile(run, first, s) for s in TARGETS} if _may_profile() else None,
         "kernels": _bench("bench_lobe_mixture", "eval_neighbors|eval_on|sample_lobe"),
         "gathering": _bench("bench_material", "prepare_neighbors"),
@@ -97,10 +96,8 @@ def _profile(run: Run, scene: Mapping, strategy: str) -> dict[str, float]:
     for line in text.splitlines():
         percent, library, function, *_ = *line.strip().split("\t"), "", "", ""
         if not line.startswith("#") and re.search(r"libvelour|libembree|libm\.|libc\.", library):
-            found = (
-                name for name, known in _PARTS if re.search(known, f"{library.strip()} {function.strip()}")
-            )
-            if part := next(found, None):
+            where = f"{library.strip()} {function.strip()}"
+            if part := next((name for name, known in _PARTS if re.search(known, where)), None):
                 totals[part] += float(percent.strip().rstrip("%"))
     return {name: total / sum(totals.values()) for name, total in totals.items()}
 
@@ -114,66 +111,31 @@ def _bench(program: str, wanted: str) -> list[dict]:
     return [run | {"parts": run["name"].split("/")} for run in json.loads(report)["benchmarks"]]
 
 
-def write(run: Run, found: dict) -> None:
-    conditions, kernels = found["conditions"], found["kernels"]
-    profile = "## Where the time goes\n\nNot measured: `perf` is missing, or may not look at this system.\n"
-    if found["profile"]:
-        shares = found["profile"].values()
-        rows = [{"part": part, "s": [100 * own[part] for own in shares]} for part, _ in _PARTS]
-        titles = f"per cent of the time of a render | {' | '.join(found['profile'])}"
-        cells = "{part} | " + " | ".join(f"{{s[{k}]:.1f}}" for k in range(len(shares)))
-        profile = page.text("performance_profile", conditions | {"profile": page.table(rows, titles, cells)})
-    first, kinds = found["lobes"][0]["seconds"], {"0": "Gaussian", "1": "Abel-Poisson"}
-    values = {
-        "neighbors": _neighbors(float(conditions["load"])),
-        "pictures": page.table(
-            (_picture(*item) for item in found["threads"].items()),
-            "strategy | 1 thread, s | 2 threads, s | times faster | million samples/s | ray_share",
-            "{strategy} | {one:.1f} | {seconds:.1f} | {faster:.2f} | {samples_per_second:M.1f} | "
-            "{ray_share:.2f} (at least {target})",
-        ),
-        "profile_part": profile,
-        "lobes_table": page.table(
-            (r | {"ns": 1e9 / r["samples_per_second"], "over": r["seconds"] / first} for r in found["lobes"]),
-            "lobes a view | seconds | ns a sample | relative to the first | ray_share",
-            "{lobes} | {seconds:.2f} | {ns:.1f} | {over:.2f} | {ray_share:.2f}",
-        ),
-        "evaluation": page.table(
-            _of(kernels, "eval_neighbors"),
-            "lobes a view | directions | ns a lobe | ns a lobe and direction | share of peak",
-            "{parts[1]} | {parts[2]} | {ns_per_lobe:.2f} | {ns_per_lobe_direction:.3f} | {share_of_peak:.2f}",
-        ),
-        "by_target": page.table(
-            _of(kernels, "eval_on"),
-            "instruction set | ns a lobe and direction",
-            "{parts[1]} | {ns_per_lobe_direction:.3f}",
-        ),
-        "drawing": page.table(
-            (r | {"kernel": kinds[r["parts"][1]]} for r in _of(kernels, "sample_lobe_mixture")),
-            "kernel | lobes | directions at once | ns a direction",
-            "{kernel} | {parts[2]} | {parts[3]} | {ns_per_direction:.1f}",
-        ),
-        "gathering": page.table(
-            found["gathering"],
-            "lobes a view | ns a camera ray | ns a lobe",
-            "{parts[1]} | {cpu_time:.0f} | {ns_per_lobe:.1f}",
-        ),
+def values(found: dict) -> dict:
+    profile, first = found["profile"] or {}, found["lobes"][0]["seconds"]
+    kernels: dict[str, list[dict]] = {}
+    for row in found["kernels"]:
+        kernels.setdefault(row["parts"][0], []).append(row)
+    shares = [
+        {"part": part, "cells": " | ".join(f"{100 * own[part]:.1f}" for own in profile.values())}
+        for part, _ in _PARTS
+        if profile
+    ]
+    lobes = [r | {"ns": 1e9 / r["samples_per_second"], "over": r["seconds"] / first} for r in found["lobes"]]
+    kinds = {"0": "Gaussian", "1": "Abel-Poisson"}
+    return {
+        "busy": project.busy(found["conditions"]["load"]),
+        "pictures": [_picture(*item) for item in found["threads"].items()],
+        "profiles": [{"strategies": " | ".join(profile), "shares": shares}] if profile else [],
+        "by_lobes": lobes,
+        "neighbors": kernels.get("eval_neighbors", []),
+        "targets": kernels.get("eval_on", []),
+        "drawing": [r | {"kernel": kinds[r["parts"][1]]} for r in kernels.get("sample_lobe_mixture", [])],
+        "gathering": found["gathering"],
     }
-    page.write(run.output, "performance.md", page.text("performance", conditions | values))
-
-
-def _neighbors(load: float) -> str:
-    if load < 0.2:
-        return "Nothing else ran."
-    return f"""**Other programs kept {load:.1f} processors busy**: seconds and speed-up by threads are not the
-machine's; take the page again when nothing else runs."""
 
 
 def _picture(strategy: str, runs: list[dict]) -> dict:
     one, two = runs
     faster = one["seconds"] / two["seconds"]
     return two | {"strategy": strategy, "one": one["seconds"], "faster": faster, "target": TARGETS[strategy]}
-
-
-def _of(runs: list[dict], kernel: str) -> Iterator[dict]:
-    return (run for run in runs if run["parts"][0] == kernel)

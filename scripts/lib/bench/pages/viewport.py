@@ -6,14 +6,13 @@ Only a run of all scenes writes the page.
 
 from __future__ import annotations
 
-import json
 import statistics
 
-from .. import blender, page, provenance
+from .. import blender, project
 from ..run import Run
 
 SCENES = {
-    "monkey": "a monkey of 31 thousand triangles in a measured paint, under a picture of a sky",
+    "monkey": "A monkey of 31 thousand triangles in a measured paint, under a picture of a sky",
     "objects": "5 million triangles in 500 objects, each with a mesh of its own",
     "instances": "100,000 instances of a sphere of 992 triangles",
 }
@@ -22,6 +21,7 @@ SETTINGS = {
     "blender": ("blender", "blender"),  # path
     "scenes": (tuple(SCENES), ("monkey",)),
 }
+PAGES = {"viewport.md": "viewport"}
 SEEN, EXPORT, HELD = 0.2, 3.0, 0.05  # targets in seconds
 SCREEN = (1400, 1000)
 
@@ -30,66 +30,36 @@ def measure(run: Run) -> dict:
     own = run.settings
     if len(own.scenes) < len(SCENES):
         run.output = run.work / "part"  # it must not replace the page
-    load, results = provenance.busy_threads(), {}
+    load, results = project.busy_threads(), {}
     for scene in own.scenes:
         print(f"{scene} ...", flush=True)
-        results[scene] = _measured(run, scene)
+        task = {"scene": scene, "restarts": own.restarts if scene == "monkey" else 0}
+        script = blender.INSIDE / "viewport.py"
+        results[scene] = blender.in_window(script, task, run.work / scene, SCREEN, own.blender)
     return {"conditions": run.conditions(load=load, seed=0), "results": results}
 
 
-def _measured(run: Run, scene: str) -> dict:
-    folder = run.work / scene
-    task = {"scene": scene, "restarts": run.settings.restarts if scene == "monkey" else 0}
-    blender.in_window(blender.INSIDE / "viewport.py", task, folder, SCREEN, run.settings.blender)
-    return json.loads((folder / "result.json").read_text())
-
-
-def write(run: Run, found: dict) -> None:
-    results, conditions = found["results"], found["conditions"]
-    first, load = next(iter(results.values())), conditions["load"]
-    values = {
-        "blender": first["blender"],
-        "size": first["size"],
-        "samples": first["samples"],
-        "busy": "" if load < 0.2 else f" **Other programs kept {load:.1f} processors busy.**",
+def values(found: dict) -> dict:
+    first = next(iter(found["results"].values()))
+    own = {key: first[key] for key in ("blender", "size", "samples")}
+    own |= {
+        "busy": project.busy(found["conditions"]["load"]),
         "seen": SEEN,
         "export": EXPORT,
-        "held": f"{1000 * HELD:.0f}",
-        "scenes": "\n".join(_text(scene, result) for scene, result in results.items()),
+        "held": 1000 * HELD,
     }
-    part = page.text("viewport", conditions | values)
-    page.write_parts(run.output, "viewport.md", "viewport", measured=part)
+    return own | {"results": [_scene(*item) for item in found["results"].items()]}
 
 
-def _text(scene: str, result: dict) -> str:
-    rows = page.table(
-        (_row(name, runs) for name, runs in result["changes"].items()),
-        "change | seen after, s | of it export, s | Blender held up by a redraw, ms",
-        "{name} | {seen} | {export} | {held}",
-    )
-    text = f"""### {SCENES[scene][0].upper()}{SCENES[scene][1:]}
-
-{rows}
-While the object moves on and on: {result["dragged"]:.1f} pictures a second.
-Memory of Blender: {result["mib"]:.0f} MiB.
-"""
-    if "restarts" in result:
-        count, memory = (
-            result["restarts"]["count"],
-            ", ".join(f"{mib:.0f}" for mib in result["restarts"]["mib"]),
-        )
-        text += f"Switched off and on {count} times; MiB after each tenth of them: {memory}.\n"
-    if "real_time" in result:
-        seconds, (width, height) = (
-            statistics.median(result["real_time"]["seconds"]),
-            result["real_time"]["size"],
-        )
-        text += f"""
-In real time ([realtime.md](../engine/realtime.md)) a picture of {width} x {height} of it takes
-{1000 * seconds:.0f} ms, {1 / seconds:.1f} a second, reading it back included; the target is 30 on a modest
-graphics processor.
-"""
-    return text
+def _scene(name: str, result: dict) -> dict:
+    restarts, real_time = ([result[key]] if key in result else [] for key in ("restarts", "real_time"))
+    for each in restarts:
+        each["memory"] = ", ".join(f"{mib:.0f}" for mib in each["mib"])
+    for each in real_time:
+        seconds = statistics.median(each["seconds"])
+        each |= {"milliseconds": 1000 * seconds, "rate": 1 / seconds}
+    rows = [_row(*item) for item in result["changes"].items()]
+    return result | {"about": SCENES[name], "rows": rows, "restarts": restarts, "real_time": real_time}
 
 
 def _row(name: str, runs: list[dict]) -> dict:

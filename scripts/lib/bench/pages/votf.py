@@ -12,7 +12,7 @@ import numpy as np
 from scipy import ndimage
 from velour.native import Measurement, Model, Scene, Tile, fit_job, microsurface_job, render_job
 
-from .. import charts, page, tiles
+from .. import charts, tiles
 from ..run import Run
 from ..shapes import Cloth, Cylinder, Sphere, Surface, smooth_mesh, structured_mesh
 
@@ -24,6 +24,7 @@ SETTINGS = {
     "rays": (40_000_000, 4_000_000),  # of the goniometer
     "texels": (64, 16),  # per side of the BTFs
 }
+PAGES = {"votf_numbers.md": "votf"}
 _HEIGHT = 0.06  # height of the shell over the sphere's radius
 _MOST_SIDE = 2048  # maximum side of a picture, in pixels
 _DIRECTIONS = 81  # views and lights each, the directions of the Bonn BTFs
@@ -72,12 +73,11 @@ class Shot(NamedTuple):
         mesh, info = tile.mesh()._asdict(), tile.info()
         with Scene() as scene:
             number, _ = scene.add_mesh(**structured_mesh(self.surface, mesh, info["period"][0]))
-            own = ({name: m[name] for name in m if name != "name"} for m in info["materials"])
-            slots = (
-                [scene.add_model_material(material)]
-                if material
-                else [scene.add_principled_material(**values) for values in own]
-            )
+            if material:
+                slots = [scene.add_model_material(material)]
+            else:
+                own = ({name: m[name] for name in m if name != "name"} for m in info["materials"])
+                slots = [scene.add_principled_material(**values) for values in own]
             scene.add_instance(number, tiles.UNMOVED, slots)
             return self.picture(scene)
 
@@ -152,7 +152,7 @@ def _rows(run: Run, name: str, tile: Tile, look: Look) -> list[dict]:
             rows.append(row)
             if pixels == max(own.tile_pixels):
                 sheet += _pictures(surface_name, [picture.pixels for picture in pictures])
-    path = run.output / "images" / _sheet_name(name, look.name)
+    path = run.output / "images" / f"{_stem(name, look.name)}.png"
     charts.sheet(path, sheet, (3.0, 3.25), few_colors=True)
     return rows
 
@@ -162,11 +162,8 @@ def _surfaces(tile: Tile) -> dict[str, Surface]:
     period, (low, high) = info["period"][0], info["heights"]
     radius = (high - low) / _HEIGHT
     rows, across = (max(2, round(length / period)) for length in (math.pi * radius, 2 * radius))
-    return {
-        "sphere": Sphere(rows, period),
-        "cylinder": Cylinder(2 * rows, across, period),
-        "cloth": Cloth(across, period),
-    }
+    tube = Cylinder(2 * rows, across, period)
+    return {"sphere": Sphere(rows, period), "cylinder": tube, "cloth": Cloth(across, period)}
 
 
 def _pictures(surface: str, pictures: list[np.ndarray]) -> list:
@@ -190,9 +187,7 @@ def _edge(picture: np.ndarray, alpha: np.ndarray) -> np.ndarray:
 class ShellErrors(NamedTuple):
     outline: float  # soft intersection over union of alpha, with holes filled
     alpha: float  # likewise, with holes
-    light: (
-        float | None
-    )  # root mean square of the difference over that of the truth, where both show the object
+    light: float | None  # RMS of the difference over that of the truth, where both show the object
 
 
 def soft_iou(a: np.ndarray, b: np.ndarray) -> float:
@@ -216,33 +211,20 @@ def shell_errors(picture: np.ndarray, truth: np.ndarray) -> ShellErrors:
     return ShellErrors(outline, soft_iou(a, b), light and float(light))
 
 
-def write(run: Run, found: dict) -> None:
+def values(found: dict) -> dict:
     looks = {look: [row for row in found["rows"] if row["look"] == look] for look in ("BTF", "BRDF")}
     both = [row | {"plain": plain} for row, plain in zip(looks["BTF"], looks["BRDF"], strict=True)]
-    pixels = [row["tile_pixels"] for row in both]
-    table = page.table(
-        (row for row in both if row["tile_pixels"] in (min(pixels), max(pixels))),
-        "tile | surface | pixels a tile | outline: smooth / shell | alpha: smooth / shell | "
-        "light, BTF: smooth / shell | light, BRDF: smooth / shell | seconds: geometry / smooth / shell | "
-        "MB: geometry / shell",
-        "{tile} | {surface} | {tile_pixels} | {smooth[outline]:.3f} / {shell[outline]:.3f} | "
-        "{smooth[alpha]:.3f} / {shell[alpha]:.3f} | {smooth[light]:.2f} / {shell[light]:.2f} | "
-        "{plain[smooth][light]:.2f} / {plain[shell][light]:.2f} | "
-        "{geometry[seconds]:.1f} / {smooth[seconds]:.1f} / {shell[seconds]:.1f} | "
-        "{geometry[bytes]:M.1f} / {shell[bytes]:M.1f}",
-    )
-    sheets = [
-        f"![{name}, {look}](images/{_sheet_name(name, look)})\n"
-        for look in looks
-        for name in dict.fromkeys(row["tile"] for row in both)
-    ]
-    values = {"rows": table, "sheets": "\n".join(sheets)}
-    values |= {f"{look}_ratios": _ratios(rows) for look, rows in looks.items()}
-    page.write(run.output, "votf_numbers.md", page.text("votf", found["conditions"] | values))
+    pixels, names = [row["tile_pixels"] for row in both], dict.fromkeys(row["tile"] for row in both)
+    shown = [row for row in both if row["tile_pixels"] in (min(pixels), max(pixels))]
+    sheets = [{"tile": n, "look": look, "stem": _stem(n, look)} for look in looks for n in names]
+    return {"rows": shown, "sheets": sheets} | {
+        f"{look}_ratios": _ratios(rows) for look, rows in looks.items()
+    }
 
 
-def _sheet_name(tile: str, look: str) -> str:
-    return f"votf_{tile}.png" if look == "BRDF" else f"votf_{tile}_{look.lower()}.png"
+def _stem(tile: str, look: str) -> str:
+    """File of a sheet, without its suffix."""
+    return f"votf_{tile}" if look == "BRDF" else f"votf_{tile}_{look.lower()}"
 
 
 def _ratios(rows: list[dict]) -> str:
