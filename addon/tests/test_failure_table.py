@@ -30,4 +30,4 @@ def test_models_of_a_case_stand_together_and_the_refused_are_left_out():
 
 def test_the_page_has_its_part():
     page = (ROOT / "docs/results/failure_modes.md").read_text(encoding="utf-8")
-    assert replaced(page, "claims", "new\n", "failure_modes") != page
+    assert replaced(page, "measured", "new\n") != page

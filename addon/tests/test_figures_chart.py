@@ -7,7 +7,6 @@ from __future__ import annotations
 
 import csv
 import os
-import shutil
 import subprocess
 import time
 
@@ -151,20 +150,6 @@ def test_the_page_of_btfs_shows_what_was_measured(btf_chart):
     for name in ("chart_btf.png", "chart_btf_weave.png"):
         assert f"images/{name}" in page
         assert (btf_chart / "out/images" / name).stat().st_size > 5000
-
-
-def test_rows_are_added_to_a_page(btf_chart, data_folder):
-    folder = btf_chart / "added"
-    shutil.copytree(btf_chart / "out", folder)
-    table, sheet = folder / "chart_btf.csv", folder / "images/chart_btf_weave.png"
-    before, drawn = _rows(table), sheet.stat().st_mtime_ns
-    more = ("--methods=svd", "--ratios=40", "--add", f"--output={folder}")
-    _run("btf_chart", btf_chart, *more, data=data_folder)
-    kept = [row for row in before if row["ratio"]]
-    assert [row for row in _rows(table) if row["ratio"]][: len(kept)] == kept
-    assert {row["ratio"] for row in _rows(table) if row["method"] == "svd"} == {"10", "20", "40"}
-    assert "Its rows were added to those of" in (folder / "chart_btf.md").read_text()
-    assert sheet.stat().st_mtime_ns == drawn
 
 
 def test_what_was_fitted_is_kept(btf_chart, data_folder):

@@ -32,7 +32,6 @@ NEEDS = {
     "chart": Needs(("product_bound",), "peers"),
     "closures": Needs(tools="metrics"),
     "failure_modes": Needs(("test_failure_modes",)),
-    "figures_check": Needs(("uniform_moments",)),
     "inputs": Needs(("test_image", "test_mesh", "test_brdf", "test_btf")),
     "models": Needs(("evaluation_cost",)),
     "perceptual": Needs(tools="metrics"),

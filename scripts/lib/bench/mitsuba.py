@@ -69,7 +69,9 @@ def compare(run: Run) -> dict | str:
                 curves[strategy] = [run.render(bunny, n, strategy=strategy, **how) for n in spp], ours
             for curve, (rendered, reference) in curves.items():
                 about = {"scene": material, "curve": curve, "seed": run.seed}
-                found["rows"] += points([(p, {**about, "spp": n}) for p, n in zip(rendered, spp, strict=True)], reference)
+                found["rows"] += points(
+                    [(p, {**about, "spp": n}) for p, n in zip(rendered, spp, strict=True)], reference
+                )
             both = _reference(run, sphere), Batches(_render(run, variant, sphere, converged)[0])
             where = silhouette(run, sphere, own.peer_size)
             found["spheres"].append({"material": material, **_difference(*both, where)})

@@ -18,7 +18,6 @@ PAGES = {
     "docs/results/chart_btf.md": _BTFS,
     "docs/results/equal_noise.md": _PICTURES,
     "docs/results/figures/README.md": _FITS + _PICTURES,
-    "docs/results/figures/check.md": _FITS + _PICTURES,
     "docs/results/fit.md": _FITS,
     "docs/results/for_scene.md": (*_FITS, *_PICTURES, "usage"),
     "docs/results/ggx.md": _FITS,
@@ -28,7 +27,6 @@ PAGES = {
     "docs/results/principled.md": _FITS,
     "docs/results/viewport.md": _PICTURES,
     "docs/results/votf_numbers.md": (*_BTFS, *_PICTURES, "votf"),
-    "docs/results/votf_tables.md": ("capture", "votf"),
 }
 
 
