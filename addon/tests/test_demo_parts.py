@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
+import demo
 import pytest
-from bench import parts
-from bench.parts import Part, Parts
 from bench.progress import Progress
+from demo import Part, Parts
 
 PART = Part("it", "the thing", {"first": 1, "second": 2}, ("file", "folder"))
 
@@ -19,9 +19,9 @@ class Maker:
         self.input.write_text("input")
 
     def make(self, part: Part = PART, fresh: bool = False) -> dict:
-        progress = Progress()
-        part.announce(progress)
-        return Parts(progress, fresh).make(part, self.folder, {"input": self.input}, self._run)
+        parts = Parts(Progress(), fresh)
+        parts.expect(part)
+        return parts.make(part, self.folder, {"input": self.input}, self._run)
 
     def _run(self, steps) -> dict:
         self.count += 1
@@ -65,7 +65,7 @@ def test_a_file_that_is_gone(maker):
 
 
 def test_other_code(maker, monkeypatch):
-    monkeypatch.setattr(parts, "_code", lambda: "other")
+    monkeypatch.setattr(demo, "_code", lambda: "other")
     assert maker.make()["count"] == 2
 
 

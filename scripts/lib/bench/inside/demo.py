@@ -5,7 +5,7 @@ import bpy
 import numpy as np
 from velour.native import images, render_job
 
-from ..steps import print_step
+from . import print_step
 from . import scene as build
 
 SIZE = (640, 480)
