@@ -1,6 +1,5 @@
 """A chapter inside Blender's window; task.json names it."""
 
-import importlib
 import json
 import math
 import sys
@@ -11,6 +10,7 @@ from support import window
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 
+from guide import chapters
 from guide.desk import Desk
 
 
@@ -20,13 +20,12 @@ def start(folder):
     bpy.context.preferences.view.show_tooltips = False  # they would appear in pictures at random
 
     def steps(folder):
-        chapter = importlib.import_module(f"guide.{task['chapter']}")
         desk, facts = Desk(folder), {"blender": bpy.app.version_string}
         try:
-            yield from chapter.steps(desk, folder / task["measurement"], facts)
+            yield from getattr(chapters, task["chapter"])(desk, folder / task["measurement"], facts)
         except Exception:
             desk.picture_of_window("failed", height=None)
             raise
-        (folder / "facts.json").write_text(json.dumps(facts))
+        (folder / "result.json").write_text(json.dumps(facts))
 
     window.run(folder, (steps,), seconds=math.inf)

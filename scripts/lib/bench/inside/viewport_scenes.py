@@ -3,11 +3,11 @@
 import math
 
 import bpy
-from guide import scene as guide_scene
+from guide import chapters
 from mathutils import Euler, Quaternion
 from support import viewport
 
-from ..velour_cli import ROOT
+from ..project import ROOT
 from . import large_scenes
 from . import scene as build
 
@@ -18,9 +18,9 @@ INSTANCES = 100_000
 
 def monkey():
     """One smooth object in a measured paint under an environment map and a light."""
-    guide_scene.add_world()
+    chapters.add_world()
     with viewport.override():
-        subject = guide_scene.add_monkey()
+        subject = chapters.add_monkey()
         bpy.ops.velour.load_material(filepath=str(PAINT), pack=False)
     subject.name = "Subject"
 
