@@ -7,11 +7,10 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 from bench import scenes
-from bench.curve import Curve, ratio
 from bench.pages import chart
 from bench.pages.chart import Result
 from bench.progress import Progress
-from bench.reference import fit_error
+from bench.reference import Curve, fit_error, ratio
 from bench.run import Run, key
 from bench.scenes import Scene
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from bench import tiles
 from bench.pages.votf import Shot, shell_errors, soft_iou, without_holes
-from bench.shapes import Cloth, Cylinder, Sphere, smooth_mesh, structured_mesh
+from bench.tiles import Cloth, Cylinder, Sphere, smooth_mesh, structured_mesh
 from velour.native import Model, Scene, Tile
 
 

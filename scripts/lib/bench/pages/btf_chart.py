@@ -14,10 +14,10 @@ import numpy as np
 from velour.native.table import COMPRESS_METHODS
 
 from .. import charts
-from ..curve import Curve
 from ..flip_metric import exposure, flip_map
 from ..page import judged
 from ..project import MissingError, flags, velour
+from ..reference import Curve
 from ..run import Picture, Run
 from ..scenes import SHEET_CAMERA, SHEET_TILES, Scene, write_sheet
 

@@ -12,10 +12,9 @@ from velour.native import images
 from velour.native.table import STRATEGIES
 
 from .. import charts, mitsuba
-from ..curve import Curve, Reading, ratio, shown
 from ..page import judged
 from ..project import BUILT
-from ..reference import Reference, points
+from ..reference import Curve, Reading, Reference, points, ratio, shown
 from ..run import Run, words_of
 from ..scenes import STUDIO, SUN, SUN_DIAMETER, SUN_SHARE, SUNSET, Scene, Subject, subjects, write_sunny_sky
 

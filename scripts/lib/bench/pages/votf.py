@@ -14,7 +14,7 @@ from velour.native import Measurement, Model, Scene, Tile, fit_job, microsurface
 
 from .. import charts, tiles
 from ..run import Run
-from ..shapes import Cloth, Cylinder, Sphere, Surface, smooth_mesh, structured_mesh
+from ..tiles import Cloth, Cylinder, Sphere, Surface, smooth_mesh, structured_mesh
 
 SETTINGS = {
     "tiles": (("net", "chainmail", "weave", "gravel"), ("net",)),
