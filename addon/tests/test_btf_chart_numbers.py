@@ -12,7 +12,6 @@ from bench.pages.btf_chart import (
     packing,
     relative_error,
     verdicts,
-    widest_spread,
     within,
 )
 
@@ -63,15 +62,6 @@ def test_the_error_of_a_picture_is_relative():
     reference = np.full((4, 5, 3), 0.5)
     assert relative_error(1.1 * reference, reference) == pytest.approx(0.1)
     assert relative_error(reference, reference) == 0
-
-
-def test_the_window_holds_what_differs():
-    pictures = [np.full((30, 40, 3), 0.3) for _ in range(3)]
-    pictures[1][12:15, 20:24] = 0.6
-    pictures[2][2, 2:4] = 50  # clipped: as different as white is, and few pixels
-    row, column = widest_spread(pictures, 8)
-    assert row <= 12 <= 15 <= row + 8
-    assert column <= 20 <= 24 <= column + 8
 
 
 def _entry(method: str, psnr: float, *, tile="weave", ratio=500, unseen=None, rate=2e6) -> dict:

@@ -2,15 +2,11 @@
 
 from __future__ import annotations
 
-import re
-
 import pytest
 from bench import page
 from bench.page import replaced
 from bench.pages import models
 from bench.pages.models import ANGLES, meets, met, target
-from campaigns import only_kept, run_script
-from command_line import undated
 from conftest import ROOT
 
 PAGE = "above\n<!-- fit: written by scripts/models -->\nold\n<!-- end of fit -->\nbelow\n"
@@ -100,20 +96,3 @@ def test_tables_name_every_material_and_model(pages):
     assert "| paper | 0.250 | 0.0200 |" in pages("ggx")
     assert "| nickel | 0.100, 0.200, 0.300 | 1.000 |" in pages("principled")
     assert "| nickel | 47, 7 | 4000 | 0.0200, 0.0100 / " in pages("fit")
-
-
-def _page(folder) -> str:
-    """Without the load of other programs, which is that of the moment."""
-    page = (folder / "out/models.md").read_text(encoding="utf-8")
-    return re.sub(r" \*\*Other programs kept .*?; times are too long\.", "", page)
-
-
-@pytest.mark.long
-def test_a_small_run_is_whole_and_is_not_repeated(data_folder, tmp_path):
-    assert run_script("models", tmp_path, data=data_folder).returncode == 0
-    page = _page(tmp_path)
-    assert "| blue-metallic-paint | principled |" in page
-    for picture in ("error_by_lobes", "error_by_bytes"):
-        assert (tmp_path / f"out/models/{picture}.png").stat().st_size > 5000
-    assert only_kept(run_script("models", tmp_path, data=data_folder).stdout)
-    assert undated(_page(tmp_path)) == undated(page)

@@ -50,8 +50,7 @@ _MARGIN = 0.99  # share of the target that is tried first
 # Approximate packing() of the files, by method.
 _PACKED, _PACKED_ELSE = {"svd": 0.85, "svd-view": 0.66}, 0.9
 _CAPTURE_COST, _FIT_COST = 4e7, 6e7  # in samples, for the progress
-_FAR = 0.5  # pictures with a larger error differ everywhere and do not influence the choice of the crop
-_CROP, _COLUMNS = 28, 5  # side of a crop in pixels; pictures in a row of a sheet
+_COLUMNS = 5  # pictures in a row of a sheet
 
 
 class Method(NamedTuple):
@@ -110,7 +109,7 @@ class Study:
     """Captures, fits and renders, each kept under a hash of everything it depends on."""
 
     def __init__(self, run: Run):
-        self._run = run
+        self._run, self._world = run, run.world(WORLD)
         self._packed: dict[str, float] = {}
         self.models: dict[tuple[str, str, int], Path] = {}  # of entries, by tile, method and ratio
         self._mesh = run.made("sheet.obj", write_sheet)
@@ -179,8 +178,7 @@ class Study:
         return self._render(tile, material, own.spp, own.size, "light")
 
     def _render(self, tile: Tile, material: Path, spp: int, size: tuple[int, int], strategy: str) -> Picture:
-        world = self._run.world(WORLD)
-        scene = Scene(tile.name, self._mesh, "z", world, material, camera=SHEET_CAMERA)
+        scene = Scene(tile.name, self._mesh, "z", self._world, material, camera=SHEET_CAMERA)
         options = {"strategy": strategy, "texture-scale": f"{SHEET_TILES:g}"}
         return self._run.render(scene, spp, size=size, **options)
 
@@ -246,35 +244,18 @@ def _exposure(reference: np.ndarray) -> float:
     return exposure(reference, np.ones(reference.shape[:2], bool))
 
 
-def widest_spread(pictures: list[np.ndarray], side: int) -> tuple[int, int]:
-    """Row and column of the side x side window in which the pictures differ most from one another, as
-    displayed: the square root of each channel, clipped at 1."""
-    shown = np.sqrt(np.clip(np.stack(pictures), 0, 1))
-    spread = shown.var(axis=0).sum(axis=-1)
-    windows = np.lib.stride_tricks.sliding_window_view(spread, (side, side)).sum(axis=(2, 3))
-    row, column = np.unravel_index(windows.argmax(), windows.shape)
-    return int(row), int(column)
-
-
 def _sheet(run: Run, study: Study, tile: Tile, contenders: list[Method], rows: list[dict]) -> None:
-    """A tile's pictures at equal bytes beside the BTF itself, with the region where they differ most."""
-    ratio, found = run.settings.speed_ratio, {"the BTF": study.picture(tile, tile.btf).pixels}
+    """A tile's pictures at equal bytes beside the BTF itself."""
+    ratio, reference = run.settings.speed_ratio, study.picture(tile, tile.btf).pixels
+    results, scale = Results(rows), _exposure(reference)
+    cells = [("the BTF", charts.display(scale * reference))]
     for method in contenders:
-        if model := study.models.get((tile.name, method.name, ratio)):
-            found[method.name] = study.picture(tile, model).pixels
-    reference, results = found["the BTF"], Results(rows)
-    scale, side = _exposure(reference), min(_CROP, *reference.shape[:2])
-    close = [scale * p for p in found.values() if relative_error(p, reference) < _FAR]
-    top, left = widest_spread(close, side)
-    above, below = [], []
-    for name, pixels in found.items():
-        entry = results.get(tile.name, name, ratio)
-        error = "" if entry is None else f", {entry['bytes'] / 1000:.0f} KB, {entry['picture']:.3f}"
-        above.append((name + error, charts.display(scale * pixels)))
-        below.append(("", charts.display(scale * pixels[top : top + side, left : left + side])))
-    both = (charts.wrapped(cells, _COLUMNS) for cells in (above, below))
-    lines = [line for pair in zip(*both, strict=True) for line in pair]
-    charts.sheet(run.output / f"images/chart_btf_{tile.name}.png", lines, (2.0, 1.95))
+        if row := results.get(tile.name, method.name, ratio):
+            pixels = study.picture(tile, study.models[tile.name, method.name, ratio]).pixels
+            title = f"{method.name}, {row['bytes'] / 1000:.0f} KB, {row['picture']:.3f}"
+            cells.append((title, charts.display(scale * pixels)))
+    path = run.output / f"images/chart_btf_{tile.name}.png"
+    charts.sheet(path, charts.wrapped(cells, _COLUMNS), (2.0, 1.95))
 
 
 class Results:

@@ -3,12 +3,10 @@
 from __future__ import annotations
 
 import functools
-import subprocess
 from collections.abc import Iterator, Mapping
 from pathlib import Path
 
 import numpy as np
-from velour.native import images
 from velour.native.table import STRATEGIES
 
 from .. import charts, mitsuba
@@ -16,7 +14,7 @@ from ..page import judged
 from ..project import BUILT
 from ..reference import Curve, Reading, Reference, points, ratio, shown
 from ..run import Run, words_of
-from ..scenes import STUDIO, SUN, SUN_DIAMETER, SUN_SHARE, SUNSET, Scene, Subject, subjects, write_sunny_sky
+from ..scenes import STUDIO, SUNSET, Scene, Subject, subjects, write_sunny_sky
 
 CSV = "chart/chart.csv"
 PAGES = {"chart/README.md": "chart"}
@@ -72,7 +70,6 @@ def measure(run: Run) -> dict:
         "rows": rows,
         "scenes": found,
         "mitsuba": mitsuba.compare(run),
-        "sun": _sun_lobes(run, scenes[-1][2]),
     }
 
 
@@ -112,32 +109,6 @@ def _bound(run: Run, scene: Scene) -> dict | None:
     options |= {"size": "{}x{}".format(*run.settings.size), "hits": run.settings.bound_hits, "seed": run.seed}
     found = run.program(f"{scene.name}, bound", BUILT / "bench/product_bound", *words_of(options))
     return found and found["variance"]
-
-
-def _sun_lobes(run: Run, scene: Scene) -> dict:
-    """What product sampling keeps of the sun, read from the mixture that a small render caches: lobes within
-    a diameter of its center, at most two diameters wide. Their number, their share of the mixture's
-    energy, and the diameter of the disk with the same mean cosine, in degrees, as a mean by energy."""
-    folder = run.kept / "sun"
-    folder.mkdir(exist_ok=True)
-    run.render(scene, 8, size=(16, 12), strategy="product", cache=str(folder))
-    mixture = max(folder.glob("sky-*.exr"), key=lambda path: path.stat().st_mtime)
-
-    def part(name: str) -> np.ndarray:
-        alone = mixture.with_name(f"part-{name}.exr")
-        subprocess.run(["oiiotool", mixture, "--subimage", f"lobes.{name}", "-o", alone], check=True)
-        return images.read(alone)
-
-    center, color = part("center").reshape(-1, 3), part("coefficient").reshape(-1, 3)
-    bandwidth = part("bandwidth").ravel()
-    # The integral of exp(lambda (t - 1)) over the sphere.
-    energy = color @ [0.2126, 0.7152, 0.0722] * 2 * np.pi * -np.expm1(-2 * bandwidth) / bandwidth
-    # The mean cosine of a disk of radius a is 1 - a^2 / 4, that of a lobe 1 - 1 / lambda.
-    diameter = 4 / np.sqrt(bandwidth)
-    kept = (center @ SUN > np.cos(SUN_DIAMETER)) & (diameter <= 2 * SUN_DIAMETER)
-    mean = np.degrees(np.average(diameter[kept], weights=energy[kept])) if kept.any() else 0.0
-    share = float(energy[kept].sum() / energy.sum())
-    return {"count": int(kept.sum()), "energy": share, "diameter": float(mean)}
 
 
 class Result:
@@ -228,7 +199,7 @@ def peers_of(found: Mapping) -> list[Mapping]:
     return materials
 
 
-def verdicts(results: list[Result], sun: Mapping, peers: list[Mapping], spp: int) -> Iterator[dict]:
+def verdicts(results: list[Result], peers: list[Mapping], spp: int) -> Iterator[dict]:
     """Targets and whether they are met. `spp`: the number of samples at which equal samples are compared."""
 
     def limit(target: str, result: Result, found: Reading | None, most: float) -> dict:
@@ -256,9 +227,6 @@ def verdicts(results: list[Result], sun: Mapping, peers: list[Mapping], spp: int
         most, words = (2 / 3, "2/3 of") if result.about["ggx"] > _MOST_GGX_ERROR else (1.0, "those of")
         target = f"seconds of `mis` to equal error at most {words} `mis-ggx`"
         yield limit(target, result, result.time_ratio(DEFAULT, "mis-ggx"), most)
-    target = "the sun's lobes keep its energy within 1 % of all, no wider than twice the sun"
-    measured = f"{100 * sun['energy']:.1f} %, {sun['diameter']:.2f} degrees"
-    yield judged(target, SKY, measured, abs(sun["energy"] - SUN_SHARE) <= 0.01)
     for peer in peers:
         target, found = "seconds of Mitsuba to equal error over ours above 1", peer["speed_up"]
         yield judged(target, peer["material"], shown(found), found and found.value > 1)
@@ -268,11 +236,11 @@ def verdicts(results: list[Result], sun: Mapping, peers: list[Mapping], spp: int
 
 
 def values(found: dict) -> dict:
-    results, conditions, sun = results_of(found), found["conditions"], found["sun"]
+    results, conditions = results_of(found), found["conditions"]
     absent = found["mitsuba"] if isinstance(found["mitsuba"], str) else ""
     peers = [] if absent else peers_of(found["mitsuba"])
     equal_spp, most_spp = int(conditions["equal_spp"]), max(results[-1].means("product"))
-    targets = list(verdicts(results, sun, peers, equal_spp))
+    targets = list(verdicts(results, peers, equal_spp))
     bounded = all(result.about["bound"] for result in results)
     every = sorted({p["spp"] for p in results[0].points["product"]})
     bound_titles = " | exact / `mis`, variance | `product` / `mis`, variance | share of the gain"
@@ -289,8 +257,6 @@ def values(found: dict) -> dict:
         + " | `mis` / `mis-dissertation`"
         + bound_titles * bounded,
         "equal_samples": [_equal_samples(result, every, equal_spp, bounded) for result in results],
-        "sun": sun,
-        "sun_share": 100 * sun["energy"],
         "sun_gain": _gain(results[-1].gain("product", DEFAULT, most_spp)),
         "most_spp": most_spp,
         "absent": [{"why": absent}] if absent else [],
