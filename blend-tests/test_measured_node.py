@@ -395,11 +395,7 @@ class Shared(NodeTest):
 
 def _wrap(tree, node):
     """Moves a node into a group of its own, which takes its place."""
-    outer = bpy.data.node_groups.new("Wrapped", "ShaderNodeTree")
-    if hasattr(outer, "interface"):  # 4.0 and newer
-        outer.interface.new_socket(name="Shader", in_out="OUTPUT", socket_type="NodeSocketShader")
-    else:
-        outer.outputs.new("NodeSocketShader", "Shader")
+    outer = scenes.new_group("Wrapped", "Shader")
     inner, sink = outer.nodes.new("ShaderNodeGroup"), outer.nodes.new("NodeGroupOutput")
     inner.node_tree = node.node_tree
     for socket in node.inputs:

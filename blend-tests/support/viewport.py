@@ -88,6 +88,15 @@ def real_time_finished(patience=_PATIENCE):
     yield 0.3
 
 
+def choose_real_time_again():
+    """What was refused is there now."""
+    bpy.context.scene.velour.viewport_mode = "RAY_TRACED"
+    yield from finished()
+    bpy.context.scene.velour.viewport_mode = "REAL_TIME"
+    yield from real_time_finished()
+    assert not the_one()._refusal
+
+
 def job():
     """The library's ProgressiveJob of the only 3D viewport."""
     return the_one()._job._job
