@@ -3,3 +3,5 @@
 `pages` runs outside Blender; `inside` runs the rest in Blender's window. Chapters may do only what the guide
 tells the reader to do.
 """
+
+CHAPTERS = ("install", "preset", "first_material", "library", "tolerance", "scene_model", "tile", "cloth")

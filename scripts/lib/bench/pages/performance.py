@@ -1,11 +1,9 @@
-"""Where the time of a render goes, its cost by lobes and threads, and how close kernels come to the peak
-arithmetic throughput of the machine. Nothing else should run meanwhile."""
+"""The cost of a render by lobes and threads, the share of tracing rays in it, and how close kernels come to the
+peak arithmetic throughput of the machine. Nothing else should run meanwhile."""
 
 from __future__ import annotations
 
 import json
-import re
-import shutil
 import subprocess
 from collections.abc import Mapping
 
@@ -19,27 +17,12 @@ SETTINGS = {
     "spp": (800, 128),
     "small_size": ((320, 240), (320, 240)),
     "lobes_spp": (512, 128),
-    "profile_spp": (1024, 128),
     "lobes": ((2, 4, 8, 16, 32), (2, 16)),
     "repeats": (3, 1),
 }
 PAGES = {"performance.md": "performance"}
 MATERIAL, DEFAULT_LOBES = "blue-metallic-paint", 16
 TARGETS = {"mis": 0.5, "product": 0.35}  # minimum ray_share of a strategy
-# The first pattern that matches counts the function. Functions without a match belong to loading, which is
-# omitted.
-_PARTS = [
-    ("tracing rays (Embree)", r"libembree|EmbreeScene|RayLog"),
-    ("products of lobes", r"SkyProposals|multiply_|keep_products|select_|expm1|log2f|lround|exp2f"),
-    ("drawing from the sky", r"EquirectangularImage|draw_(rows|columns)|sky_directions|Lighting::sample"),
-    ("looking the sky up", r"look_up|coordinates_simd"),
-    ("evaluating mixtures", r"eval_mixture|eval_density|Material::eval"),
-    ("drawing from mixtures", r"sample_mixture|Material::sample|choose_|directions_simd"),
-    ("gathering the views' lobes", r"LobeMixture|ScatteredLobes|bracketing|nearest_|prepare|atan"),
-    ("random numbers", r"Point|sobol|PathNumbers|points_simd"),
-    ("surface points, camera rays", r"Mesh::(pos|sha|tan)|Scene::surf|Vertex|Camera|Tile|Film|Pixel"),
-    ("combining, queueing rays", r"DirectLight|LightTerms|ShadowQueue"),
-]
 
 
 def measure(run: Run) -> dict:
@@ -66,7 +49,6 @@ def measure(run: Run) -> dict:
         "conditions": run.conditions(load=load),
         "threads": threads,
         "lobes": lobes,
-        "profile": {s: _profile(run, first, s) for s in TARGETS} if _may_profile() else None,
         "kernels": _bench("bench_lobe_mixture", "eval_neighbors|eval_on|sample_lobe"),
         "gathering": _bench("bench_material", "prepare_neighbors"),
     }
@@ -74,32 +56,6 @@ def measure(run: Run) -> dict:
 
 def _words(scene: Mapping, size: tuple[int, int], spp: int, **options) -> list[str]:
     return flags({**scene, "size": "{}x{}".format(*size), "spp": spp, **options})
-
-
-def _may_profile() -> bool:
-    """Whether perf is installed and permitted."""
-    probe = ["perf", "record", "-e", "cpu-clock", "-o", "/dev/null", "true"]
-    return bool(shutil.which("perf")) and subprocess.run(probe, capture_output=True).returncode == 0
-
-
-def _profile(run: Run, scene: Mapping, strategy: str) -> dict[str, float]:
-    """Share of each part in the processor time of all parts of a render, by perf's samples."""
-    words = _words(scene, run.settings.small_size, run.settings.profile_spp, strategy=strategy, threads=1)
-    data = run.work / f"{strategy}.perf"
-    record = ["perf", "record", "-q", "-e", "cpu-clock", "-F", "1999", "-o", data, "--"]
-    command = [*record, ROOT / "scripts/velour", "render", *words, "--quiet"]
-    subprocess.run(command, check=True, stdout=subprocess.DEVNULL)
-    report = ["perf", "report", "-i", data, "-g", "none", "--percent-limit", "0"]
-    fields = ["--field-separator", "\t", "--sort", "dso,symbol"]
-    text = subprocess.run([*report, *fields], check=True, capture_output=True, text=True).stdout
-    totals = dict.fromkeys((name for name, _ in _PARTS), 0.0)
-    for line in text.splitlines():
-        percent, library, function, *_ = *line.strip().split("\t"), "", "", ""
-        if not line.startswith("#") and re.search(r"libvelour|libembree|libm\.|libc\.", library):
-            where = f"{library.strip()} {function.strip()}"
-            if part := next((name for name, known in _PARTS if re.search(known, where)), None):
-                totals[part] += float(percent.strip().rstrip("%"))
-    return {name: total / sum(totals.values()) for name, total in totals.items()}
 
 
 def _bench(program: str, wanted: str) -> list[dict]:
@@ -112,21 +68,15 @@ def _bench(program: str, wanted: str) -> list[dict]:
 
 
 def values(found: dict) -> dict:
-    profile, first = found["profile"] or {}, found["lobes"][0]["seconds"]
+    first = found["lobes"][0]["seconds"]
     kernels: dict[str, list[dict]] = {}
     for row in found["kernels"]:
         kernels.setdefault(row["parts"][0], []).append(row)
-    shares = [
-        {"part": part, "cells": " | ".join(f"{100 * own[part]:.1f}" for own in profile.values())}
-        for part, _ in _PARTS
-        if profile
-    ]
     lobes = [r | {"ns": 1e9 / r["samples_per_second"], "over": r["seconds"] / first} for r in found["lobes"]]
     kinds = {"0": "Gaussian", "1": "Abel-Poisson"}
     return {
         "busy": project.busy(found["conditions"]["load"]),
         "pictures": [_picture(*item) for item in found["threads"].items()],
-        "profiles": [{"strategies": " | ".join(profile), "shares": shares}] if profile else [],
         "by_lobes": lobes,
         "neighbors": kernels.get("eval_neighbors", []),
         "targets": kernels.get("eval_on", []),
