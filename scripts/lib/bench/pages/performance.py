@@ -1,5 +1,5 @@
-"""The cost of a render by lobes and threads, the share of tracing rays in it, and how close kernels come to the
-peak arithmetic throughput of the machine. Nothing else should run meanwhile."""
+"""The cost of a render by lobes and threads, the share of tracing rays in it, and how close kernels come to
+the peak arithmetic throughput of the machine. Nothing else should run meanwhile."""
 
 from __future__ import annotations
 
