@@ -54,7 +54,6 @@ def _material(task, masking):
 
 
 def _sphere():
-    bpy.ops.mesh.primitive_uv_sphere_add(segments=256, ring_count=128)
-    bpy.ops.object.shade_smooth()
-    bpy.context.object.name = "sphere"
-    return bpy.context.object
+    found = build.ball((0, 0, 0), 1, segments=256)
+    found.name = "sphere"
+    return found

@@ -78,6 +78,25 @@ def material(name="Material", shader="Principled BSDF", **inputs):
     return found
 
 
+def polygons(name, points, faces, own_material=None):
+    """A new object of points and faces."""
+    mesh = bpy.data.meshes.new(name)
+    mesh.from_pydata(points, [], faces)
+    if own_material:
+        mesh.materials.append(own_material)
+    return link(name, mesh)
+
+
+def ball(center, radius, own_material=None, segments=48):
+    bpy.ops.mesh.primitive_uv_sphere_add(
+        radius=radius, location=center, segments=segments, ring_count=segments // 2
+    )
+    bpy.ops.object.shade_smooth()
+    if own_material:
+        bpy.context.object.data.materials.append(own_material)
+    return bpy.context.object
+
+
 def monkey(size=2.0, turned=(0, 0), levels=3):
     """Suzanne, smooth. `turned`: degrees about x and about z."""
     rotation = (math.radians(turned[0]), 0, math.radians(turned[1]))
