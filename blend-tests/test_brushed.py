@@ -1,7 +1,5 @@
 """Anisotropic measurements: which way they lie on objects, by pictures under a sun from one side."""
 
-import importlib
-
 import bpy
 import numpy as np
 
@@ -51,8 +49,8 @@ class Brushed(BlenderTest):
         self.assertGreater(np.abs(a - b).mean(), 0.1 * b.mean())
 
     def _notes(self):
-        export = importlib.import_module(f"{inputs.ADDON}.export")
-        camera = importlib.import_module(f"{inputs.ADDON}.export.camera")
+        export = inputs.module("export")
+        camera = inputs.module("export.camera")
         notes, depsgraph = export.Notes(), bpy.context.evaluated_depsgraph_get()
         export.export_scene(depsgraph, camera.final_view(depsgraph), notes)[0].close()
         return list(notes)

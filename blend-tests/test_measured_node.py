@@ -11,10 +11,6 @@ from support import inputs, scenes
 from support.blender import BlenderTest
 
 
-def _module(name):
-    return __import__(f"{inputs.ADDON}.{name}", fromlist=["any"])
-
-
 class NodeTest(BlenderTest):
     def _stage(self, material, samples=8):
         scenes.use_engine(samples=samples, size=16)
@@ -47,8 +43,8 @@ class NodeTest(BlenderTest):
         self.assertGreater(np.abs(changed - plain).max(), 0.01)
 
     def _notes(self, material):
-        notes = _module("export.notes").Notes()
-        _module("export.shaders").surface_layers(material, notes)
+        notes = inputs.module("export.notes").Notes()
+        inputs.module("export.shaders").surface_layers(material, notes)
         return " ".join(notes)
 
 
@@ -260,7 +256,7 @@ class Mixed(NodeTest):
         calls = mock.Mock()
         shader = calls.__enter__ = mock.MagicMock()
         shader.__enter__.return_value = calls
-        notes, materials = _module("export.notes").Notes(), _module("export.materials")
+        notes, materials = inputs.module("export.notes").Notes(), inputs.module("export.materials")
         with inputs.native().Scene() as scene:
             table = materials.MaterialTable(scene, notes)
             with (
@@ -333,7 +329,7 @@ class Shared(NodeTest):
         self.first = scenes.measured_material(inputs.model_bytes(inputs.plastic_measurement()))
         self.second = self.first.copy()
         self.second.name = "Copy"
-        measured = _module("operators.measured")
+        measured = inputs.module("operators.measured")
         for material in (self.first, self.second):
             scenes.velour_node(material).velour.measurement = measured.file_image(
                 str(inputs.lambert_measurement())
@@ -384,7 +380,7 @@ class Shared(NodeTest):
         local = bpy.data.materials["Paint"].make_local() or bpy.data.materials["Paint"]
         node = scenes.velour_node(local)
         self.assertIsNotNone(node.group.node_tree.library)
-        measured = _module("operators.measured")
+        measured = inputs.module("operators.measured")
         node.velour.measurement = measured.file_image(str(inputs.lambert_measurement()))
         image = node.image
         for call in (bpy.ops.velour.fit, bpy.ops.velour.approximate):

@@ -252,8 +252,8 @@ class Notes(NotesTest):
 
     def test_missing_model_in_a_preview(self):
         """Previews render the approximation and say why."""
-        export = __import__(f"{inputs.ADDON}.export", fromlist=["export"])
-        camera = __import__(f"{inputs.ADDON}.export.camera", fromlist=["camera"])
+        export = inputs.module("export")
+        camera = inputs.module("export.camera")
         scenes.add_sphere()
         bpy.ops.velour.add_material()
         notes = export.Notes()

@@ -1,6 +1,5 @@
 """Where tiles of BTFs lie on objects: what is measured, and what is said."""
 
-import importlib
 import types
 
 import bpy
@@ -24,7 +23,7 @@ class Panel(Placed):
             target.materials = ["Quarters"]
         (material,) = target.materials
         obj = scenes.add_plane(material)
-        ui = {name: importlib.import_module(f"{inputs.ADDON}.ui.{name}") for name in _OF_PANELS}
+        ui = {name: inputs.module(f"ui.{name}") for name in _OF_PANELS}
         context = types.SimpleNamespace(object=obj, scene=bpy.context.scene)
         while ui["summaries"].model_summary(scenes.velour_node(material).image) is None:
             ui["summaries"]._turn()
@@ -212,7 +211,7 @@ class Warnings(Placed):
 
     def test_a_preview_without_a_size_is_not_refused(self):
         scenes.add_plane(self._material(metres=0, mode="REAL_SIZE"))
-        export = importlib.import_module(f"{inputs.ADDON}.export")
+        export = inputs.module("export")
         notes, depsgraph = export.Notes(), bpy.context.evaluated_depsgraph_get()
         view = export_module("camera").final_view(depsgraph)
         export.export_scene(depsgraph, view, notes, strict=False)[0].close()

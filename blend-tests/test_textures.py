@@ -67,8 +67,8 @@ class Textures(BlenderTest):
         return scenes.render(self.folder)[..., :3]
 
     def _notes(self):
-        export = __import__(f"{inputs.ADDON}.export", fromlist=["export"])
-        camera = __import__(f"{inputs.ADDON}.export.camera", fromlist=["camera"])
+        export = inputs.module("export")
+        camera = inputs.module("export.camera")
         notes = export.Notes()
         depsgraph = bpy.context.evaluated_depsgraph_get()
         export.export_scene(depsgraph, camera.final_view(depsgraph), notes)[0].close()
@@ -92,7 +92,7 @@ class Textures(BlenderTest):
         np.testing.assert_allclose(self._rendered(), 0.5, atol=3e-3)
 
     def test_packed_and_file_images(self):
-        native = __import__(f"{inputs.ADDON}.native", fromlist=["native"])
+        native = inputs.module("native")
         path = self.folder / "stored.exr"
         native.images.write(path, _colors())
         for packed in (False, True):

@@ -1,6 +1,5 @@
 """The window: sentences in panels fill the lines and are cut nowhere, whatever the scale of the interface."""
 
-import importlib
 from unittest import mock
 
 import bpy
@@ -50,7 +49,7 @@ def start(folder):
 
 
 def _text():
-    return importlib.import_module(f"{inputs.ADDON}.ui.text")
+    return inputs.module("ui.text")
 
 
 def plain(folder):
@@ -94,7 +93,7 @@ def _points():
 
 
 def _unit():
-    return importlib.import_module(f"{inputs.ADDON}.ui.units").button_height(bpy.context.preferences.system)
+    return inputs.module("ui.units").button_height(bpy.context.preferences.system)
 
 
 def _drawn(folder, name, area, icon):

@@ -16,8 +16,8 @@ class NotesTest(BlenderTest):
         scenes.set_world()
 
     def notes(self):
-        export = __import__(f"{inputs.ADDON}.export", fromlist=["export"])
-        camera = __import__(f"{inputs.ADDON}.export.camera", fromlist=["camera"])
+        export = inputs.module("export")
+        camera = inputs.module("export.camera")
         notes = export.Notes()
         depsgraph = bpy.context.evaluated_depsgraph_get()
         view = camera.final_view(depsgraph)

@@ -1,7 +1,5 @@
 """Tests place a tile of four grays: its picture, what is measured of it and what is said."""
 
-import importlib
-
 import bpy
 import numpy as np
 
@@ -12,7 +10,7 @@ SIZE = 64  # pixels of a picture two units wide
 
 
 def export_module(name):
-    return importlib.import_module(f"{inputs.ADDON}.export.{name}")
+    return inputs.module(f"export.{name}")
 
 
 def _expected(uv_map, uvs):
@@ -67,7 +65,7 @@ class Placed(BlenderTest):
         return dict(self._report(**arguments).rows)
 
     def _notes(self):
-        export = importlib.import_module(f"{inputs.ADDON}.export")
+        export = inputs.module("export")
         notes = export.Notes()
         depsgraph = bpy.context.evaluated_depsgraph_get()
         export.export_scene(depsgraph, export_module("camera").final_view(depsgraph), notes)[0].close()

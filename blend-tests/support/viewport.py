@@ -1,6 +1,5 @@
 """The rendered viewport under test."""
 
-import importlib
 import time
 
 import bpy
@@ -12,8 +11,7 @@ TURN = 0.05
 _PATIENCE = 60  # seconds; the machine may be busy
 
 
-def addon(name):
-    return importlib.import_module(f"{inputs.ADDON}.{name}")
+addon = inputs.module
 
 
 def area():

@@ -4,7 +4,6 @@ their next turn in Blender's event loop.
 The scenes: a monkey, or a cloth, under an environment that comes with Blender.
 """
 
-import importlib
 import math
 
 import bpy
@@ -92,12 +91,12 @@ def library(desk, measurement, _facts):
     folder = desk.folder / "measurements"
     folder.symlink_to(project.data_folder() / "brdf")
     bpy.ops.wm.save_as_mainfile(filepath=str(desk.folder / "library.blend"))
-    preferences = _addon("operators.browse").addon_preferences(bpy.context)
+    preferences = inputs.module("operators.browse").addon_preferences(bpy.context)
     preferences.measurements = "//measurements/"  # Blender's notation for paths relative to the .blend
     bpy.context.window_manager.velour.browser.chosen = str(folder / measurement.name)
     yield from desk.show("MATERIAL")
     yield from desk.fold("MATERIAL", "Measurement Library", is_open=True)
-    browser = _addon("ui.browser")
+    browser = inputs.module("ui.browser")
     yield from desk.until(lambda: browser.is_at_rest() and browser._pictures, "the pictures of the library")
     desk.picture_of_panels("library", "MATERIAL", "Measurement Library")
 
@@ -243,17 +242,13 @@ def _add_curtain():
     bpy.ops.object.shade_smooth()
 
 
-def _addon(module):
-    return importlib.import_module(f"{inputs.ADDON}.{module}")
-
-
 def _material():
     return bpy.context.view_layer.objects.active.active_material
 
 
 def _model_info(image) -> dict:
     """info() of the model that an image datablock holds."""
-    with _addon("export.files").read_model(image, image.name) as model:
+    with inputs.module("export.files").read_model(image, image.name) as model:
         return model.info()
 
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import importlib
 from pathlib import Path
 
 import bpy
@@ -92,7 +91,7 @@ class Desk:
 
     def drawn(self, kind: str):
         """Waits until the plot that a panel shows is drawn."""
-        preview = importlib.import_module(f"{inputs.ADDON}.ui.plot_preview")
+        preview = inputs.module("ui.plot_preview")
         is_there = lambda: preview.is_at_rest() and any(p.kind == kind for p in preview._pictures)  # noqa: E731
         yield from self.until(is_there, f"the plot {kind}")
         yield from self._read()
@@ -100,7 +99,7 @@ class Desk:
 
     def _read(self):
         """Waits until panels have read the summaries of files."""
-        summaries = importlib.import_module(f"{inputs.ADDON}.ui.summaries")
+        summaries = inputs.module("ui.summaries")
         yield from self.until(summaries.is_at_rest, "what the panels read")
 
     def until(self, holds, what: str):
