@@ -7,7 +7,8 @@ import numpy as np
 from mathutils import Matrix
 
 from support import inputs, scenes
-from support.placement import SIZE, Placed, export_module
+from support.notes import export_notes
+from support.placement import SIZE, Placed
 
 _OF_PANELS = ("summaries", "placement_summary")
 
@@ -211,11 +212,7 @@ class Warnings(Placed):
 
     def test_a_preview_without_a_size_is_not_refused(self):
         scenes.add_plane(self._material(metres=0, mode="REAL_SIZE"))
-        export = inputs.module("export")
-        notes, depsgraph = export.Notes(), bpy.context.evaluated_depsgraph_get()
-        view = export_module("camera").final_view(depsgraph)
-        export.export_scene(depsgraph, view, notes, strict=False)[0].close()
-        self.assertIn("enter Tile Size", " ".join(notes))
+        self.assertIn("enter Tile Size", " ".join(export_notes(strict=False)))
 
     def test_repeats_of_unknown_size_are_fine_and_said(self):
         scenes.add_plane(self._material(metres=0))

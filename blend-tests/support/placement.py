@@ -5,6 +5,7 @@ import numpy as np
 
 from . import inputs, scenes
 from .blender import BlenderTest
+from .notes import export_notes
 
 SIZE = 64  # pixels of a picture two units wide
 
@@ -65,8 +66,4 @@ class Placed(BlenderTest):
         return dict(self._report(**arguments).rows)
 
     def _notes(self):
-        export = inputs.module("export")
-        notes = export.Notes()
-        depsgraph = bpy.context.evaluated_depsgraph_get()
-        export.export_scene(depsgraph, export_module("camera").final_view(depsgraph), notes)[0].close()
-        return list(notes)
+        return export_notes()
