@@ -5,9 +5,8 @@ from __future__ import annotations
 import json
 import os
 import shutil
-import subprocess
 import sys
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from pathlib import Path
 
 from .project import ROOT
@@ -30,13 +29,11 @@ def run(
     task: dict,
     log: Path,
     options: tuple[str, ...] = (),
-    hear: Callable[[str], None] = lambda line: None,
     version: str | None = None,
 ) -> dict | None:
     """Calls main(task) of the module bench.inside.SCRIPT and returns what it returns.
 
-    `options`: further options for Blender. `hear` is called with each line that Blender or the script prints.
-    `version`: a version of scripts/blenders, with the packaged add-on.
+    `options`: further options for Blender. `version`: one of scripts/blenders, with the packaged add-on.
     """
     found = log.with_suffix(".report.json")
     found.unlink(missing_ok=True)
@@ -46,7 +43,7 @@ def run(
     command = [*_blender(version), "-b", "--factory-startup", "-noaudio"]
     # The order matters: --python-exit-code applies only to the arguments after it.
     command += ["--python-exit-code", "7", *options, "--python-expr", code]
-    if status := _run(command, log, hear):
+    if status := process.execute(command, process.environment(command[0], STAGE), log, None):
         raise BlenderError(f"Blender failed with status {status}; {_ending(log)}")
     return json.loads(found.read_text(encoding="utf-8")) if found.is_file() else None
 
@@ -100,22 +97,3 @@ def _blender(version: str | None) -> list[str]:
     if not found:
         raise BlenderError("blender is not installed; run scripts/setup")
     return [found]
-
-
-def _run(command: list[str], log: Path, hear: Callable[[str], None]) -> int:
-    """Returns the exit status. Kills Blender on any exception: Ctrl-C itself ends only its current render."""
-    pipes = {"stdin": subprocess.DEVNULL, "stdout": subprocess.PIPE, "stderr": subprocess.STDOUT}
-    pipes |= {"env": process.environment(command[0], STAGE)}
-    with (
-        open(log, "w") as file,
-        subprocess.Popen(command, text=True, errors="replace", **pipes) as child,
-    ):
-        try:
-            for line in child.stdout:
-                file.write(line)
-                file.flush()
-                hear(line)
-        except BaseException:
-            child.kill()
-            raise
-    return child.returncode

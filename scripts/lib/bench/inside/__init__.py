@@ -3,8 +3,6 @@
 import importlib
 import json
 
-STEP = "step: "  # begins a line that announces a step to the process that hears it
-
 
 def start(script, task, report):
     """Calls main() of a script of this folder and writes what it returns to the file `report`."""
@@ -12,7 +10,3 @@ def start(script, task, report):
     if found is not None:
         with open(report, "w") as file:
             json.dump(found, file)
-
-
-def print_step(name):
-    print(f"{STEP}{name}", flush=True)

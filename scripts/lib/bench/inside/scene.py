@@ -176,16 +176,15 @@ class _ReportHandler(logging.Handler):
         super().close()
 
 
-def capture_and_compress(folder, capture, megabytes, captured=lambda: None):
+def capture_and_compress(folder, capture, megabytes):
     """Captures the active object, a tile, as a BTF and makes the material NAME of it.
 
-    `capture`: arguments of the operator; `megabytes`: 0: the library chooses. `captured` is called before the
-    fit. Returns seconds and bytes."""
+    `capture`: arguments of the operator; `megabytes`: 0: the library chooses. Returns seconds and bytes.
+    """
     btf = os.path.join(folder, f"{NAME}.btf")
     start = time.perf_counter()
     bpy.ops.velour.capture_btf(directory=btf, sides="ONE", **capture)
     middle = time.perf_counter()
-    captured()
     bpy.ops.velour.compress_btf(filepath=btf, megabytes=megabytes)
     return {
         "capture_seconds": middle - start,
