@@ -133,10 +133,6 @@ class Result:
         return found
 
     @property
-    def level_seconds(self) -> float:
-        return self.means(DEFAULT)[self.level_spp][0]
-
-    @property
     def level(self) -> float:
         """relmse of the default strategy at `level_spp` samples."""
         return self.means(DEFAULT)[self.level_spp][1]
@@ -144,22 +140,19 @@ class Result:
     def seconds_to_level(self, name: str) -> Reading | None:
         return self.curves[name].seconds_at(self.level)
 
-    def error_at_equal_time(self, name: str) -> Reading | None:
-        return self.curves[name].error_at(self.level_seconds)
-
     def time_ratio(self, name: str, other: str) -> Reading | None:
         """Ratio of `name` to `other` in seconds to the level."""
-        return ratio(self.seconds_to_level(name), self.seconds_to_level(other))
+        return ratio(*map(self.seconds_to_level, (name, other)))
 
     def error_ratio(self, name: str, other: str) -> Reading | None:
         """Ratio of `name` to `other` in relmse at equal time."""
-        return ratio(self.error_at_equal_time(name), self.error_at_equal_time(other))
+        seconds = self.means(DEFAULT)[self.level_spp][0]
+        return ratio(*(self.curves[curve].error_at(seconds) for curve in (name, other)))
 
     def gain(self, name: str, other: str, spp: int) -> tuple[float, float]:
         """Ratio of `name` to `other` in relmse at equal samples, of means over seeds, and its standard error,
         estimated from the seeds."""
-        both = (np.array([p["relmse"] for p in self.points[n] if p["spp"] == spp]) for n in (name, other))
-        a, b = both
+        a, b = (np.array([p["relmse"] for p in self.points[n] if p["spp"] == spp]) for n in (name, other))
         relative = [x.var(ddof=1) / len(x) / x.mean() ** 2 if len(x) > 1 else np.nan for x in (a, b)]
         value = float(a.mean() / b.mean())
         return value, abs(value) * sum(relative) ** 0.5
@@ -201,38 +194,32 @@ def peers_of(found: Mapping) -> list[Mapping]:
 
 def verdicts(results: list[Result], peers: list[Mapping], spp: int) -> Iterator[dict]:
     """Targets and whether they are met. `spp`: the number of samples at which equal samples are compared."""
-
-    def limit(target: str, result: Result, found: Reading | None, most: float) -> dict:
-        return judged(target, result.about["name"], shown(found), found and found.value <= most)
-
     figures = [result for result in results if result.about["world"] != SKY]
     for result in figures:
-        most = _EQUAL_SAMPLES.get((result.about["material"], result.about["world"]))
-        if most is not None:
+        name, material = result.about["name"], result.about["material"]
+        if most := _EQUAL_SAMPLES.get((material, result.about["world"])):
             gain = result.gain("product", DEFAULT, spp)
             target = f"relmse of `product` / `mis` at {spp} spp at most {most}"
-            yield judged(target, result.about["name"], _gain(gain), gain[0] <= most)
-    for result in figures:
-        target = "relmse of `product` / `mis` at equal time at most 1.2"
-        yield limit(target, result, result.error_ratio("product", DEFAULT), 1.2)
+            yield judged(target, name, _gain(gain), gain[0] <= most)
+        part = 100 if material == "nickel" else 5
+        is_hard = result.about["ggx"] > _MOST_GGX_ERROR
+        most, words = (2 / 3, "2/3 of") if is_hard else (1.0, "those of")
+        to_equal, to_time = "seconds of `mis` to equal error at most", "at equal time at most"
+        for target, found, bound in (
+            (f"relmse of `product` / `mis` {to_time} 1.2", result.error_ratio("product", DEFAULT), 1.2),
+            (f"{to_equal} 1/{part} of `uniform`", result.time_ratio(DEFAULT, "uniform"), 1 / part),
+            (f"{to_equal} {words} `mis-ggx`", result.time_ratio(DEFAULT, "mis-ggx"), most),
+        ):
+            yield judged(target, name, shown(found), found and found.value <= bound)
     readings = [result.error_ratio("product", DEFAULT) for result in figures]
     better = sum(reading is not None and reading.value < 1 for reading in readings)
     target = "`product` better than `mis` at equal time on at least four of six"
     yield judged(target, "all", f"{better} of {len(readings)}", better >= 4)
-    for result in figures:
-        part = 100 if result.about["material"] == "nickel" else 5
-        target = f"seconds of `mis` to equal error at most 1/{part} of `uniform`"
-        yield limit(target, result, result.time_ratio(DEFAULT, "uniform"), 1 / part)
-    for result in figures:
-        most, words = (2 / 3, "2/3 of") if result.about["ggx"] > _MOST_GGX_ERROR else (1.0, "those of")
-        target = f"seconds of `mis` to equal error at most {words} `mis-ggx`"
-        yield limit(target, result, result.time_ratio(DEFAULT, "mis-ggx"), most)
     for peer in peers:
         target, found = "seconds of Mitsuba to equal error over ours above 1", peer["speed_up"]
         yield judged(target, peer["material"], shown(found), found and found.value > 1)
-    for peer in peers:
-        target = "converged spheres of Mitsuba and ours differ by at most 1 %"
-        yield judged(target, peer["material"], f"{100 * peer['relative']:.2f} %", peer["relative"] <= 0.01)
+        target, apart = "converged spheres of Mitsuba and ours differ by at most 1 %", peer["relative"]
+        yield judged(target, peer["material"], f"{100 * apart:.2f} %", apart <= 0.01)
 
 
 def values(found: dict) -> dict:
