@@ -106,12 +106,12 @@ def tolerance(desk, measurement, facts):
     yield from desk.arrange()
     _start(256, (250, 250))
     with inside("VIEW_3D"):
-        material = add_monkey()
+        add_monkey()
         bpy.ops.velour.load_material(filepath=str(measurement), fit=False)
     add_world()
     _look_at((0, 0, 0.05), (0.5, -6.2, 1.0), 85)
     yield from desk.show("MATERIAL")
-    material, facts["fits"], parts = material.active_material, [], []
+    material, facts["fits"], parts = _material(), [], []
     for error, most in ((0.5, 2), (0.1, 16), (0.02, 16)):
         desk.start(bpy.ops.velour.fit, material=material.name, tolerance=error, max_lobes=most)
         yield from desk.job()
