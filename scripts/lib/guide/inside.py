@@ -28,4 +28,4 @@ def start(folder):
             raise
         (folder / "result.json").write_text(json.dumps(facts))
 
-    window.run(folder, (steps,), seconds=math.inf)
+    window.run(folder, (steps,), seconds=math.inf, viewport=True)
