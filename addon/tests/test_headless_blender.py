@@ -52,7 +52,7 @@ def test_its_failure_is_told_with_the_end_of_the_log(blender, tmp_path):
 
 
 def test_it_does_not_outlive_ctrl_c(blender, tmp_path):
-    blender(f"trap '' INT; echo $$; kill -INT {os.getpid()}; exec sleep 60")
+    blender(f"trap '' INT; echo $$; (sleep 1; kill -INT {os.getpid()}) & exec sleep 60")
     former = signal.signal(signal.SIGINT, signal.default_int_handler)  # a shell's background ignores Ctrl-C
     try:
         with pytest.raises(KeyboardInterrupt):
