@@ -93,15 +93,7 @@ class Run:
         """Announces renders to the progress."""
         self.progress.expect(_cost(spp, size or self.settings.size), count)
 
-    def render(
-        self,
-        scene: Scene,
-        spp: int,
-        *,
-        seed: int | None = None,
-        size: tuple[int, int] | None = None,
-        **options,
-    ) -> Picture:
+    def render(self, scene: Scene, spp: int, *, seed: int | None = None, size=None, **options) -> Picture:
         """`options`: command line options of `velour render`."""
         size = size or self.settings.size
         parameters = {**scene.options, "size": "{}x{}".format(*size), "spp": spp, **options}
