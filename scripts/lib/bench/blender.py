@@ -49,7 +49,7 @@ def run(
 
 
 def in_window(
-    script: Path,
+    module: str,
     task: dict,
     folder: Path,
     screen: tuple[int, int],
@@ -58,10 +58,10 @@ def in_window(
     files: Sequence[Path] = (),
     seconds: float = 3600,
 ) -> dict:
-    """Calls start(folder) of a script in a window of `screen` pixels, waits for the report of its steps, and
-    returns the result.json that it leaves in the folder.
+    """Runs steps(folder, task) of a module, a generator function, in a window of `screen` pixels and returns
+    what it returns.
 
-    The folder is new, with copies of `files` and the task as task.json. `program`: Blender's name or path.
+    The folder is new, with copies of `files`. `program`: Blender's name or path.
     """
     for tool in ("xvfb-run", program):
         if not shutil.which(tool):
@@ -71,12 +71,12 @@ def in_window(
     folder.mkdir(parents=True)
     for file in files:
         shutil.copy(file, folder)
-    (folder / "task.json").write_text(json.dumps(task))
+    (folder / "task.json").write_text(json.dumps({**task, "module": module}))
     program, size, log = shutil.which(program), [str(side) for side in screen], folder / "log.txt"
     command = ["env", "-C", folder, f"BLENDER_USER_CONFIG={folder / 'config'}"]
     command += ["xvfb-run", "-a", "-s", f"-screen 0 {'x'.join(size)}x24 -fbdir . -nocursor"]
     command += [program, "--factory-startup", "-noaudio", *options, "--window-geometry", "0", "0", *size]
-    command += ["--python-exit-code", "1", "--python", _HARNESS, "--", script, folder]
+    command += ["--python-exit-code", "1", "--python", _HARNESS, "--", INSIDE / "in_window.py", folder]
     status = process.execute(list(map(str, command)), process.environment(program, STAGE), log, seconds)
     found = report.read(folder)
     if status != 0 or not found or any(test.outcome == report.FAILED for test in found):

@@ -1,4 +1,4 @@
-"""Scripts that run inside Blender, each with a function main(task), and the scenes that they share."""
+"""What runs inside Blender: main(task), or in a window the generator steps(folder, task); and shared scenes."""
 
 import importlib
 import json

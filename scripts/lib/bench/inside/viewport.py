@@ -1,25 +1,20 @@
 """Measures in Blender's window the seconds until the rendered viewport shows a change.
 
-task.json names the scene, and how often the viewport is switched off and on; the results go to result.json.
+The task names the scene, and how often the viewport is switched off and on.
 """
 
-import json
 import math
-import sys
 import time
 from pathlib import Path
 
 import bpy
+from guide import chapters
 from mathutils import Euler, Quaternion
 from support import viewport, window
 
-sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
-
-from guide import chapters
-
-from bench.inside import large_scenes
-from bench.inside import scene as build
-from bench.project import ROOT
+from ..project import ROOT
+from . import large_scenes
+from . import scene as build
 
 SAMPLES = 8
 PICTURE = (1280, 720)  # size in real time
@@ -171,19 +166,8 @@ class Stopwatch:
         return {"seen": self.seen, "export": self.export, "held": self.held}
 
 
-def start(folder):
-    """Called by the harness when the window exists."""
-    task = json.loads((folder / "task.json").read_text())
-
-    def steps(folder):
-        result = {"blender": bpy.app.version_string, "samples": SAMPLES}
-        yield from _measure(folder, task, result)
-        (folder / "result.json").write_text(json.dumps(result))
-
-    window.run(folder, (steps,), seconds=math.inf, viewport=True)
-
-
-def _measure(folder, task, result):
+def steps(folder, task):
+    result = {"blender": bpy.app.version_string, "samples": SAMPLES}
     bpy.context.scene.render.engine = "VELOUR"
     build_scene(task["scene"])
     yield 1.0
@@ -201,6 +185,7 @@ def _measure(folder, task, result):
     if task["restarts"]:
         result["restarts"] = yield from _restarted(watch, task["restarts"])
         result["real_time"] = yield from _real_time()
+    return result
 
 
 def _repeated(watch, change):

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from guide import CHAPTERS, pages
 
-from .. import blender, project
+from .. import blender
 from ..run import Run
 
 SETTINGS = {"chapters": (CHAPTERS, ("install",)), "blender": ("blender", "blender")}  # path
@@ -15,7 +15,6 @@ SECONDS = 1800  # time limit for a chapter, on a busy machine
 
 def measure(run: Run) -> None:
     own, measurement = run.settings, run.data / MEASUREMENT
-    script, options = project.ROOT / "scripts/lib/guide/inside.py", ["--enable-event-simulate"]
     if unknown := set(own.chapters) - set(CHAPTERS):
         raise SystemExit(f"guide: there is no chapter {min(unknown)!r}; there are {', '.join(CHAPTERS)}")
     for chapter in own.chapters:
@@ -23,8 +22,8 @@ def measure(run: Run) -> None:
             raise SystemExit("guide: the cloth needs the model of the chapter tile; name that as well")
         print(f"{chapter} ...", flush=True)
         folder, task = run.work / chapter, {"chapter": chapter, "measurement": measurement.name}
-        how = (SCREEN, own.blender, options, [measurement], SECONDS)
-        facts = blender.in_window(script, task, folder, *how)
+        how = (SCREEN, own.blender, ["--enable-event-simulate"], [measurement], SECONDS)
+        facts = blender.in_window("guide.inside", task, folder, *how)
         for path in sorted(folder.glob("*.png")):
             pages.link(pages.keep(path, pages.GUIDE / "images"))
         pages.write(chapter, facts)

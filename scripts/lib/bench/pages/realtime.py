@@ -17,7 +17,7 @@ _SHOWN = 0.82  # share of the height: above it is the shell's hem, which has no 
 
 def measure(run: Run) -> dict:
     folder = run.work / "blender"
-    found = blender.in_window(blender.INSIDE / "realtime.py", {}, folder, run.settings.screen_size)
+    found = blender.in_window("bench.inside.realtime", {}, folder, run.settings.screen_size)
     print(f"relative L2 {found['relative_l2']:.4f}")
     traced, drawn = np.load(folder / "net.npy")[..., :3]
     white, rows = np.percentile(traced, 99.5), round(_SHOWN * traced.shape[0])

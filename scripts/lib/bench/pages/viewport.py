@@ -34,8 +34,8 @@ def measure(run: Run) -> dict:
     for scene in own.scenes:
         print(f"{scene} ...", flush=True)
         task = {"scene": scene, "restarts": own.restarts if scene == "monkey" else 0}
-        script = blender.INSIDE / "viewport.py"
-        results[scene] = blender.in_window(script, task, run.work / scene, SCREEN, own.blender)
+        how = (task, run.work / scene, SCREEN, own.blender)
+        results[scene] = blender.in_window("bench.inside.viewport", *how)
     return {"conditions": run.conditions(load=load, seed=0), "results": results}
 
 
