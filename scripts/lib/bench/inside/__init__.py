@@ -1,4 +1,4 @@
-"""What runs inside Blender: main(task), or in a window the generator steps(folder, task); and shared scenes."""
+"""What runs in Blender: main(task), or in a window the generator steps(folder, task); and their scenes."""
 
 import importlib
 import json
