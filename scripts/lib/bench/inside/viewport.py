@@ -83,14 +83,14 @@ def change_world(time):
 
 
 def change_material(time):
-    """Changes the color, or the placement of a measured material."""
+    """Changes the color, or the exposure of a measured material."""
     material = bpy.data.objects["Subject"].active_material
     if material.name == "Gray":
         node = next(node for node in material.node_tree.nodes if node.type == "BSDF_DIFFUSE")
         node.inputs["Color"].default_value = (0.5, 0.1 * (time % 9), 0.3, 1)
     else:
         group = next(node for node in material.node_tree.nodes if node.type == "GROUP")
-        group.inputs["Rotation"].default_value = 0.1 * (time + 1)
+        group.inputs["Exposure"].default_value = 0.1 * (time + 1)
 
 
 def move_object(time):
