@@ -9,7 +9,7 @@ def steps(folder, _task):
     realtime.sky(folder)
     _plane_of_its_btf(folder, "NET")
     viewport.show_real_time()
-    yield from viewport.real_time_finished()
+    yield from viewport.real_time_finished(patience=600)
     drawn = realtime.pixels()
     traced = realtime.traced(realtime.equirectangular(realtime.mixture()), samples=2048)
     np.save(folder / "net.npy", np.stack((traced.mean, drawn)))
