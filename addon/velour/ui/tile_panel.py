@@ -84,8 +84,8 @@ def _draw_capture(context, layout, owner, collection):
     row.operator(VELOUR_OT_estimate_capture.bl_idname).collection = collection
     row = row.row(align=True)
     row.operator(VELOUR_OT_capture_btf.bl_idname, icon="PLAY").collection = collection
-    anew = row.operator(VELOUR_OT_capture_btf.bl_idname, text="", icon="NEWFOLDER")
-    anew.collection, anew.new_folder = collection, True
+    again = row.operator(VELOUR_OT_capture_btf.bl_idname, text="", icon="NEWFOLDER")
+    again.collection, again.new_folder = collection, True
 
 
 def _draw_outline(button, owner, collection):
