@@ -19,10 +19,9 @@ constexpr int kTableCells = 10, kSampleCells = 4;
 constexpr size_t kSamplesPerValue = 5;
 constexpr int kMinLobes = 3;
 
-// The interpolation of irregular samples is slow, and they are too few to resolve a finer grid.
+// Irregular samples are too few to resolve a finer grid.
 SliceGrid grid_for(const Measurement& measurement) {
-  if (!measurement.samples().empty()) return {32, 24, measurement.isotropic()};
-  return {64, 32, measurement.isotropic()};
+  return {.parts = 256, .rings = 32, .spokes = 24, .folded = measurement.isotropic()};
 }
 
 /// Number of lobes that the irregular samples can determine.

@@ -36,10 +36,9 @@ FitProblem::FitProblem(const std::vector<MeasuredSlice>& slices, const ViewSplin
   for (const MeasuredSlice& slice : slices) {
     FitView view(slice, spline, goal(slice) / std::sqrt(slice.weight));
     if (!(view.energy > 0)) continue;
-    // Samples of a goniometer have a weight of one each, and nothing between them was measured.
-    if (seen_evenly && !slice.interpolated && !(slice.energy > 0)) {
+    if (seen_evenly && slice.lights) {
       view.picture_weight = picture_weights(slice.samples);
-      view.spacing.emplace(slice.samples, view.wv);
+      view.spacing.emplace(slice.lights, view.wv);
     }
     views_.push_back(std::move(view));
   }

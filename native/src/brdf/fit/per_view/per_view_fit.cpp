@@ -16,7 +16,7 @@ namespace {
 
 // Slices are fitted more tightly than required, to leave room for the interpolation error between them.
 constexpr double kSliceGoalShare = 0.8;
-constexpr SliceGrid kGrid{96, 64};
+constexpr SliceGrid kGrid{.parts = 1024, .rings = 96, .spokes = 64};
 
 std::vector<ViewPath> fit_slices(const std::vector<MeasuredSlice>& slices, const FitOptions& options,
                                  Progress& progress) {
