@@ -25,7 +25,15 @@ FIT_KEYS = [
     "view_range",
 ]
 ORDER_KEYS = ["lobes", "parameter_bytes", "worst", "relative_l2", "chosen"]
-COMPARE_KEYS = ["relative_l2", "by_view_angle", "log_rms", "noise_by_view_angle", "samples", "narrow_views"]
+COMPARE_KEYS = [
+    "relative_l2",
+    "by_view_angle",
+    "standard_error",
+    "standard_error_by_view_angle",
+    "log_rms",
+    "noise_by_view_angle",
+    "samples",
+]
 RENDER_KEYS = [
     "seconds",
     "rays",

@@ -112,12 +112,11 @@ VLR_API vlr_status vlr_model_bytes(vlr_model* model, const void** bytes, uint64_
  * VLR_INVALID_ARGUMENT for models of BTFs. */
 VLR_API vlr_status vlr_model_roughened(const vlr_model* model, float roughness, vlr_model** out);
 /* JSON: kind "model", model "scattered" (per-view) or "parametric", kernel, isotropic, lobes, bytes, parameter_bytes,
- * relative_l2, by_view_angle, albedo_by_view_angle, albedo_max, reciprocity, measured_reciprocity, tolerance, seconds,
- * seed, all_data, warning_codes, order (as of a fit), source {name, format, sha256}. Per-view: also views,
+ * relative_l2, by_view_angle, albedo_by_view_angle, albedo_max, reciprocity, measured_reciprocity, tolerance, seed,
+ * all_data, warning_codes, order (as of a fit), source {name, format, sha256}. Per-view: also views,
  * max_lobes_per_view. Parametric: also cells, symmetric, view_range [from, to] in degrees, spaces {light, half}, the
  * numbers of lobes in each. BTFs (model "factored-btf", "srbf-btf" or "tensor-btf") have instead: method, psnr,
- * psnr_held_out, ser, relative_l2, p99, raw_bytes, evaluations_per_second (one thread; null in older files), seconds,
- * seed, warning_codes, tolerance, order, search, shapes (as of a fit), texels, tile_metres, views, lights, companding;
+ * psnr_held_out, ser, relative_l2, p99, raw_bytes, seed, warning_codes, tolerance, order, search, shapes (as of a fit), texels, tile_metres, views, lights, companding;
  * components, or coefficients (of the side that has most) and, for SRBFs, lobes; and sides: view and light ("above",
  * "below"), parameter_bytes, as (null, or the index of the side that serves this one, whose own fields are null) and
  * lobes {tile, texel}, or clusters, members, ranks {texel, view, light, color}, relief (whether there is one),
@@ -278,7 +277,8 @@ VLR_API void vlr_fit_options_init(vlr_fit_options* options);
 VLR_API vlr_status vlr_fit_create_job(const vlr_measurement* measurement, const vlr_fit_options* options,
                                       vlr_job** out);
 
-/* JSON: relative_l2, by_view_angle, log_rms, noise_by_view_angle, samples, narrow_views. */
+/* JSON: relative_l2, by_view_angle, standard_error, standard_error_by_view_angle, log_rms, noise_by_view_angle, samples.
+ * Standard errors say how far other directions would move the errors. */
 VLR_API vlr_status vlr_compare_create_job(const vlr_measurement* measurement, const vlr_model* model, vlr_job** out);
 /* Analytic materials to compare with: the GGX lobe over a diffuse base that the strategies `ggx` and `mis-ggx` sample
  * from, and Blender's Principled material: all of it, or without coat and specular tint, which differ before Blender
