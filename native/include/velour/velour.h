@@ -244,7 +244,8 @@ VLR_API void vlr_job_free(vlr_job* job);
 enum { VLR_KERNEL_GAUSSIAN = 0, VLR_KERNEL_ABEL_POISSON = 1 };
 enum {
   VLR_MODEL_SCATTERED = 0, /* per-view model: lobes of each sampled view, mixed at run time */
-  VLR_MODEL_PARAMETRIC = 1 /* few lobes for all views, whose parameters are splines of the view; Gaussian only */
+  VLR_MODEL_PARAMETRIC = 1, /* few lobes for all views, whose parameters are splines of the view; Gaussian only */
+  VLR_MODEL_AUTO = 2 /* parametric, or a larger model of either kind where that misses the tolerance several times */
 };
 
 typedef struct vlr_fit_options {
@@ -257,7 +258,7 @@ typedef struct vlr_fit_options {
   uint64_t seed;
   int32_t all_data;     /* 1: hold out no data (production); recorded in the model */
   int32_t align_views;  /* per-view, 1: rotate neighboring slices to the query's mirror direction before mixing */
-  int32_t model;        /* VLR_MODEL_* */
+  int32_t model;        /* VLR_MODEL_*; VLR_MODEL_AUTO */
   int32_t limit_albedo; /* parametric, 1: reduce the model where more light would leave than arrives */
   int32_t symmetric;    /* parametric, 1: f is the mean of both orders of a pair, hence reciprocal; slower */
   int32_t pad;

@@ -1,8 +1,13 @@
 #include "brdf/fit/fit_model.h"
 
 #include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <optional>
+#include <vector>
 
 #include "base/error.h"
+#include "brdf/fit/fit_report.h"
 #include "brdf/fit/parametric/parametric_fit.h"
 #include "brdf/fit/per_view/per_view_fit.h"
 #include "brdf/fit/scene_fit.h"
@@ -42,6 +47,67 @@ Model bounded_parametric(const Measurement& measurement, FitOptions options, Pro
   }
 }
 
+// Errors in units of the tolerance: a model this good is kept, another one must be better by this factor.
+constexpr double kGoodEnough = 4, kWorthIt = 1.5;
+
+struct Misses {
+  double worst = 0, mean = 0;  // over the reported views; mean: root of the mean square
+};
+
+/// Errors of the reported views in units of their tolerances.
+Misses misses_of(const FitRecord& record) {
+  Misses out;
+  double square = 0, count = 0;
+  for (const auto& [degrees, error] : record.by_view_angle) {
+    if (!error) continue;
+    const double miss = *error / tolerance_at(record.tolerance, radians_from(std::stod(degrees)));
+    out.worst = std::max(out.worst, miss);
+    square += miss * miss;
+    ++count;
+  }
+  out.mean = std::sqrt(square / std::max(count, 1.0));
+  return out;
+}
+
+Model finer_parametric(const Measurement& measurement, FitOptions options, Progress& progress) {
+  constexpr int kFinerCells = 20, kMoreLobes = 20;
+  options.cells = kFinerCells;
+  options.max_lobes = std::max(options.max_lobes, kMoreLobes);
+  return fit_parametric(measurement, options, progress);
+}
+
+/// Options that only one of the kinds has decide. Nothing if any kind will do.
+std::optional<ModelKind> required_kind(const FitOptions& options) {
+  if (options.kernel != Kernel::gaussian) return ModelKind::per_view;
+  const bool parametric = options.for_scene || options.limit_albedo || options.symmetric || options.max_bytes > 0;
+  return parametric ? std::optional(ModelKind::parametric) : std::nullopt;
+}
+
+Model fit_automatically(const Measurement& measurement, const FitOptions& options, Progress& progress) {
+  const auto start = std::chrono::steady_clock::now();
+  using Fit = Model (*)(const Measurement&, FitOptions, Progress&);
+  const auto per_view = [](const Measurement& m, FitOptions o, Progress& p) { return fit_per_view(m, o, p); };
+  std::vector<Fit> larger;
+  if (measurement.samples().empty()) larger.push_back(finer_parametric);
+  larger.push_back(per_view);
+  std::optional<Progress::Span> span(std::in_place, progress, 0.0, 0.4);
+  Model best = fit_parametric(measurement, options, progress);
+  double begin = 0.4;
+  for (const Fit& fit : larger) {
+    const Misses misses = misses_of(best.fit);
+    if (misses.worst <= kGoodEnough) break;
+    span.reset();
+    span.emplace(progress, begin, begin + 0.3);
+    begin += 0.3;
+    Model other = fit(measurement, options, progress);
+    if (kWorthIt * misses_of(other.fit).mean < misses.mean) best = std::move(other);
+  }
+  best.fit.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  span.reset();
+  progress.stage("checking the model", 1.0, 1.0);
+  return best;
+}
+
 void refuse_contradictions(ModelKind kind, const FitOptions& options) {
   const auto refuse = [](const char* sentence) { throw Error(Status::invalid_argument, sentence); };
   if (kind != ModelKind::parametric) {
@@ -58,6 +124,11 @@ void refuse_contradictions(ModelKind kind, const FitOptions& options) {
 }  // namespace
 
 Model fit_model(ModelKind kind, const Measurement& measurement, const FitOptions& options, Progress& progress) {
+  if (kind == ModelKind::automatic) {
+    const std::optional<ModelKind> required = required_kind(options);
+    if (!required) return fit_automatically(measurement, options, progress);
+    kind = *required;
+  }
   refuse_contradictions(kind, options);
   if (options.for_scene) return bounded_for_scene(measurement, options, progress);
   if (kind == ModelKind::parametric) return bounded_parametric(measurement, options, progress);

@@ -42,7 +42,8 @@ MeasuredSlices parametric_slices(const Measurement& measurement, const FitOption
 GrowthOptions growth_options_of(const Measurement& measurement, const FitOptions& options) {
   GrowthOptions growth_options;
   growth_options.isotropic = measurement.isotropic();
-  growth_options.cells = measurement.samples().empty() ? kTableCells : kSampleCells;
+  const int usual_cells = measurement.samples().empty() ? kTableCells : kSampleCells;
+  growth_options.cells = options.cells > 0 ? options.cells : usual_cells;
   growth_options.max_lobes = options.max_lobes;
   if (!measurement.samples().empty()) {
     growth_options.max_lobes = std::min(growth_options.max_lobes, most_lobes(measurement, growth_options.cells));
