@@ -139,7 +139,7 @@ TEST(SliceSampling, TheFoldIsWhatMirrorImagesDifferBy) {
     });
   };
   Progress progress;
-  const SliceGrid grid{16, 16, true};
+  const SliceGrid grid{.parts = 64, .rings = 16, .spokes = 16, .folded = true};
   for (const float skew : {0.0f, kSkew}) {
     for (const MeasuredSlice& s : sample_slices(skewed(skew), grid, true, 1, progress).slices) {
       if (s.wv.x < 0.1f) continue;  // about the normal there is no plane of incidence
@@ -151,7 +151,7 @@ TEST(SliceSampling, TheFoldIsWhatMirrorImagesDifferBy) {
 
 TEST(LobeGrowth, FitsThatShareTheirGrowthAreThoseOfTheirOwn) {
   Progress progress;
-  const SliceGrid grid{16, 16, true};
+  const SliceGrid grid{.parts = 64, .rings = 16, .spokes = 16, .folded = true};
   const std::vector<MeasuredSlice> slices =
       sample_slices(AnalyticMeasurement(test::ggx(0.3f, 0.3f)), grid, true, 1, progress).slices;
   GrowthOptions options;
@@ -169,7 +169,7 @@ TEST(LobeGrowth, FitsThatShareTheirGrowthAreThoseOfTheirOwn) {
 
 TEST(SliceSampling, LeavesOutTheLightsThatJudge) {
   Progress progress;
-  const SliceGrid grid{.rings = 16, .spokes = 16};
+  const SliceGrid grid{.parts = 64, .rings = 16, .spokes = 16};
   const AnalyticMeasurement measurement(test::lambert);
   const auto all = sample_slices(measurement, grid, false, 1, progress).slices;
   const auto fitted = sample_slices(measurement, grid, true, 1, progress).slices;
