@@ -13,14 +13,13 @@ namespace velour::capi {
 namespace {
 
 Json errors_of(const Comparison& comparison) {
-  return {
-      {"relative_l2", comparison.relative_l2},
-      {"by_view_angle", by_view_angle(comparison.by_view_angle)},
-      {"standard_error", comparison.standard_error},
-      {"standard_error_by_view_angle", by_view_angle(comparison.standard_error_by_view_angle)},
-      {"log_rms", comparison.log_rms},
-      {"noise_by_view_angle", by_view_angle(comparison.noise_by_view_angle)},
-      {"samples", comparison.samples}};
+  return {{"relative_l2", comparison.relative_l2},
+          {"by_view_angle", by_view_angle(comparison.by_view_angle)},
+          {"standard_error", comparison.standard_error},
+          {"standard_error_by_view_angle", by_view_angle(comparison.standard_error_by_view_angle)},
+          {"log_rms", comparison.log_rms},
+          {"noise_by_view_angle", by_view_angle(comparison.noise_by_view_angle)},
+          {"samples", comparison.samples}};
 }
 
 Json peer_of(const GgxParameters& p) {

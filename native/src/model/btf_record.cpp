@@ -70,12 +70,8 @@ nlohmann::ordered_json trials_json(const std::vector<SizeTrial>& trials) {
 }
 
 std::string btf_record_json(const BtfRecord& record) {
-  Json json = {{"method", record.method},
-               {"psnr", record.psnr},
-               {"ser", record.ser},
-               {"p99", record.p99},
-               {"raw_bytes", record.raw_bytes},
-               {"seed", record.seed}};
+  Json json = {{"method", record.method}, {"psnr", record.psnr},           {"ser", record.ser},
+               {"p99", record.p99},       {"raw_bytes", record.raw_bytes}, {"seed", record.seed}};
   put_warnings(record.warnings, json);
   if (record.psnr_held_out) json["psnr_held_out"] = *record.psnr_held_out;
   json["relative_l2"] = record.relative_l2;

@@ -34,7 +34,9 @@ def member(seed: int, index: int) -> Member:
     if layout == "merl":
 
         def write(path: Path) -> None:
-            _write_merl(path, brdf, (45, 15, 18) if coarse else (90, 30, 36), defect == "holes", noise, random)
+            _write_merl(
+                path, brdf, (45, 15, 18) if coarse else (90, 30, 36), defect == "holes", noise, random
+            )
 
     else:
         count = int(random.integers(30, 100)) if coarse else int(random.integers(400, 1500))
@@ -144,22 +146,48 @@ def _sum(*parts: Brdf) -> Brdf:
     return lambda wl, wv: sum(part(wl, wv) for part in parts)
 
 
+def _plastic(random) -> Brdf:
+    return _sum(_lambert(_color(random)), _ggx(_log_uniform(random, 0.008, 0.4), np.full(3, 0.04)))
+
+
+def _gloss(random) -> Brdf:
+    lobe = _ashikhmin_shirley(_log_uniform(random, 5, 5000), np.full(3, 0.05))
+    return _sum(_lambert(_color(random)), lobe)
+
+
+def _velvet(random) -> Brdf:
+    rim = _sheen(random.uniform(1, 5), _color(random, 0.1, 0.5))
+    return _sum(_lambert(_color(random, 0.01, 0.2)), rim)
+
+
+def _coated_metal(random) -> Brdf:
+    coat = _ggx(_log_uniform(random, 0.01, 0.08), np.full(3, 0.04))
+    return _sum(_ggx(_log_uniform(random, 0.1, 0.5), _color(random, 0.3, 0.9)), coat)
+
+
+def _retro_reflector(random) -> Brdf:
+    lobe = _retro(_log_uniform(random, 20, 400), _color(random, 0.01, 0.1))
+    return _sum(_lambert(_color(random)), lobe)
+
+
+def _mixture(random) -> Brdf:
+    rough = _oren_nayar(0.4, _color(random, 0.02, 0.4))
+    broad = _beckmann(_log_uniform(random, 0.1, 0.4), _color(random, 0.02, 0.2))
+    return _sum(rough, broad, _ggx(_log_uniform(random, 0.01, 0.1), np.full(3, 0.03)))
+
+
 _KINDS = (
     ("metal", lambda r: _ggx(_log_uniform(r, 0.03, 0.6), _color(r, 0.4, 0.95))),
-    ("plastic", lambda r: _sum(_lambert(_color(r)), _ggx(_log_uniform(r, 0.008, 0.4), np.full(3, 0.04)))),
+    ("plastic", _plastic),
     ("Beckmann", lambda r: _beckmann(_log_uniform(r, 0.05, 0.5), _color(r, 0.1, 0.9))),
-    ("Ashikhmin-Shirley", lambda r: _sum(
-        _lambert(_color(r)), _ashikhmin_shirley(_log_uniform(r, 5, 5000), np.full(3, 0.05)))),
+    ("Ashikhmin-Shirley", _gloss),
     ("rough diffuse", lambda r: _oren_nayar(r.uniform(0.1, 1.0), _color(r))),
-    ("velvet", lambda r: _sum(_lambert(_color(r, 0.01, 0.2)), _sheen(r.uniform(1, 5), _color(r, 0.1, 0.5)))),
-    ("coated metal", lambda r: _sum(
-        _ggx(_log_uniform(r, 0.1, 0.5), _color(r, 0.3, 0.9)), _ggx(_log_uniform(r, 0.01, 0.08), np.full(3, 0.04)))),
-    ("retro-reflector", lambda r: _sum(_lambert(_color(r)), _retro(_log_uniform(r, 20, 400), _color(r, 0.01, 0.1)))),
+    ("velvet", _velvet),
+    ("coated metal", _coated_metal),
+    ("retro-reflector", _retro_reflector),
     ("thin film", lambda r: _film(_log_uniform(r, 0.05, 0.4), r.uniform(150, 600))),
-    ("mixture", lambda r: _sum(
-        _oren_nayar(0.4, _color(r, 0.02, 0.4)), _beckmann(_log_uniform(r, 0.1, 0.4), _color(r, 0.02, 0.2)),
-        _ggx(_log_uniform(r, 0.01, 0.1), np.full(3, 0.03)))),
-)  # fmt: skip
+    ("mixture", _mixture),
+)
 _DEFECTS = ("none", "none", "none", "noise", "noise", "holes", "coarse", "scale", "reciprocity")
 
 
@@ -196,13 +224,19 @@ def _write_cornell(path: Path, brdf: Brdf, count: int, noise: float, random) -> 
     def directions():
         theta, phi = np.radians(random.uniform(2, 82, count)), random.uniform(0, 2 * np.pi, count)
         # A third lies near the plane of incidence on the far side, as goniometers sample highlights.
-        return theta, phi, np.stack([np.sin(theta) * np.cos(phi), np.sin(theta) * np.sin(phi), np.cos(theta)], 1)
+        return (
+            theta,
+            phi,
+            np.stack([np.sin(theta) * np.cos(phi), np.sin(theta) * np.sin(phi), np.cos(theta)], 1),
+        )
 
     (theta_l, phi_l, wl), (theta_v, _, _) = directions(), directions()
     near = random.uniform(size=count) < 0.33
     theta_v = np.where(near, theta_l + np.radians(8) * random.standard_normal(count), theta_v)
     theta_v = np.clip(theta_v, np.radians(1), np.radians(82))
-    phi_v = phi_l + np.where(near, np.pi + 0.1 * random.standard_normal(count), random.uniform(0, 2 * np.pi, count))
+    phi_v = phi_l + np.where(
+        near, np.pi + 0.1 * random.standard_normal(count), random.uniform(0, 2 * np.pi, count)
+    )
     wv = np.stack([np.sin(theta_v) * np.cos(phi_v), np.sin(theta_v) * np.sin(phi_v), np.cos(theta_v)], 1)
     f = brdf(wl, wv)[:, ::-1] * np.maximum(1 + noise * random.standard_normal((count, 1)), 0)
     lines = [str(len(_WAVELENGTHS)), " ".join(map(str, _WAVELENGTHS))]

@@ -20,7 +20,7 @@ struct MeasuredSlice {
   double fold = 0;            // relative L2 error of folding (SliceGrid::folded)
   bool interpolated = false;  // from irregular samples, which the fit also reads directly
   std::shared_ptr<const LightTree> lights = nullptr;  // of tables: the cells that the samples represent
-  size_t out_of_gamut = 0;    // samples with a negative channel: kept, although no model of ours can follow them
+  size_t out_of_gamut = 0;  // samples with a negative channel: kept, although no model of ours can follow them
 };
 
 struct MeasuredSlices {

@@ -29,8 +29,12 @@ def _row(run: Run, folder: Path, index: int) -> dict:
     if not path.is_file():
         made.write(path)
     row = {"member": made.name, "kind": made.kind, "layout": made.layout, "defect": made.defect}
-    model, report = run.fit(path, "auto", threads=run.threads)
-    row |= {"model": model_kind(report), "seconds": report["seconds"], "processor": report["processor_seconds"]}
+    report = run.fit(path, "auto", threads=run.threads)[1]
+    row |= {
+        "model": model_kind(report),
+        "seconds": report["seconds"],
+        "processor": report["processor_seconds"],
+    }
     row |= {"bytes": report["bytes"], "error": report["relative_l2"]}
     row |= {f"error_{view}": report["by_view_angle"][view] for view in VIEWS}
     row["per_view"] = run.fit(path, "scattered", threads=run.threads)[1]["relative_l2"]
@@ -71,11 +75,14 @@ def write(run: Run, found: dict) -> None:
     worst = sorted(rows, key=lambda row: -row["error"])[:12]
     values = {
         "count": len(rows),
-        "spread": page.table(spreads, "of | median | 95 % | worst", "{what} | {median:.3g} | {most:.3g} | {worst:.3g}"),
+        "spread": page.table(
+            spreads, "of | median | 95 % | worst", "{what} | {median:.3g} | {most:.3g} | {worst:.3g}"
+        ),
         "worst": page.table(
             worst,
             "measurement | layout | defect | model | error | per-view | GGX | Principled",
-            "{member} | {layout} | {defect} | {model} | {error:.3f} | {per_view:.3f} | {ggx:.3f} | {principled:.3f}",
+            "{member} | {layout} | {defect} | {model} | {error:.3f} | {per_view:.3f} | {ggx:.3f} |"
+            " {principled:.3f}",
         ),
         "beaten": sum(map(beaten, rows)),
         "per_view": sum(row["model"] == "per-view" for row in rows),

@@ -13,7 +13,7 @@ namespace velour {
 
 namespace {
 
-constexpr int kParts = 256;                           // of the tree of a view
+constexpr int kParts = 256;                             // of the tree of a view
 constexpr size_t kTreeLights = 1200, kOwnLights = 400;  // of a set
 constexpr double kMinCovered = 1.0 / 64;                // less says nothing about a view
 // Sets of directions of a view. Several azimuths know as much together with fewer each.
@@ -190,8 +190,7 @@ WeightedLights error_lights(const LightTree& tree, const Material& material, con
     const bool sampled = i < kTreeLights || own[i] > 0.0f;
     if (all[i].z <= 0 || !sampled) continue;
     lights.wl.push_back(all[i]);
-    lights.weight.push_back(
-        1 / (kTreeLights * tree.density(all[i]) + kOwnLights * static_cast<double>(own[i])));
+    lights.weight.push_back(1 / (kTreeLights * tree.density(all[i]) + kOwnLights * static_cast<double>(own[i])));
   }
   return lights;
 }

@@ -21,7 +21,8 @@ inline constexpr double kSmoothness = 1e-4, kSampleSmoothness = 1e-2;
 class FitProblem {
  public:
   /// `goal` returns the error goal of a view. Black views are left out. `threads` 0: all. `seen_evenly`: the weights of
-  /// samples of tables are their solid angles alone, which determine the picture weights and the minimum width of lobes.
+  /// samples of tables are their solid angles alone, which determine the picture weights and the minimum width of
+  /// lobes.
   FitProblem(const std::vector<MeasuredSlice>& slices, const ViewSpline& spline,
              const std::function<double(const MeasuredSlice&)>& goal, bool seen_evenly, int threads,
              const Progress& progress);

@@ -172,7 +172,8 @@ TEST(ViewError, IsTheWeightedRatioOfNorms) {
   EXPECT_NEAR(e.relative_l2(), std::sqrt(2 * 0.25 / (2 + 1)), 1e-6);
 }
 
-/// A highlight of the wrong width: the error lies in a few directions, and its standard error says how well they know it.
+/// A highlight of the wrong width: the error lies in a few directions, and its standard error says how well they know
+/// it.
 TEST(Compare, TheErrorIsKnownToFivePercentOfItself) {
   Progress progress;
   const Comparison c =

@@ -22,7 +22,7 @@ using Formula = AnalyticMeasurement::Formula;
 struct Member {
   std::string name;
   Formula truth;
-  double most;  // error at the reported views up to 75 degrees
+  double most;         // error at the reported views up to 75 degrees
   Formula given = {};  // with noise; empty: the truth
   AnalyticMeasurement::Coverage known = {};
 };
