@@ -4,7 +4,6 @@
 #include <chrono>
 #include <cmath>
 #include <optional>
-#include <vector>
 
 #include "base/error.h"
 #include "brdf/fit/fit_report.h"
@@ -69,13 +68,6 @@ Misses misses_of(const FitRecord& record) {
   return out;
 }
 
-Model finer_parametric(const Measurement& measurement, FitOptions options, Progress& progress) {
-  constexpr int kFinerCells = 20, kMoreLobes = 20;
-  options.cells = kFinerCells;
-  options.max_lobes = std::max(options.max_lobes, kMoreLobes);
-  return fit_parametric(measurement, options, progress);
-}
-
 /// Options that only one of the kinds has decide. Nothing if any kind will do.
 std::optional<ModelKind> required_kind(const FitOptions& options) {
   if (options.kernel != Kernel::gaussian) return ModelKind::per_view;
@@ -85,25 +77,25 @@ std::optional<ModelKind> required_kind(const FitOptions& options) {
 
 Model fit_automatically(const Measurement& measurement, const FitOptions& options, Progress& progress) {
   const auto start = std::chrono::steady_clock::now();
-  using Fit = Model (*)(const Measurement&, FitOptions, Progress&);
-  const auto per_view = [](const Measurement& m, FitOptions o, Progress& p) { return fit_per_view(m, o, p); };
-  std::vector<Fit> larger;
-  if (measurement.samples().empty()) larger.push_back(finer_parametric);
-  larger.push_back(per_view);
-  std::optional<Progress::Span> span(std::in_place, progress, 0.0, 0.4);
-  Model best = fit_parametric(measurement, options, progress);
-  double begin = 0.4;
-  for (const Fit& fit : larger) {
-    const Misses misses = misses_of(best.fit);
-    if (misses.worst <= kGoodEnough) break;
-    span.reset();
-    span.emplace(progress, begin, begin + 0.3);
-    begin += 0.3;
-    Model other = fit(measurement, options, progress);
-    if (kWorthIt * misses_of(other.fit).mean < misses.mean) best = std::move(other);
+  Model best;
+  {
+    const Progress::Span span(progress, 0.0, 0.4);
+    best = fit_parametric(measurement, options, progress);
+  }
+  const auto replace_if_better = [&](Model other) {
+    if (kWorthIt * misses_of(other.fit).mean < misses_of(best.fit).mean) best = std::move(other);
+  };
+  const auto& coarse = std::get<ParametricBrdf>(best.body);
+  const bool can_be_finer = measurement.isotropic() && measurement.samples().empty() && coarse.lobe_count() > 0;
+  if (can_be_finer && misses_of(best.fit).worst > kGoodEnough) {
+    const Progress::Span span(progress, 0.4, 0.7);
+    replace_if_better(fit_finer(measurement, coarse, options, progress));
+  }
+  if (misses_of(best.fit).worst > kGoodEnough) {
+    const Progress::Span span(progress, 0.7, 1.0);
+    replace_if_better(fit_per_view(measurement, options, progress));
   }
   best.fit.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  span.reset();
   progress.stage("checking the model", 1.0, 1.0);
   return best;
 }

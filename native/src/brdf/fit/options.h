@@ -14,7 +14,6 @@ struct FitOptions {
   Kernel kernel = Kernel::gaussian;
   double tolerance = 0.02;  // relative L2 of every view up to 75 degrees; twice that beyond
   int max_lobes = 16;       // per-view model: per view; parametric: in total
-  int cells = 0;            // parametric: cells of the splines over the view; 0: the default
   uint64_t max_bytes = 0;   // upper bound of `size_of`; 0: none
   uint64_t seed = 0;
   int threads = 0;            // 0: all

@@ -86,7 +86,7 @@ LightReader folded(LightReader read, const Vec3& wv) {
 struct MeasuredLights {
   LightGrid grid;
   std::vector<LightValue> values;
-  std::shared_ptr<const LightTree> tree;  // of tables
+  std::shared_ptr<const DirectionTree> tree;  // of tables
 };
 
 MeasuredLights measured_lights(const Measurement& source, const Vec3& wv, const SliceGrid& size) {
@@ -100,10 +100,10 @@ MeasuredLights measured_lights(const Measurement& source, const Vec3& wv, const 
     read(out.grid.wl, out.values);
     return out;
   }
-  out.tree = std::make_shared<const LightTree>(read, wv, size.parts, size.folded);
+  out.tree = std::make_shared<const DirectionTree>(read, wv, size.parts, size.folded);
   const auto sides = size.folded ? 2.0f : 1.0f;
   for (const uint32_t leaf : out.tree->leaves()) {
-    const LightTree::Cell& cell = out.tree->cell(leaf);
+    const DirectionTree::Cell& cell = out.tree->cell(leaf);
     out.grid.ring.push_back(static_cast<uint32_t>(out.grid.wl.size()) / kRun);
     out.grid.wl.push_back(cell.wl);
     out.grid.weight.push_back(sides * static_cast<float>(cell.solid_angle()));

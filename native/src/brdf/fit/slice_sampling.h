@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "base/progress.h"
-#include "brdf/fit/light_tree.h"
+#include "brdf/fit/direction_tree.h"
 #include "brdf/fit/slice_samples.h"
 #include "brdf/measure/measurement.h"
 
@@ -19,7 +19,7 @@ struct MeasuredSlice {
   double energy = 0;          // sum of weight x luminance(f cos)^2 that errors are relative to; 0: that of the samples
   double fold = 0;            // relative L2 error of folding (SliceGrid::folded)
   bool interpolated = false;  // from irregular samples, which the fit also reads directly
-  std::shared_ptr<const LightTree> lights = nullptr;  // of tables: the cells that the samples represent
+  std::shared_ptr<const DirectionTree> lights = nullptr;  // of tables: the cells that the samples represent
   size_t out_of_gamut = 0;  // samples with a negative channel: kept, although no model of ours can follow them
 };
 
@@ -30,7 +30,7 @@ struct MeasuredSlices {
 
 /// Light directions of a view.
 struct SliceGrid {
-  int parts;          // tables: of a LightTree
+  int parts;          // tables: of a DirectionTree
   int rings, spokes;  // irregular samples, whose interpolation is slow: of a light grid (brdf/fit/view_grid.h)
   /// Isotropic data: only lights on one side of the plane of incidence, each with the mean of its value and that of its
   /// mirror image (for a view along the normal, the mean over azimuths). For models that are symmetric about that

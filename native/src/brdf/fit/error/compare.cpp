@@ -55,7 +55,7 @@ class JudgedView {
   const Measurement& measurement_;
   const Material& material_;
   Vec3 wv_;
-  LightTree tree_;
+  DirectionTree tree_;
   std::vector<ViewError> sets_;
   ViewError sum_;
   double all_ = 0;  // solid angle of all directions
@@ -170,7 +170,7 @@ Comparison compare(const Measurement& measurement, const Material& material, Pro
   return out;
 }
 
-WeightedLights error_lights(const LightTree& tree, const Material& material, const Vec3& wv, uint64_t set) {
+WeightedLights error_lights(const DirectionTree& tree, const Material& material, const Vec3& wv, uint64_t set) {
   constexpr uint64_t kStream = 0x0e44;
   ScratchArena arena;
   const PreparedBrdf* const point = material.prepare(wv, arena);
@@ -230,7 +230,7 @@ Vec3 mirrored(const Vec3& w, const Vec3& wv) {
 
 void add_table_pairs(const Measurement& measurement, const Vec3& wv, const Progress& progress, PairNoise& mirror,
                      PairNoise& reciprocal) {
-  const LightTree tree(reader_of(measurement, wv), wv, kParts);
+  const DirectionTree tree(reader_of(measurement, wv), wv, kParts);
   std::vector<Vec3> lights;
   tree.sample(kTreeLights, 0, lights);
   std::vector<Vec3> images(lights);

@@ -8,7 +8,7 @@
 #include <span>
 #include <vector>
 #include "base/progress.h"
-#include "brdf/fit/light_tree.h"
+#include "brdf/fit/direction_tree.h"
 #include "brdf/measure/measurement.h"
 #include "material/material.h"
 #include "math/sphere/vec.h"
@@ -36,7 +36,7 @@ Comparison compare(const Measurement& measurement, const Material& material, Pro
 /// Directions for the error of `material` at `wv`: 1200 of the measurement's `tree`, and 400 of the material's own
 /// sampler, which find narrow lobes of the material anywhere. Each weight is one over the summed densities of both: the
 /// balance heuristic [VG95]. Sets of different numbers are independent.
-WeightedLights error_lights(const LightTree& tree, const Material& material, const Vec3& wv, uint64_t set);
+WeightedLights error_lights(const DirectionTree& tree, const Material& material, const Vec3& wv, uint64_t set);
 
 // Noise of a measurement, from pairs of values that are equal by physics.
 

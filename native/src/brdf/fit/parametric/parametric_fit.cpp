@@ -14,6 +14,7 @@ namespace {
 
 // Spline cells over the view, for tables and for irregular samples, which are too few for more.
 constexpr int kTableCells = 10, kSampleCells = 4;
+constexpr int kFinerLobes = 20;
 
 // With fewer irregular samples, a control value follows their noise. A material needs two or three lobes at least.
 constexpr size_t kSamplesPerValue = 5;
@@ -42,8 +43,7 @@ MeasuredSlices parametric_slices(const Measurement& measurement, const FitOption
 GrowthOptions growth_options_of(const Measurement& measurement, const FitOptions& options) {
   GrowthOptions growth_options;
   growth_options.isotropic = measurement.isotropic();
-  const int usual_cells = measurement.samples().empty() ? kTableCells : kSampleCells;
-  growth_options.cells = options.cells > 0 ? options.cells : usual_cells;
+  growth_options.cells = measurement.samples().empty() ? kTableCells : kSampleCells;
   growth_options.max_lobes = options.max_lobes;
   if (!measurement.samples().empty()) {
     growth_options.max_lobes = std::min(growth_options.max_lobes, most_lobes(measurement, growth_options.cells));
@@ -63,6 +63,20 @@ Model parametric_model(const Measurement& measurement, const GrowthResult& fit, 
   model.fit.order = fit.order;
   model.body = *brdf;
   model.source = {measurement.provenance().name, measurement.provenance().format, measurement.provenance().sha256};
+  return model;
+}
+
+Model fit_finer(const Measurement& measurement, const ParametricBrdf& coarse, const FitOptions& options,
+                Progress& progress) {
+  progress.stage("sampling", 0.0, 0.1);
+  const MeasuredSlices measured = parametric_slices(measurement, options, progress);
+  progress.stage("fitting with more lobes", 0.1, 0.9);
+  GrowthOptions growth_options = growth_options_of(measurement, options);
+  growth_options.max_lobes = std::max(options.max_lobes, kFinerLobes);
+  const GrowthResult fit = grow_finer(measured.slices, growth_options, coarse, progress);
+  progress.stage("checking the model", 0.9, 1.0);
+  Model model = parametric_model(measurement, fit, options, progress);
+  warn_of_slices(measured, model.fit.warnings);
   return model;
 }
 

@@ -4,17 +4,17 @@
 #include <Eigen/Core>
 #include <memory>
 
-#include "brdf/fit/light_tree.h"
+#include "brdf/fit/direction_tree.h"
 #include "brdf/fit/parametric/warped_columns.h"
 #include "math/srbf/warped_lobe.h"
 
 namespace velour {
 
-/// Limits lobes to what the samples of a view, one per cell of a LightTree, can resolve.
+/// Limits lobes to what the samples of a view, one per cell of a DirectionTree, can resolve.
 class SampleSpacing {
  public:
   /// `wv` is unit.
-  SampleSpacing(std::shared_ptr<const LightTree> lights, const Vec3d& wv) : wv_(wv), lights_(std::move(lights)) {}
+  SampleSpacing(std::shared_ptr<const DirectionTree> lights, const Vec3d& wv) : wv_(wv), lights_(std::move(lights)) {}
 
   /// Excess of the lobe's log bandwidth over what the samples can resolve; negative for lobes that are wide enough. A
   /// lobe must cover at least twice the solid angle of the cell at its center, because one cell in eight is held out.
@@ -31,7 +31,7 @@ class SampleSpacing {
   double steepness(const WarpedLobe& lobe, const Vec3d& at) const;
 
   Vec3d wv_;
-  std::shared_ptr<const LightTree> lights_;
+  std::shared_ptr<const DirectionTree> lights_;
 };
 
 }  // namespace velour

@@ -52,9 +52,9 @@ std::vector<MeasuredSlice> slices_of(const Lobes& lobes) {
         }
       };
       MeasuredSlice slice{.wv = wv, .samples = {}};
-      slice.lights = std::make_shared<const LightTree>(read, wv, 64);
+      slice.lights = std::make_shared<const DirectionTree>(read, wv, 64);
       for (const uint32_t leaf : slice.lights->leaves()) {
-        const LightTree::Cell& cell = slice.lights->cell(leaf);
+        const DirectionTree::Cell& cell = slice.lights->cell(leaf);
         slice.samples.push_back({cell.wl, static_cast<float>(cell.solid_angle()), cell.value.f * cell.wl.z});
       }
       slices.push_back(std::move(slice));

@@ -46,7 +46,7 @@ TEST(PlainMethod, EvenDirectionsTakeAMirrorWithoutItsHighlightForExact) {
   const Vec3 wv = view_at(60);
   EXPECT_LT(error_on(even_lights(), wv, test::near_mirror(1e6), base_alone), 1e-3);
   const AnalyticMeasurement mirror(test::near_mirror(1e6));
-  const LightTree tree(reader_of(mirror, wv), wv, 256);
+  const DirectionTree tree(reader_of(mirror, wv), wv, 256);
   WeightedLights lights;
   for (const uint32_t leaf : tree.leaves()) {
     lights.wl.push_back(tree.cell(leaf).wl);

@@ -13,7 +13,7 @@ namespace {
 
 /// A view's own lights, with a highlight about the normal (of half vectors) over `base`.
 struct Lights {
-  std::shared_ptr<const LightTree> tree;
+  std::shared_ptr<const DirectionTree> tree;
   std::vector<SliceSample> samples;
 };
 
@@ -25,9 +25,9 @@ Lights lights_of(const Vec3& wv, float peak, float base, float bandwidth = 500) 
       values[i] = {.f = Rgb(base + peak * std::exp(-bandwidth * across)), .valid = true};
     }
   };
-  Lights out{std::make_shared<const LightTree>(read, wv, 256), {}};
+  Lights out{std::make_shared<const DirectionTree>(read, wv, 256), {}};
   for (const uint32_t i : out.tree->leaves()) {
-    const LightTree::Cell& cell = out.tree->cell(i);
+    const DirectionTree::Cell& cell = out.tree->cell(i);
     out.samples.push_back({cell.wl, static_cast<float>(cell.solid_angle()), cell.value.f});
   }
   return out;
@@ -60,7 +60,7 @@ double seen(const WarpedShape& shape, const std::vector<SliceSample>& samples, c
       values[i] = {.f = Rgb(static_cast<float>(warped_kernel(lobe, Vec3d(wl[i]), wv)) / wl[i].z), .valid = true};
     }
   };
-  const LightTree own(read, Vec3(wv), 1024);
+  const DirectionTree own(read, Vec3(wv), 1024);
   for (const uint32_t i : own.leaves()) {
     all += own.cell(i).solid_angle() * own.cell(i).luminance_cos() * own.cell(i).luminance_cos();
   }

@@ -1,4 +1,4 @@
-#include "brdf/fit/light_tree.h"
+#include "brdf/fit/direction_tree.h"
 
 #include <algorithm>
 #include <cmath>
@@ -46,13 +46,13 @@ Vec2 place_of(const Vec3& w) {
 }
 
 /// Distance of `p` from a cell along the farther axis; 0 inside.
-float distance_from(const LightTree::Cell& cell, const Vec2& p) {
+float distance_from(const DirectionTree::Cell& cell, const Vec2& p) {
   const auto beyond = [&cell](float low, float at) { return std::max({low - at, at - low - cell.side, 0.0f}); };
   return std::max(beyond(cell.corner.x, p.x), beyond(cell.corner.y, p.y));
 }
 
 /// The place of the cell's direction, in its middle three fifths.
-Vec2 place_in(const LightTree::Cell& cell) {
+Vec2 place_in(const DirectionTree::Cell& cell) {
   const auto bits = [](float x) { return static_cast<uint64_t>(static_cast<int64_t>(std::lround((x + 2) * 0x1p20f))); };
   RandomStream random(bits(cell.side), bits(cell.corner.x), bits(cell.corner.y));
   return cell.corner + cell.side * (0.2f + 0.6f * random.next2());
@@ -71,7 +71,7 @@ LightReader reader_of(const Measurement& measurement, const Vec3& wv) {
   };
 }
 
-double LightTree::Sums::share(const Cell& cell) const {
+double DirectionTree::Sums::share(const Cell& cell) const {
   const double y = cell.luminance_cos(), solid_angle = cell.solid_angle();
   double sum = 0;
   if (energy > 0) sum += 0.5 * solid_angle * y * y / energy;
@@ -79,7 +79,7 @@ double LightTree::Sums::share(const Cell& cell) const {
   return sum;
 }
 
-LightTree::LightTree(const LightReader& read, const Vec3& wv, int parts, bool folded) : folded_(folded) {
+DirectionTree::DirectionTree(const LightReader& read, const Vec3& wv, int parts, bool folded) : folded_(folded) {
   plant();
   split_about({-wv.x, -wv.y, wv.z}, kFinestMirror);
   split_about(wv, kFinestRetro);
@@ -107,7 +107,7 @@ LightTree::LightTree(const LightReader& read, const Vec3& wv, int parts, bool fo
 }
 
 /// The cells of kBaseSide.
-void LightTree::plant() {
+void DirectionTree::plant() {
   if (folded_) {
     cells_ = {{.corner = {-1, 0}, .side = 1}, {.corner = {0, 0}, .side = 1}};
   } else {
@@ -119,7 +119,7 @@ void LightTree::plant() {
   }
 }
 
-void LightTree::split(uint32_t index) {
+void DirectionTree::split(uint32_t index) {
   const Vec2 corner = cells_[index].corner;
   const float side = 0.5f * cells_[index].side;
   cells_[index].first_child = static_cast<int32_t>(cells_.size());
@@ -130,7 +130,7 @@ void LightTree::split(uint32_t index) {
   }
 }
 
-void LightTree::split_about(const Vec3& axis, float finest) {
+void DirectionTree::split_about(const Vec3& axis, float finest) {
   Vec2 place = place_of(axis);
   if (folded_) place.y = std::abs(place.y);
   for (uint32_t i = 0; i < cells_.size(); ++i) {  // also those that are split here
@@ -139,7 +139,7 @@ void LightTree::split_about(const Vec3& axis, float finest) {
   }
 }
 
-void LightTree::read_new(const LightReader& read) {
+void DirectionTree::read_new(const LightReader& read) {
   std::vector<uint32_t> fresh;
   std::vector<Vec3> wl;
   for (uint32_t i = 0; i < cells_.size(); ++i) {
@@ -155,7 +155,7 @@ void LightTree::read_new(const LightReader& read) {
   }
 }
 
-LightTree::Sums LightTree::sums() const {
+DirectionTree::Sums DirectionTree::sums() const {
   Sums sums;
   for (const Cell& c : cells_) {
     if (!c.leaf() || !c.value.valid) continue;
@@ -166,7 +166,7 @@ LightTree::Sums LightTree::sums() const {
   return sums;
 }
 
-bool LightTree::split_bright(const LightReader& read, int parts) {
+bool DirectionTree::split_bright(const LightReader& read, int parts) {
   const Sums total = sums();
   const size_t before = cells_.size();
   for (uint32_t i = 0; i < before && cells_.size() < kMaxCells; ++i) {
@@ -179,7 +179,7 @@ bool LightTree::split_bright(const LightReader& read, int parts) {
 }
 
 /// Joins cells below `index` that were split in vain. Returns whether `index` is a leaf afterwards.
-bool LightTree::join(uint32_t index, const Sums& sums, int parts) {
+bool DirectionTree::join(uint32_t index, const Sums& sums, int parts) {
   if (cells_[index].leaf()) return true;
   const auto first = static_cast<uint32_t>(cells_[index].first_child);
   bool leaves = true;
@@ -199,7 +199,7 @@ bool LightTree::join(uint32_t index, const Sums& sums, int parts) {
   return true;
 }
 
-void LightTree::list_leaves(uint32_t index) {
+void DirectionTree::list_leaves(uint32_t index) {
   if (cells_[index].leaf()) {
     leaves_.push_back(index);
     return;
@@ -207,7 +207,7 @@ void LightTree::list_leaves(uint32_t index) {
   for (uint32_t k = 0; k < 4; ++k) list_leaves(static_cast<uint32_t>(cells_[index].first_child) + k);
 }
 
-uint32_t LightTree::leaf_of(const Vec3& wl) const {
+uint32_t DirectionTree::leaf_of(const Vec3& wl) const {
   Vec2 place = place_of(wl);
   if (folded_) place.y = std::abs(place.y);
   uint32_t index = folded_ && place.x >= 0 ? 1 : 0;
@@ -220,9 +220,9 @@ uint32_t LightTree::leaf_of(const Vec3& wl) const {
   return index;
 }
 
-double LightTree::density(const Vec3& wl) const { return static_cast<double>(leaf_density_[leaf_of(wl)]); }
+double DirectionTree::density(const Vec3& wl) const { return static_cast<double>(leaf_density_[leaf_of(wl)]); }
 
-void LightTree::sample(size_t count, uint64_t seed, std::vector<Vec3>& out) const {
+void DirectionTree::sample(size_t count, uint64_t seed, std::vector<Vec3>& out) const {
   constexpr uint64_t kStream = 0x5eed;
   RandomStream random(seed, kStream, 0);
   const double shift = static_cast<double>(random.next()), turn = static_cast<double>(random.next());

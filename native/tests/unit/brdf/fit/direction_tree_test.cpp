@@ -1,4 +1,4 @@
-#include "brdf/fit/light_tree.h"
+#include "brdf/fit/direction_tree.h"
 
 #include <gtest/gtest.h>
 
@@ -34,13 +34,13 @@ Value lobe_about(const Vec3& center, double bandwidth) {
 
 double cosine(const Vec3& wl) { return wl.z; }
 
-double integral_of_leaves(const LightTree& tree, const Value& value) {
+double integral_of_leaves(const DirectionTree& tree, const Value& value) {
   double sum = 0;
   for (const uint32_t i : tree.leaves()) sum += tree.cell(i).solid_angle() * value(tree.cell(i).wl);
   return sum;
 }
 
-double integral_of_samples(const LightTree& tree, uint64_t seed, const Value& value) {
+double integral_of_samples(const DirectionTree& tree, uint64_t seed, const Value& value) {
   constexpr size_t kCount = 1200;
   std::vector<Vec3> wl;
   tree.sample(kCount, seed, wl);
@@ -49,10 +49,10 @@ double integral_of_samples(const LightTree& tree, uint64_t seed, const Value& va
   return sum;
 }
 
-TEST(LightTree, LeavesCoverTheHemisphereOnce) {
+TEST(DirectionTree, LeavesCoverTheHemisphereOnce) {
   for (const bool folded : {false, true}) {
     const Vec3 wv = direction(radians_from(50.0f), folded ? 0.0f : 2.0f);
-    const LightTree tree(reading(lobe_about(reflected(wv), 3000)), wv, 256, folded);
+    const DirectionTree tree(reading(lobe_about(reflected(wv), 3000)), wv, 256, folded);
     EXPECT_NEAR(integral_of_leaves(tree, [](const Vec3&) { return 1.0; }), (folded ? 1 : 2) * kPiD, 1e-6);
     EXPECT_NEAR(integral_of_leaves(tree, cosine), (folded ? 0.5 : 1) * kPiD, 0.02);
     for (const uint32_t i : tree.leaves()) {
@@ -63,11 +63,11 @@ TEST(LightTree, LeavesCoverTheHemisphereOnce) {
   }
 }
 
-TEST(LightTree, NoLeafHoldsMoreThanItsPart) {
+TEST(DirectionTree, NoLeafHoldsMoreThanItsPart) {
   constexpr int kParts = 256;
   const Vec3 wv = direction(radians_from(70.0f), 1.0f);
   const Value value = [&](const Vec3& w) { return 0.1 * w.z + 40 * lobe_about(reflected(wv), 2e4)(w); };
-  const LightTree tree(reading(value), wv, kParts);
+  const DirectionTree tree(reading(value), wv, kParts);
   double energy = 0, light = 0;
   for (const uint32_t i : tree.leaves()) {
     const double y = tree.cell(i).luminance_cos();
@@ -80,19 +80,19 @@ TEST(LightTree, NoLeafHoldsMoreThanItsPart) {
   }
 }
 
-TEST(LightTree, WhatIsSmoothTakesFewLeaves) {
+TEST(DirectionTree, WhatIsSmoothTakesFewLeaves) {
   const Vec3 wv = direction(radians_from(40.0f), 0.0f);
-  EXPECT_LT(LightTree(reading(cosine), wv, 128).leaves().size(), 450u);
+  EXPECT_LT(DirectionTree(reading(cosine), wv, 128).leaves().size(), 450u);
 }
 
-TEST(LightTree, FindsHighlightsOfEveryWidthAboutTheMirrorDirectionAndTheView) {
+TEST(DirectionTree, FindsHighlightsOfEveryWidthAboutTheMirrorDirectionAndTheView) {
   for (const float theta : {0.0f, 0.3f, 0.8f, 1.4f}) {
     const Vec3 wv = direction(theta, 0.7f);
     for (const double bandwidth : {1e2, 1e3, 1e4, 1e5, 1e6, 1e7}) {
       for (const Vec3& center : {wv, reflected(wv)}) {
         if (center == wv && bandwidth > 1e5) continue;
         const Value lobe = lobe_about(center, bandwidth);
-        const LightTree tree(reading([&](const Vec3& w) { return 0.01 * w.z + lobe(w); }), wv, 256);
+        const DirectionTree tree(reading([&](const Vec3& w) { return 0.01 * w.z + lobe(w); }), wv, 256);
         double sum = 0;
         for (uint64_t seed = 0; seed < 4; ++seed) sum += integral_of_samples(tree, seed, lobe) / 4;
         const double expected = kernel_integral(Kernel::gaussian, bandwidth);
@@ -108,7 +108,7 @@ TEST(LightTree, FindsHighlightsOfEveryWidthAboutTheMirrorDirectionAndTheView) {
 struct Mean {
   double value = 0, standard_error = 0;
 };
-Mean mean_of_sets(const LightTree& tree, const Value& value) {
+Mean mean_of_sets(const DirectionTree& tree, const Value& value) {
   constexpr int kSets = 64;
   double sum = 0, square = 0;
   for (uint64_t seed = 0; seed < kSets; ++seed) {
@@ -119,9 +119,9 @@ Mean mean_of_sets(const LightTree& tree, const Value& value) {
   return {mean, std::sqrt(std::max(square / kSets - mean * mean, 0.0) / (kSets - 1))};
 }
 
-TEST(LightTree, SamplesHaveTheirDensity) {
+TEST(DirectionTree, SamplesHaveTheirDensity) {
   const Vec3 wv = direction(radians_from(60.0f), 0.4f);
-  const LightTree tree(reading(lobe_about(reflected(wv), 500)), wv, 256);
+  const DirectionTree tree(reading(lobe_about(reflected(wv), 500)), wv, 256);
   // Not the function that the tree was made for, so that the sums of weights have something to get wrong.
   const Mean cosines = mean_of_sets(tree, cosine);
   EXPECT_LT(std::abs(cosines.value - kPiD), 4 * cosines.standard_error + 1e-4);
@@ -151,7 +151,7 @@ double integral(const WeightedLights& lights, const Value& f) {
 
 TEST(ErrorLights, FillTheHemisphereAndFindTheLobesOfTheMaterialAnywhere) {
   const Vec3 wv(0, 0, 1), aside = direction(1.0f, 2.0f);
-  const LightTree tree(reading(cosine), wv, 256);
+  const DirectionTree tree(reading(cosine), wv, 256);
   const auto material = narrow_lobe(aside, 1e6);
   double area = 0, lobe = 0;
   constexpr uint64_t kSets = 8;
@@ -167,7 +167,7 @@ TEST(ErrorLights, FillTheHemisphereAndFindTheLobesOfTheMaterialAnywhere) {
 TEST(ErrorEstimate, ItsStandardErrorIsTheSpreadOfItsErrors) {
   const test::AnalyticMeasurement measurement(test::near_mirror(1e4));
   const Vec3 wv = direction(radians_from(30.0f), 0);
-  const LightTree tree(reader_of(measurement, wv), wv, 64);
+  const DirectionTree tree(reader_of(measurement, wv), wv, 64);
   const auto material = narrow_lobe(reflected(wv), 9e3);
   constexpr size_t kGroups = 48, kSets = 4;
   double sum = 0, square = 0, claimed = 0;

@@ -34,7 +34,7 @@ LightReader reader_of(const Measurement& measurement, const Vec3& wv);
 /// (f cos)^2 and of f cos. A highlight is sampled by hundreds of directions at every view, however narrow. To find it,
 /// cells are first split towards the mirror direction and towards the view, where measured materials are sharp; such
 /// cells are joined again where f cos hardly varies between them.
-class LightTree {
+class DirectionTree {
  public:
   /// A part of the square and one direction in it, at a place that a hash of the cell chooses: in a regular pattern, an
   /// elongated lobe could hide between the rows.
@@ -54,7 +54,7 @@ class LightTree {
   };
 
   /// `folded`: covers only lights with wl.y >= 0, for views on the meridian whose values are symmetric about it.
-  LightTree(const LightReader& read, const Vec3& wv, int parts, bool folded = false);
+  DirectionTree(const LightReader& read, const Vec3& wv, int parts, bool folded = false);
 
   /// Indices of the leaves, neighbors close to each other.
   std::span<const uint32_t> leaves() const { return leaves_; }
