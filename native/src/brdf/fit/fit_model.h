@@ -13,9 +13,9 @@ constexpr ModelKind kDefaultModelKind = ModelKind::automatic;
 
 /// options.max_bytes bounds models of either kind; a parametric one is refitted with fewer lobes until it is met.
 ///
-/// Automatic: parametric, unless a reported view misses its tolerance several times over. Then a parametric model with
-/// splines twice as fine, and after it a per-view model, replace it if they lower the errors by a third each. Options
-/// that only one kind has, and bounds of the size, decide by themselves.
+/// Automatic: parametric, unless a reported view misses its tolerance several times over. Then the fit continues with
+/// splines twice as fine, and if that does not help, a per-view model follows. A larger model must lower the errors by
+/// a third. Options that only one kind has, and bounds of the size, decide by themselves.
 Model fit_model(ModelKind kind, const Measurement& measurement, const FitOptions& options, Progress& progress);
 
 }  // namespace velour
