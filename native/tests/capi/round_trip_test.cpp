@@ -262,7 +262,7 @@ TEST(FitOptions, UnknownModelsAndKernelsAreRefused) {
   vlr_fit_options options;
   vlr_fit_options_init(&options);
   EXPECT_EQ(options.model, VLR_MODEL_AUTO);
-  for (const int32_t unknown : {-1, 2}) {
+  for (const int32_t unknown : {-1, 3}) {
     vlr_fit_options wrong = options;
     wrong.model = unknown;
     EXPECT_NE(fit_refusal(measurement, wrong).find("VLR_MODEL"), std::string::npos);

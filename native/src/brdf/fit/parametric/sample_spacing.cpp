@@ -29,10 +29,10 @@ Vec3d horizon_under(const Vec3d& wl) {
 
 }  // namespace
 
-/// Log of twice the solid angle of the cell at the center, or under it at the horizon.
+/// Log of the solid angle of the cell at the center, or under it at the horizon.
 double SampleSpacing::log_solid_angle(const WarpedShape& shape) const {
   const Vec3d center = light_at_center(lobe_of(shape), wv_);
-  return std::log(2 * lights_->leaf_at(Vec3(center.z >= 0 ? center : horizon_under(center))).solid_angle());
+  return std::log(lights_->leaf_at(Vec3(center.z >= 0 ? center : horizon_under(center))).solid_angle());
 }
 
 /// Decrease of the logarithm of the lobe from the horizon upwards, per radian.
