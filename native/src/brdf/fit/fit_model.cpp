@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <chrono>
-#include <cmath>
 #include <optional>
 
 #include "base/error.h"
@@ -46,26 +45,17 @@ Model bounded_parametric(const Measurement& measurement, FitOptions options, Pro
   }
 }
 
-// Errors in units of the tolerance: a model this good is kept, another one must be better by this factor.
-constexpr double kGoodEnough = 4, kWorthIt = 1.5;
+// A model is kept if no reported view misses its tolerance by more than this factor; another must have a mean error
+// smaller by the second.
+constexpr double kGoodEnough = 5, kWorthIt = 1.5;
 
-struct Misses {
-  double worst = 0, mean = 0;  // over the reported views; mean: root of the mean square
-};
-
-/// Errors of the reported views in units of their tolerances.
-Misses misses_of(const FitRecord& record) {
-  Misses out;
-  double square = 0, count = 0;
+/// Largest error of the reported views in units of their tolerances.
+double worst_miss(const FitRecord& record) {
+  double worst = 0;
   for (const auto& [degrees, error] : record.by_view_angle) {
-    if (!error) continue;
-    const double miss = *error / tolerance_at(record.tolerance, radians_from(std::stod(degrees)));
-    out.worst = std::max(out.worst, miss);
-    square += miss * miss;
-    ++count;
+    if (error) worst = std::max(worst, *error / tolerance_at(record.tolerance, radians_from(std::stod(degrees))));
   }
-  out.mean = std::sqrt(square / std::max(count, 1.0));
-  return out;
+  return worst;
 }
 
 /// Options that only one of the kinds has decide. Nothing if any kind will do.
@@ -83,15 +73,15 @@ Model fit_automatically(const Measurement& measurement, const FitOptions& option
     best = fit_parametric(measurement, options, progress);
   }
   const auto replace_if_better = [&](Model other) {
-    if (kWorthIt * misses_of(other.fit).mean < misses_of(best.fit).mean) best = std::move(other);
+    if (kWorthIt * other.fit.relative_l2 < best.fit.relative_l2) best = std::move(other);
   };
   const auto& coarse = std::get<ParametricBrdf>(best.body);
   const bool can_be_finer = measurement.isotropic() && measurement.samples().empty() && coarse.lobe_count() > 0;
-  if (can_be_finer && misses_of(best.fit).worst > kGoodEnough) {
+  if (can_be_finer && worst_miss(best.fit) > kGoodEnough) {
     const Progress::Span span(progress, 0.4, 0.7);
     replace_if_better(fit_finer(measurement, coarse, options, progress));
   }
-  if (misses_of(best.fit).worst > kGoodEnough) {
+  if (worst_miss(best.fit) > kGoodEnough) {
     const Progress::Span span(progress, 0.7, 1.0);
     replace_if_better(fit_per_view(measurement, options, progress));
   }

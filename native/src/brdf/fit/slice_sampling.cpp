@@ -93,7 +93,7 @@ MeasuredLights measured_lights(const Measurement& source, const Vec3& wv, const 
   constexpr uint32_t kRun = 16;
   const LightReader read = size.folded ? folded(reader_of(source, wv), wv) : reader_of(source, wv);
   MeasuredLights out;
-  if (!source.samples().empty()) {
+  if (size.parts == 0 || !source.samples().empty()) {
     out.grid = light_grid(wv, size.rings, size.spokes);
     if (size.folded) keep_one_side(out.grid);
     out.values.resize(out.grid.wl.size());

@@ -30,8 +30,8 @@ struct MeasuredSlices {
 
 /// Light directions of a view.
 struct SliceGrid {
-  int parts;          // tables: of a DirectionTree
-  int rings, spokes;  // irregular samples, whose interpolation is slow: of a light grid (brdf/fit/view_grid.h)
+  int parts;          // of a DirectionTree; 0, or irregular samples, whose interpolation is slow: a light grid
+  int rings, spokes;  // of the light grid (brdf/fit/view_grid.h)
   /// Isotropic data: only lights on one side of the plane of incidence, each with the mean of its value and that of its
   /// mirror image (for a view along the normal, the mean over azimuths). For models that are symmetric about that
   /// plane, which get the same fit from half the samples.
