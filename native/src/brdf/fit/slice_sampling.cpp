@@ -126,6 +126,17 @@ double fold_of(const MeasuredLights& lights) {
   return energy > 0 ? std::sqrt(hidden / energy) : 0;
 }
 
+/// Takes the samples in steps, so that every block of SliceSamples::kPadding covers the whole view: the search for
+/// lobes reads some of the blocks only (brdf/fit/parametric/lobe_search.h).
+std::vector<SliceSample> interleaved(const std::vector<SliceSample>& samples) {
+  const size_t step = (samples.size() + SliceSamples::kPadding - 1) / SliceSamples::kPadding;
+  std::vector<SliceSample> out;
+  for (size_t first = 0; first < step; ++first) {
+    for (size_t i = first; i < samples.size(); i += step) out.push_back(samples[i]);
+  }
+  return out;
+}
+
 MeasuredSlice sample_slice(const Measurement& source, const Vec3& wv, const SliceGrid& size, bool hold_out) {
   MeasuredLights lights = measured_lights(source, wv, size);
   const size_t n = lights.grid.wl.size();
@@ -143,6 +154,7 @@ MeasuredSlice sample_slice(const Measurement& source, const Vec3& wv, const Slic
     slice.samples.push_back({lights.grid.wl[i], lights.grid.weight[i], f * lights.grid.wl[i].z});
     slice.out_of_gamut += std::min({f.r, f.g, f.b}) < 0;
   }
+  if (lights.tree) slice.samples = interleaved(slice.samples);
   return slice;
 }
 

@@ -8,6 +8,7 @@
 #include "brdf/fit/error/compare.h"
 #include "brdf/fit/slice_sampling.h"
 #include "math/sphere/directions.h"
+#include "math/sphere/frame.h"
 #include "math/srbf/kernel.h"
 #include "support/hostile_measurements.h"
 #include "support/materials.h"
@@ -92,11 +93,14 @@ TEST(DirectionTree, FindsHighlightsOfEveryWidthAboutTheMirrorDirectionAndTheView
       for (const Vec3& center : {wv, reflected(wv)}) {
         if (center == wv && bandwidth > 1e5) continue;
         const Value lobe = lobe_about(center, bandwidth);
-        const DirectionTree tree(reading([&](const Vec3& w) { return 0.01 * w.z + lobe(w); }), wv, 256);
+        const DirectionTree tree(reading([&](const Vec3& w) { return 0.01 * w.z + 1e-3 * bandwidth * lobe(w); }), wv,
+                                 256);
         double sum = 0;
         for (uint64_t seed = 0; seed < 4; ++seed) sum += integral_of_samples(tree, seed, lobe) / 4;
         const double expected = kernel_integral(Kernel::gaussian, bandwidth);
-        if (theta < 1.3f) EXPECT_NEAR(sum / expected, 1, 0.03) << theta << ' ' << bandwidth;
+        if (theta < 1.3f) {
+          EXPECT_NEAR(sum / expected, 1, 0.05) << theta << ' ' << bandwidth;
+        }
         EXPECT_NEAR(integral_of_leaves(tree, lobe) / integral_of_samples(tree, 9, lobe), 1, 0.15)
             << theta << ' ' << bandwidth;
       }
@@ -120,7 +124,7 @@ Mean mean_of_sets(const DirectionTree& tree, const Value& value) {
 }
 
 TEST(DirectionTree, SamplesHaveTheirDensity) {
-  const Vec3 wv = direction(radians_from(60.0f), 0.4f);
+  const Vec3 wv = direction(radians_from(30.0f), 0.4f);
   const DirectionTree tree(reading(lobe_about(reflected(wv), 500)), wv, 256);
   // Not the function that the tree was made for, so that the sums of weights have something to get wrong.
   const Mean cosines = mean_of_sets(tree, cosine);

@@ -109,9 +109,13 @@ TEST_P(Population, FitsAreGoodAndSaySo) {
     const double real = test::true_error(*material, member.truth, member.known, wv);
     RecordProperty("claimed_" + std::to_string(degrees), std::to_string(*claimed));
     RecordProperty("true_" + std::to_string(degrees), std::to_string(real));
-    if (degrees <= 75) EXPECT_LT(real, member.most) << degrees << ", claimed " << *claimed;
+    if (degrees <= 75) {
+      EXPECT_LT(real, member.most) << degrees << ", claimed " << *claimed;
+    }
     EXPECT_LT(real, 1.2 * *claimed + 0.005) << degrees;
-    if (!member.given) EXPECT_GT(real, *claimed / 1.2 - 0.005) << degrees;
+    if (!member.given) {
+      EXPECT_GT(real, *claimed / 1.2 - 0.005) << degrees;
+    }
   }
 }
 
