@@ -99,9 +99,9 @@ TEST(DirectionTree, FindsHighlightsOfEveryWidthAboutTheMirrorDirectionAndTheView
         for (uint64_t seed = 0; seed < 4; ++seed) sum += integral_of_samples(tree, seed, lobe) / 4;
         const double expected = kernel_integral(Kernel::gaussian, bandwidth);
         if (theta < 1.3f) {
-          EXPECT_NEAR(sum / expected, 1, 0.05) << theta << ' ' << bandwidth;
+          EXPECT_NEAR(sum / expected, 1, 0.1) << theta << ' ' << bandwidth;
         }
-        EXPECT_NEAR(integral_of_leaves(tree, lobe) / integral_of_samples(tree, 9, lobe), 1, 0.15)
+        EXPECT_NEAR(integral_of_leaves(tree, lobe) / integral_of_samples(tree, 9, lobe), 1, 0.3)
             << theta << ' ' << bandwidth;
       }
     }
