@@ -169,13 +169,30 @@ DirectionTree::Sums DirectionTree::sums() const {
 bool DirectionTree::split_bright(const LightReader& read, int parts) {
   const Sums total = sums();
   const size_t before = cells_.size();
+  std::vector<uint32_t> bright;
   for (uint32_t i = 0; i < before && cells_.size() < kMaxCells; ++i) {
     const Cell& c = cells_[i];
-    if (c.leaf() && c.side > kFinest && total.share(c) * parts > 1) split(i);
+    if (c.leaf() && c.side > kFinest && total.share(c) * parts > 1) bright.push_back(i);
+  }
+  for (const uint32_t i : bright) {
+    if (cells_[i].leaf()) split(i);
+    split_neighbors(i);
   }
   if (cells_.size() == before) return false;
   read_new(read);
   return true;
+}
+
+/// Splits larger leaves around a bright cell: their one direction may have missed the rest of a narrow highlight.
+void DirectionTree::split_neighbors(uint32_t index) {
+  const Vec2 corner = cells_[index].corner;
+  const float side = cells_[index].side;
+  for (int k = 0; k < 9; ++k) {
+    const Vec2 place = corner + side * Vec2(static_cast<float>(k % 3) - 0.5f, static_cast<float>(k / 3) - 0.5f);
+    if (std::max(std::abs(place.x), std::abs(place.y)) >= 1) continue;
+    const uint32_t leaf = leaf_of(place);
+    if (cells_[leaf].side > side) split(leaf);
+  }
 }
 
 /// Joins cells below `index` that were split in vain. Returns whether `index` is a leaf afterwards.
@@ -207,8 +224,7 @@ void DirectionTree::list_leaves(uint32_t index) {
   for (uint32_t k = 0; k < 4; ++k) list_leaves(static_cast<uint32_t>(cells_[index].first_child) + k);
 }
 
-uint32_t DirectionTree::leaf_of(const Vec3& wl) const {
-  Vec2 place = place_of(wl);
+uint32_t DirectionTree::leaf_of(Vec2 place) const {
   if (folded_) place.y = std::abs(place.y);
   uint32_t index = folded_ && place.x >= 0 ? 1 : 0;
   while (!cells_[index].leaf()) {
@@ -220,7 +236,11 @@ uint32_t DirectionTree::leaf_of(const Vec3& wl) const {
   return index;
 }
 
-double DirectionTree::density(const Vec3& wl) const { return static_cast<double>(leaf_density_[leaf_of(wl)]); }
+const DirectionTree::Cell& DirectionTree::leaf_at(const Vec3& wl) const { return cells_[leaf_of(place_of(wl))]; }
+
+double DirectionTree::density(const Vec3& wl) const {
+  return static_cast<double>(leaf_density_[leaf_of(place_of(wl))]);
+}
 
 void DirectionTree::sample(size_t count, uint64_t seed, std::vector<Vec3>& out) const {
   constexpr uint64_t kStream = 0x5eed;

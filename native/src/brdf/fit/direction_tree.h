@@ -60,7 +60,7 @@ class DirectionTree {
   std::span<const uint32_t> leaves() const { return leaves_; }
   const Cell& cell(uint32_t index) const { return cells_[index]; }
   /// The leaf that contains `wl`; its image at wl.y >= 0 if folded.
-  const Cell& leaf_at(const Vec3& wl) const { return cells_[leaf_of(wl)]; }
+  const Cell& leaf_at(const Vec3& wl) const;
 
   /// `count` directions, stratified over the leaves by what they reflect. Sets of different seeds are independent.
   /// Their mean density per solid angle is count x density(). Not for folded trees.
@@ -81,9 +81,10 @@ class DirectionTree {
   void read_new(const LightReader& read);
   Sums sums() const;
   bool split_bright(const LightReader& read, int parts);
+  void split_neighbors(uint32_t index);
   bool join(uint32_t index, const Sums& sums, int parts);
   void list_leaves(uint32_t index);
-  uint32_t leaf_of(const Vec3& wl) const;
+  uint32_t leaf_of(Vec2 place) const;
 
   bool folded_;
   size_t roots_ = 0;
