@@ -103,11 +103,9 @@ def _stands_alone(part, letters, row, column, margin, contrast):
     rows = part[row : row + height]
     text = rows[:, column : column + width]
     background = np.median(text[letters == 0]) if (letters == 0).any() else text.min()
-    before, after = (
-        rows[:, max(column - margin, 0) : column],
-        rows[:, column + width : column + width + margin],
-    )
-    beside = np.concatenate([before.ravel(), after.ravel()])
+    # The icon of a file stands as close before its name as a word may stand before another one.
+    start, end = max(column - margin + 1, 0), column + width
+    beside = np.hstack([rows[:, start:column], rows[:, end : end + margin]])
     towards_ink = (beside - background) / contrast
     return not (towards_ink > _INK).any()
 
