@@ -34,7 +34,7 @@ def images_of(tree):
 
 
 def _role(node):
-    """Nodes of Velour before 0.2 have no label: only colors and normals had images."""
+    """Nodes of the first files have no label; they have images of colors and normals only."""
     if node.label in ROLES:
         return node.label
     return NORMALS if node.image.colorspace_settings.is_data else COLORS
