@@ -217,10 +217,6 @@ class Notes(NotesTest):
         tree.links.new(profile.outputs[0], tree.nodes["Emission"].inputs["Strength"])
         self.assert_said("Light 'Down'", "shader nodes of lights, such as IES files, are not supported")
 
-    def test_motion_blur(self):
-        bpy.context.scene.render.use_motion_blur = True
-        self.assert_said("motion blur")
-
     def test_hair(self):
         obj = scenes.add_sphere()
         obj.modifiers.new("Fur", "PARTICLE_SYSTEM")

@@ -33,7 +33,7 @@ extern "C" {
 #endif
 
 /* Increases whenever a struct or the meaning of a call changes. */
-#define VLR_ABI_VERSION 11
+#define VLR_ABI_VERSION 12
 
 typedef int32_t vlr_status;
 enum {
@@ -412,6 +412,12 @@ typedef struct vlr_mesh_desc {
   const uint32_t* corner_vertices;
   const float* vertex_normals; /* [vertex_count x 3] for smooth triangles; NULL: means of the adjacent triangles */
   const float* corner_colors;  /* [color_sets x triangle_count x 3 x 3] for vlr_texture_of_corners, working space */
+  /* Shapes of a mesh that deforms while the shutter is open, at even times from its opening to its close and linear in
+   * between; the arrays above are those of the middle. */
+  const float* moved_positions;      /* [steps x vertex_count x 3] */
+  const float* moved_corner_normals; /* [steps x corner_normals]; NULL: those of the triangles at each time */
+  const float* moved_vertex_normals; /* [steps x vertex_count x 3]; likewise */
+  uint32_t steps;                    /* 0: the mesh keeps its shape; 2..129 */
 } vlr_mesh_desc;
 /* Adds a mesh without its degenerate triangles and non-finite vertices; *dropped (may be NULL) is the number of
  * triangles left out. */
@@ -507,6 +513,9 @@ VLR_API vlr_status vlr_scene_add_placed_instance(vlr_scene* scene, uint32_t mesh
 VLR_API vlr_status vlr_scene_add_instances(vlr_scene* scene, const uint32_t* meshes, const float* object_to_world,
                                            uint64_t instances, const uint32_t* materials, uint32_t count);
 
+/* Applies to all instances added from here on: each has `steps` (1..129) matrices in a row in place of one, where it is
+ * at even times while the shutter is open; rotations turn evenly in between. 1 (initially): it stays. */
+VLR_API vlr_status vlr_scene_move_instances(vlr_scene* scene, uint32_t steps);
 /* Removes all instances; meshes and materials stay. */
 VLR_API vlr_status vlr_scene_clear_instances(vlr_scene* scene);
 
@@ -575,6 +584,15 @@ typedef struct vlr_camera_desc {
   uint32_t blades;      /* sides of the aperture, with corners on the circle; below 3: the circle; 0 */
   float blade_rotation; /* rotation of that polygon, counterclockwise as seen by the camera, radians */
   float aperture_ratio; /* height over width of the aperture; 1 */
+  /* How far the shutter is open, at even times from its opening to its close, at least 0 and linear in between: camera
+   * rays are distributed over time in proportion, and what moves blurs. NULL: it opens for an instant in the middle. */
+  const float* shutter; /* [shutter_count] */
+  /* Where a camera that moves is at such times, in between as instances are, and its windows; camera_to_world and
+   * window are then ignored. NULL: it stays, or does not zoom. */
+  const float* motion;        /* [steps x 12] */
+  const float* motion_window; /* [steps x 4] */
+  uint32_t shutter_count;     /* 1: constant */
+  uint32_t steps;             /* of `motion` and `motion_window`; 0, 2..129 */
 } vlr_camera_desc;
 VLR_API void vlr_camera_desc_init(vlr_camera_desc* desc);
 VLR_API vlr_status vlr_scene_set_camera(vlr_scene* scene, const vlr_camera_desc* desc);
@@ -1127,9 +1145,12 @@ enum {
   VLR_PASS_CRYPTO_MATERIAL = 256, /* "CryptoMaterial00", ...: likewise */
   VLR_PASS_CRYPTO_ASSET = 512,    /* "CryptoAsset00", ...: likewise */
   VLR_PASS_DENOISING_ALBEDO =
-      1024,              /* "Denoising Albedo" 3: albedo plus emission of surfaces and environment; may exceed 1 */
-  VLR_PASS_HALVES = 2048 /* "Halves" 18: means of color, denoising albedo and normal (3 each) over the even camera rays,
-                            then over the odd ones */
+      1024,               /* "Denoising Albedo" 3: albedo plus emission of surfaces and environment; may exceed 1 */
+  VLR_PASS_HALVES = 2048, /* "Halves" 18: means of color, denoising albedo and normal (3 each) over the even camera
+                             rays, then over the odd ones */
+  /* "Vector" 4: motion of what is seen, in pixels, x to the right and y up: its place when the shutter opens minus that
+   * in the middle, then the latter minus that when it closes; mean over the camera rays that hit something. */
+  VLR_PASS_VECTOR = 4096
 };
 
 typedef struct vlr_instance_label {

@@ -34,6 +34,11 @@ RayDecisions PathNumbers::decisions() {
   return {mix64(~key(Purpose::camera)), ray_};
 }
 
+void PathNumbers::time(PointBatch& batch) {
+  if (sequence_ == Sequence::sobol) return batch.add(SobolSeeds(mix64(~key(Purpose::side))), ray_, 1);
+  point(Purpose::side, batch);
+}
+
 float PathNumbers::label() {
   if (sequence_ != Sequence::sobol) return random_.next();
   Vec2 u;

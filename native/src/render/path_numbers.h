@@ -94,6 +94,9 @@ class PathNumbers {
   /// Decisions of the continuation ray from this vertex, before it reaches the next.
   RayDecisions decisions();
 
+  /// Requests a point whose first coordinate decides about the time of a camera ray.
+  void time(PointBatch& batch);
+
   /// Uniform over [0, 1): selects the lobe that the continuation ray from this vertex is attributed to.
   float label();
 

@@ -55,11 +55,12 @@ Vertex::Vertex(const Scene& scene, const SurfacePoint& point, const ShellCrossin
                const Hit& hit, const RayCone& cone_at_origin, const PixelFootprint* pixel)
     : Vertex(point, -ray.direction) {
   surface = &scene.materials()[point.material];
+  time = ray.time;
   cone = cone_at_origin.at(hit.distance);
   if (!surface->material->varies()) return;
   transmits = surface->material->transmits();
   const TexturePoint texture = scene.texture(hit);
-  const RaySides sides = pixel != nullptr ? pixel->sides(position) : across(cone, ray.direction);
+  const RaySides sides = pixel != nullptr ? pixel->sides(position, time) : across(cone, ray.direction);
   find_site(point, crossing != nullptr ? crossing->texture(texture) : texture, ray.direction, sides);
   if (surface->uv_sets > 1) find_others(scene, hit, ray.direction, sides);
   find_colors(scene, hit);
