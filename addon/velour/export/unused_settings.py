@@ -49,6 +49,8 @@ _OF_CYCLES = {
     "Open Shading Language": lambda cycles: cycles.shading_system,
     "Fast GI Approximation": lambda cycles: cycles.use_fast_gi,
     "Pixel Filter": lambda cycles: not _is_usual_filter(cycles),
+    "Refractive Caustics off": lambda cycles: not cycles.caustics_refractive,
+    "Transparent Glass": lambda cycles: cycles.film_transparent_glass,
 }
 _OF_SIMPLIFY = {
     "Culling": lambda cycles: cycles.use_camera_cull or cycles.use_distance_cull,

@@ -195,9 +195,11 @@ class Scene(Handle):
         emission [3]: radiance; alpha: 0..1, coverage of the surface; rays pass through the rest. formula:
         layered (Blender since 4.0) or disney (before). lobe: whole (with multiple scattering), single, or
         separable (separable masking and shadowing: before Blender 3.5). specular_tint [3]: for dielectrics at
-        normal incidence, not negative; for metals near 82 degrees, 0..1. Only layered: coat: 0..1, weight of
-        a dielectric layer on top; coat_roughness, coat_index (at least 1), coat_tint [3]; coat_lobe: whole
-        (Blender since 4.5) or single.
+        normal incidence, not negative; for metals near 82 degrees, 0..1. coat: 0..1, weight of a dielectric
+        layer on top (disney: of its clear coat); coat_roughness; only layered: coat_index (at least 1),
+        coat_tint [3], coat_lobe: whole (Blender since 4.5) or single. transmission: 0..1, share of glass in
+        what is not metal; index: its index of refraction; transmission_roughness: only disney. sheen: weight
+        of fuzz; sheen_tint [3]; only layered: sheen_roughness.
         """
         return self.add_textured_material({}, **values)
 

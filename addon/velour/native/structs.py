@@ -220,6 +220,13 @@ class PrincipledDesc(Struct):
         ("coat_index", c_float),
         ("coat_tint", c_float * 3),
         ("coat_lobe", c_int32),
+        ("transmission", c_float),
+        ("transmission_roughness", c_float),
+        ("index", c_float),
+        ("glass_fresnel", c_int32),
+        ("sheen", c_float),
+        ("sheen_roughness", c_float),
+        ("sheen_tint", c_float * 3),
     ]
 
 

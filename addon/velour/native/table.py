@@ -56,7 +56,17 @@ SIDES = ("automatic", "one", "two")
 SEQUENCES = ("random", "sobol", "independent")
 WRAPS = ("repeat", "extend", "clip", "mirror")
 FILTERS = ("closest", "linear")
-LAYERS = ("principled", "diffuse", "glossy", "transparent", "emission")
+LAYERS = (
+    "principled",
+    "diffuse",
+    "glossy",
+    "transparent",
+    "emission",
+    "glass",
+    "refraction",
+    "translucent",
+)
+GLASS_FRESNELS = ("facets", "surface")
 FORMULAS = ("layered", "disney")
 LOBES = ("whole", "single", "separable")
 FACTORS = ("share", "rest", "gain", "tint")

@@ -475,6 +475,9 @@ enum {
   VLR_GGX_SINGLE = 1,   /* height-correlated: GGX since Blender 3.5 */
   VLR_GGX_SEPARABLE = 2 /* independent for both directions: GGX before Blender 3.5 */
 };
+/* How glass divides light: by the angle with each facet, as the Glass BSDF since Blender 3.6 and the Refraction BSDF
+ * since 4.0; or by the angle with the surface, as before. */
+enum { VLR_GLASS_FACETS = 0, VLR_GLASS_SURFACE = 1 };
 typedef struct vlr_principled_desc {
   uint32_t struct_size;
   float base_color[3]; /* working space */
@@ -487,13 +490,21 @@ typedef struct vlr_principled_desc {
   int32_t lobe;        /* VLR_GGX_* */
   /* Dielectrics: at normal incidence, not negative; metals: near 82 degrees, 0..1 (VLR_PRINCIPLED_LAYERED). White. */
   float specular_tint[3];
-  /* A dielectric layer on top, not affected by a normal map (VLR_PRINCIPLED_LAYERED). */
+  /* A dielectric layer on top, not affected by a normal map; VLR_PRINCIPLED_DISNEY: its clear coat. */
   float coat;           /* 0..1: its weight; 0 */
   float coat_roughness; /* 0..1; 0.03 */
   float coat_index;     /* at least 1; 1.5 */
   float coat_tint[3];   /* not negative: its transmission straight down and back; white */
   int32_t coat_lobe;    /* VLR_GGX_WHOLE since Blender 4.5; VLR_GGX_SINGLE: 4.0 to 4.4, which dim the layers below as a
                            smooth coat does */
+  float transmission;   /* 0..1: share of glass in what is not metal; 0 */
+  float transmission_roughness; /* 0..1, VLR_PRINCIPLED_DISNEY: adds to that of refraction; 0 */
+  float index;                  /* > 0: index of refraction of glass; 1.5. Below 1 it inverts that of the dielectric
+                                   (VLR_PRINCIPLED_LAYERED) */
+  int32_t glass_fresnel;        /* VLR_GLASS_*, of glass and refraction layers */
+  float sheen;                  /* weight of fuzz, not negative; 0 */
+  float sheen_roughness;        /* 0..1, VLR_PRINCIPLED_LAYERED; 0.5 */
+  float sheen_tint[3];          /* not negative; white */
 } vlr_principled_desc;
 VLR_API void vlr_principled_desc_init(vlr_principled_desc* desc);
 VLR_API vlr_status vlr_scene_add_principled_material(vlr_scene* scene, const vlr_principled_desc* desc,
@@ -927,7 +938,10 @@ enum {
   VLR_LAYER_DIFFUSE = 1,     /* base_color and roughness: Oren-Nayar; 0: Lambert */
   VLR_LAYER_GLOSSY = 2,      /* base_color, roughness and lobe: GGX with this reflectance at every angle */
   VLR_LAYER_TRANSPARENT = 3, /* base_color: factor of light that passes straight through */
-  VLR_LAYER_EMISSION = 4     /* base_color: radiance */
+  VLR_LAYER_EMISSION = 4,    /* base_color: radiance */
+  VLR_LAYER_GLASS = 5,      /* base_color, roughness, index, lobe, glass_fresnel: GGX facets that reflect and refract */
+  VLR_LAYER_REFRACTION = 6, /* the same, without reflection */
+  VLR_LAYER_TRANSLUCENT = 7 /* base_color: diffuse light from the other side */
 };
 /* The weight of a layer is the product of its factors. For a mix, SHARE is its factor and REST 1 minus that, both
  * within [0, 1]; GAIN is any non-negative number. */

@@ -46,6 +46,13 @@ float PathNumbers::label() {
   return u.x;
 }
 
+float PathNumbers::lobe() {
+  if (sequence_ != Sequence::sobol) return random_.next();
+  Vec2 u;
+  sobol_points(mix64(~key(Purpose::product_side)), ray_, {&u, 1});
+  return u.x;
+}
+
 PathNumbers::Deal PathNumbers::deal(Run run, float share, Purpose purpose) {
   const double part = static_cast<double>(share);
   if (sequence_ != Sequence::sobol) {

@@ -102,7 +102,7 @@ struct Vertex {
   void find_others(const Scene& scene, const Hit& hit, const Vec3& direction, const RaySides& sides);
   void find_colors(const Scene& scene, const Hit& hit);
   void find_computed(const Scene& scene, const SurfacePoint& point, const Hit& hit, const Vec3& incoming);
-  void find_site(const SurfacePoint& point, const TexturePoint& texture, const Vec3& direction, const RaySides& sides);
+  void find_site(const TexturePoint& texture, const Vec3& direction, const RaySides& sides);
 };
 
 // Site of a hit on its material, and whether rays of a kind hit it.
