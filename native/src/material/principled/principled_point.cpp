@@ -67,20 +67,26 @@ Rgb through_coat(const PrincipledParameters& p, float cosine, const LobeFilter& 
   return passing * glm::mix(Rgb(1), tint, weight);
 }
 
+constexpr int kSheenSide = 32;
+constexpr int32_t kSheenTable[kSheenSide][kSheenSide][3] = {
+#include "material/principled/sheen_table.inc"
+};
+
 constexpr float kMinClearCoatAlpha = 3.2e-4f;  // below it the clear coat is a mirror in Cycles
 
 }  // namespace
 
 SheenLobe::SheenLobe(float roughness, float cosine) {
-  const float x = cosine, y = roughness;
-  a = (2.58126f * x + 0.813703f * y) * y / (1 + 0.310327f * x * x + 2.60994f * x * y);
-  b = std::sqrt(1 - x) * (y - 1) * y * y * y / (0.0000254053f + 1.71228f * x - 1.71506f * x * y + 1.34174f * y * y);
-  const float s = y * (0.0206607f + 1.58491f * y) / (0.0379424f + y * (1.32227f + y));
-  const float m = y * (-0.193854f + y * (-1.14885f + y * (1.7932f - 0.95943f * y * y))) / (0.046391f + y);
-  const float o = y * (0.000654023f + (-0.0207818f + 0.119681f * y) * y) / (1.26264f + y * (-1.92021f + y));
-  const float t = (x - m) / s;
-  albedo = std::clamp(std::exp(-0.5f * t * t) / (s * std::sqrt(2 * kPi)) + o, 0.0f, 1.0f);
-  if (a < 1e-5f || albedo < 1e-5f) *this = SheenLobe();
+  constexpr int kEnd = kSheenSide - 1;
+  const float x = std::clamp(cosine, 0.0f, 1.0f) * kEnd, y = std::clamp(roughness, 0.0f, 1.0f) * kEnd;
+  const int i = std::min(static_cast<int>(x), kEnd - 1), j = std::min(static_cast<int>(y), kEnd - 1);
+  const auto entry = [](int row, int column) {
+    const int32_t* v = kSheenTable[row][column];
+    return 1e-5f * Vec3(v[0], v[1], v[2]);
+  };
+  const auto in_row = [&](int row) { return glm::mix(entry(row, i), entry(row, i + 1), x - static_cast<float>(i)); };
+  const Vec3 found = glm::mix(in_row(j), in_row(j + 1), y - static_cast<float>(j));
+  if (found.x >= 1e-5f && found.z >= 1e-5f) a = found.x, b = found.y, albedo = found.z;
 }
 
 Rgb through_top(const PrincipledParameters& p, float cosine, const LobeFilter& filter) {

@@ -62,8 +62,8 @@ inline constexpr float kMinRoughness = 0.0316227766f;
 Rgb through_top(const PrincipledParameters& parameters, float cosine, const LobeFilter& filter = {});
 
 /// Fuzz above a surface since Blender 4.0: a linearly transformed cosine about the view's azimuth, fitted to scattering
-/// in a layer of fibers [ZBC22]. The coefficients follow the rational fit of MaterialX (mx_microfacet_sheen.glsl),
-/// which is within 0.02 of the tables of Blender in its albedo. `cosine` is that of the view.
+/// in a layer of fibers [ZBC22], by tables measured in Cycles (scripts/sheen_table). `cosine` is that of the view.
+/// Without albedo where Cycles leaves sheen out.
 struct SheenLobe {
   float a = 1, b = 0, albedo = 0;
 
