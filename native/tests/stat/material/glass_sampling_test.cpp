@@ -71,18 +71,19 @@ test::Sampler sampler(std::shared_ptr<const Material> material, float degrees, b
   return of;
 }
 
-TEST(GlassSampling, FollowsItsDensityOnBothSides) {
-  for (const Case& c : cases()) {
-    for (const float degrees : {0.0f, 40.0f, 80.0f}) {
-      for (const bool back : {false, true}) {
-        const std::string name = c.name + std::string(back ? " behind, " : ", ") + std::to_string(degrees);
-        test::expect_proven(sampler(c.material, degrees, back), name);
-      }
-    }
-  }
+/// Case, degrees of the view, and whether it is behind the surface.
+class GlassSampling : public testing::TestWithParam<std::tuple<Case, float, bool>> {};
+
+TEST_P(GlassSampling, FollowsItsDensity) {
+  const auto& [c, degrees, back] = GetParam();
+  test::expect_proven(sampler(c.material, degrees, back), c.name);
 }
 
-TEST(GlassSampling, ControlsAreSeen) {
+INSTANTIATE_TEST_SUITE_P(OnBothSides, GlassSampling,
+                         testing::Combine(testing::ValuesIn(cases()), testing::Values(0.0f, 40.0f, 80.0f),
+                                          testing::Bool()));
+
+TEST(GlassSamplingControls, AreSeen) {
   const auto of = [](float index, float roughness) { return make_glass_material(glass(roughness, index)); };
   EXPECT_LT(test::p_value(sampler(of(1.5f, 0.55f), 40, false), sampler(of(1.5f, 0.55f), 40, true)), 1e-6);
   EXPECT_LT(test::p_value(sampler(of(1.5f, 0.55f), 40, false), sampler(of(1.45f, 0.55f), 40, false)), 1e-6);
