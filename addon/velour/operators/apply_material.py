@@ -9,7 +9,8 @@ from ..core.placement import tiles_along
 from ..export import ExportError
 from ..export.files import StoredFile
 from ..export.measured_look import constant_look
-from ..export.nodes import velour_node
+from ..export.nodes import first_input, velour_node
+from ..export.objects import GEOMETRY
 from ..export.placement import Tile, place_tiles, placed_side, uv_problem
 from ..export.shown_surface import ShownSurface
 from ..export.uv_maps import linked_uv_map
@@ -70,14 +71,14 @@ class VELOUR_OT_apply_material(OfTile, ReadsFirst, bpy.types.Operator):
             obj.active_material = material
         self._place(context, material, objects, info)
         names = ", ".join(f"'{obj.name}'" for obj in objects)
-        along = f", {self.tiles:.4g} tiles along the longest side of '{objects[0].name}'" if self.tiles else ""
-        self.report({"INFO"}, f"Material '{material.name}' is on {names}{along}.")
+        size = f", {self.tiles:.4g} tiles along the longest side of '{objects[0].name}'"
+        self.report({"INFO"}, f"Material '{material.name}' is on {names}{size if self.tiles else ''}.")
         return {"FINISHED"}
 
     def _place(self, context, material, objects, info):
         """Chooses the repeats for the first object, since all objects share them; fills in `tiles`."""
-        node = velour_node(material)
-        tile = Tile.of(material, node, constant_look(node), info) if node is not None else None
+        node, objects = velour_node(material), [obj for obj in objects if obj.type in GEOMETRY]
+        tile = Tile.of(material, node, constant_look(node), info) if node is not None and objects else None
         if tile is None:
             self.tiles = 0.0
             return
@@ -87,7 +88,7 @@ class VELOUR_OT_apply_material(OfTile, ReadsFirst, bpy.types.Operator):
             if problem := uv_problem(obj, shown, material.name):
                 self.report({"WARNING"}, problem)
         try:
-            self.tiles = _tiles_on(surfaces[0], tile, self.tiles, is_kept=_is_placed(material, node))
+            self.tiles = _tiles_on(surfaces[0], tile, self.tiles, _is_placed(material, node))
         except ExportError as error:
             self.report({"WARNING"}, str(error))
 
@@ -96,7 +97,7 @@ class VELOUR_OT_apply_material(OfTile, ReadsFirst, bpy.types.Operator):
         if self.material and self.object:
             return measured.wanted_material(context, self.material), [_named(self.object)]
         tile = find_tile(context, self.collection)
-        objects = [_named(self.object)] if self.object else targets(context, tile.owner)
+        objects = [_named(self.object)] if self.object else [*map(_checked, targets(context, tile.owner))]
         if self.material:
             material = measured.wanted_material(context, self.material)
         elif (material := tile.owner.velour.material) is None:
@@ -115,13 +116,14 @@ def targets(context, owner):
     return [obj for obj in selected if obj not in parts and takes_materials(obj)]
 
 
-def _tiles_on(shown, tile, asked, is_kept):
-    """Places as many tiles along the longest side of a ShownSurface's object as `asked`, or by its size if
-    that is 0; returns their number, 0 without texture coordinates. is_kept: unless asked, changes nothing."""
+def _tiles_on(shown, tile, asked, is_placed):
+    """Number of tiles along the longest side of a ShownSurface's object; 0 without texture coordinates.
+
+    Places `asked` tiles; if that is 0, as many as the object's size suggests, unless they are placed."""
     if shown.metrics is None:
         return 0.0
     extent = max(shown.obj.dimensions) * shown.metres
-    if is_kept and not asked:
+    if is_placed and not asked:
         return extent / placed_side(tile, shown.metrics)
     metres = tile.metres
     count = asked or tiles_along(extent, math.sqrt(math.prod(metres)) if metres else None)
@@ -138,15 +140,20 @@ def _is_placed(material, node):
         return True
     if group is None:
         return False
-    scale, vector = group.inputs["Scale"], group.inputs["Vector"]
-    is_mapped = vector.is_linked and linked_uv_map(node) is None
-    return is_mapped or scale.is_linked or scale.default_value != 1.0
+    scale, vector = (first_input(group, name) for name in ("Scale", "Vector"))
+    is_scaled = scale is not None and (scale.is_linked or scale.default_value != 1.0)
+    return is_scaled or (vector is not None and vector.is_linked and linked_uv_map(node) is None)
 
 
 def _named(name):
     obj = bpy.data.objects.get(name)
     if obj is None:
         raise ExportError(f"There is no object '{name}'; check its name.")
+    return _checked(obj)
+
+
+def _checked(obj):
     if not takes_materials(obj):
-        raise ExportError(f"Object '{name}' cannot have materials; choose another.")
+        reason = "is linked from a library" if obj.library is not None else "cannot have materials"
+        raise ExportError(f"Object '{obj.name}' {reason}; choose another.")
     return obj

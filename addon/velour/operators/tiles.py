@@ -20,7 +20,7 @@ class OfTile:
 
     collection: StringProperty(
         name="Collection",
-        description="Collection that is the tile. Empty: the active object",
+        description="Collection that is the tile, instead of an object",
         options={"SKIP_SAVE"},
     )
 
