@@ -97,7 +97,7 @@ def applied(_folder):
     assert abs(last.properties.tiles - 4) < 1e-4, last.properties.tiles
     last.properties.tiles = 10
     with _in_view(area):
-        bpy.ops.ed.undo_redo()
+        bpy.ops.ed.undo_redo("EXEC_DEFAULT", True)
     assert _repeats() == (40, 40), _repeats()
     with _in_view(area):
         bpy.ops.ed.undo()
