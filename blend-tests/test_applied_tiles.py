@@ -141,15 +141,18 @@ class AppliedTiles(Placed):
 
     def test_a_linked_object(self):
         cube = self._cube()
+        cube.data.materials.append(scenes.diffuse_material())
         path = str(self.folder / "prop.blend")
         bpy.data.libraries.write(path, {cube}, fake_user=True)
         bpy.data.objects.remove(cube)
         with bpy.data.libraries.load(path, link=True) as (_source, target):
             target.objects = ["Cube"]
         self.scene.collection.objects.link(target.objects[0])
+        self.scene.collection.objects.link(bpy.data.objects.new("Own", target.objects[0].data))
         material = self._material()
-        with self.assertRaisesRegex(RuntimeError, "'Cube' is linked from a library; choose another"):
-            bpy.ops.velour.apply_material(material=material.name, object="Cube")
+        for name in ("Cube", "Own"):
+            with self.assertRaisesRegex(RuntimeError, f"'{name}' is linked from a library; choose another"):
+                bpy.ops.velour.apply_material(material=material.name, object=name)
         self.assertFalse(self._placement().is_property_set("repeats"))
 
     def test_what_was_placed_stays(self):

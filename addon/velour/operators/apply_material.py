@@ -65,6 +65,7 @@ class VELOUR_OT_apply_material(OfTile, ReadsFirst, bpy.types.Operator):
     def _use(self, context, info):
         material = bpy.data.materials.get(self._keys[0])
         objects = [obj for obj in map(bpy.data.objects.get, self._keys[1]) if takes_materials(obj)]
+        objects.sort(key=lambda obj: obj.type not in GEOMETRY)  # tiles are counted on the first
         if material is None or not objects:
             raise ExportError(f"Material '{self._subject}' or its object no longer exists.")
         for obj in objects:
@@ -153,7 +154,8 @@ def _named(name):
 
 
 def _checked(obj):
-    if not takes_materials(obj):
-        reason = "is linked from a library" if obj.library is not None else "cannot have materials"
+    if not takes_materials(obj) or obj.is_property_readonly("active_material"):
+        is_linked = obj.library is not None or getattr(obj.data, "library", None) is not None
+        reason = "is linked from a library" if is_linked else "cannot have materials"
         raise ExportError(f"Object '{obj.name}' {reason}; choose another.")
     return obj
