@@ -1,7 +1,5 @@
 """The material slot that an operator puts its material into: a named one or the active one."""
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 import bpy
