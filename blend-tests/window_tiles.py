@@ -5,7 +5,7 @@ import json
 import bpy
 import numpy as np
 
-from support import scenes, window
+from support import inputs, scenes, window
 
 _TURNS = 300  # of 0.1 s that a capture may take
 
@@ -16,7 +16,7 @@ def start(folder):
         bpy.utils.unregister_class(panel)
         panel.bl_options = set()  # open, to be looked at
         bpy.utils.register_class(panel)
-    added = (add_and_repeat, another_type)
+    added = (add_and_repeat, another_type, applied)
     window.run(
         folder,
         (*added, capture_and_cancel, capture_again, capture, estimate, material, fitted_anew),
@@ -71,6 +71,38 @@ def another_type(folder):
     for name in ("size", "gap", "count"):
         assert not last.is_property_set(name), name
     window.screenshot(folder, "net")
+
+
+def _repeats():
+    """Those of the material, if they are set."""
+    placement = scenes.velour_node(bpy.data.materials["Quarters"]).velour.placement
+    return tuple(placement.repeats) if placement.is_property_set("repeats") else None
+
+
+def applied(_folder):
+    """The number of tiles can be changed in the panel of the last operation; an undo takes all of it back."""
+    area = _clear_view()
+    bpy.context.scene.unit_settings.scale_length = 1.0
+    scenes.measured_material(inputs.quarters_model(), "Quarters").use_fake_user = True
+    with _in_view(area):
+        bpy.ops.mesh.primitive_cube_add()
+        bpy.ops.ed.undo_push(message="a cube")
+        asked = {"material": "Quarters", "object": "Cube"}
+        assert bpy.ops.velour.apply_material("INVOKE_DEFAULT", True, **asked) == {"RUNNING_MODAL"}
+    yield from window.until(lambda: bpy.data.objects["Cube"].active_material, "the cube has the material")
+    yield 0.2
+    assert _repeats() == (16, 16), _repeats()
+    last = bpy.context.window_manager.operators[-1]
+    assert last.name == "Apply Material", last.name
+    assert abs(last.properties.tiles - 4) < 1e-4, last.properties.tiles
+    last.properties.tiles = 10
+    with _in_view(area):
+        bpy.ops.ed.undo_redo("EXEC_DEFAULT", True)
+    assert _repeats() == (40, 40), _repeats()
+    with _in_view(area):
+        bpy.ops.ed.undo()
+    assert bpy.data.objects["Cube"].active_material is None
+    assert _repeats() is None, _repeats()
 
 
 def _tile_in_properties(tab):

@@ -4,7 +4,19 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from velour.core.placement import Surface, UvMetric, lie_of, quantiles, texture_map
+from conftest import ROOT
+from velour.core.placement import (
+    DEFAULT_TILES,
+    REAL_SIZE_TILES,
+    Surface,
+    UvMetric,
+    lie_of,
+    quantiles,
+    repeats_of,
+    texture_map,
+    tiles_along,
+    whole,
+)
 
 TURN = np.radians(30)
 
@@ -129,6 +141,47 @@ def test_what_has_no_extent_is_left_out():
     assert metric_of(grid((1, 1), lambda x, y: (x, 0 * y))).is_flat
     assert metric_of(grid((0, 1), plain)).is_flat
     assert not metric.is_flat
+
+
+@pytest.mark.parametrize(
+    ("extent", "side", "wanted"),
+    [
+        (2.0, 0.002, 20),  # 1000 tiles would be too small to be seen
+        (0.8, 0.002, 400),
+        (0.802, 0.002, 20),
+        (0.3, 0.002, 150),
+        (0.008, 0.002, 4),
+        (0.007, 0.002, 20),  # a cube as large as a few yarns
+        (2.0, None, 20),
+        (2.0, 0.0, 20),
+        (0.0, 0.002, 20),
+    ],
+)
+def test_tiles_along_an_object_have_their_real_size_where_it_can_be_seen(extent, side, wanted):
+    assert tiles_along(extent, side) == pytest.approx(wanted)
+
+
+def test_the_guide_states_these_numbers():
+    text = " ".join((ROOT / "docs/guide/cloth.md").read_text(encoding="utf-8").split())
+    low, high = REAL_SIZE_TILES
+    assert f"real size if {low} to {high} of them" in text
+    assert f"or else {DEFAULT_TILES} tiles do" in text
+
+
+def test_repeats_give_tiles_their_sides():
+    """A sheet of 6 x 2 m under a unit square: 20 x 4 tiles of 0.3 x 0.5 m."""
+    surface = grid((6, 2), plain)
+    repeats = repeats_of((0.3, 0.5), metric_of(surface).density())
+    assert repeats == pytest.approx((20, 4))
+    tiles = metric_of(surface).placed(texture_map(repeats))
+    assert tiles.density() == pytest.approx((1 / 0.3, 1 / 0.5))
+    wrong = metric_of(surface).placed(texture_map(repeats_of((0.3, 0.5), (1, 1))))
+    assert wrong.density() != pytest.approx((1 / 0.3, 1 / 0.5), rel=0.2)
+
+
+def test_large_repeats_are_whole():
+    assert whole((54.41, 31.4)) == (54, 31)
+    assert whole((9.9, 0.25)) == (9.9, 0.25)
 
 
 def test_quantiles_go_by_weight():

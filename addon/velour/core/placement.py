@@ -11,6 +11,9 @@ import numpy as np
 
 LARGEST_STRETCH = 2.0  # largest ratio that is not worth a warning
 LEAST_SHARE = 0.01  # share of the surface; smaller spots are not noticeable
+DEFAULT_TILES = 20  # along the longest side of an object
+REAL_SIZE_TILES = (4, 400)  # as many in real size can be told apart, and seen as tiles at all
+_LEAST_WHOLE = 10  # repeats whose rounding changes sizes by at most 5 %
 
 
 def texture_map(repeats, rotation=0.0, offset=(0.0, 0.0), metric=(1.0, 1.0)) -> np.ndarray:
@@ -23,6 +26,23 @@ def texture_map(repeats, rotation=0.0, offset=(0.0, 0.0), metric=(1.0, 1.0)) -> 
     c, s = np.cos(rotation), np.sin(rotation)
     linear = np.diag(repeats) @ ((c, s), (-s, c)) @ np.diag(metric)
     return np.column_stack((linear, -linear @ np.asarray(offset, float)))
+
+
+def tiles_along(extent: float, side: float | None) -> float:
+    """Number of tiles along the longest side of an object, `extent`: in real size if `side`, the length of a
+    tile, is known and gives a number within REAL_SIZE_TILES."""
+    low, high = REAL_SIZE_TILES
+    return extent / side if side and low * side <= extent <= high * side else DEFAULT_TILES
+
+
+def repeats_of(sides, density) -> tuple[float, ...]:
+    """Tiles per unit of u and v, for tiles of these sides (m) where u and v have this density (1/m)."""
+    return tuple(1.0 / (side * d) for side, d in zip(sides, density, strict=True))
+
+
+def whole(repeats) -> tuple[float, ...]:
+    """Large repeats as whole numbers, so that tiles meet where a UV map wraps around."""
+    return tuple(float(round(n)) if n >= _LEAST_WHOLE else n for n in repeats)
 
 
 class Surface(NamedTuple):

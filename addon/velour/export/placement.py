@@ -5,7 +5,16 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..core.placement import LARGEST_STRETCH, Lie, Surface, UvMetric, lie_of, texture_map
+from ..core.placement import (
+    LARGEST_STRETCH,
+    Lie,
+    Surface,
+    UvMetric,
+    lie_of,
+    repeats_of,
+    texture_map,
+    whole,
+)
 from .measured_look import MeasuredLook
 from .meshes import has_uv_maps, object_arrays
 from .notes import ExportError
@@ -39,8 +48,7 @@ class Tile(NamedTuple):
     @property
     def metres(self):
         """Entered size, or the BTF's own, in meters; None if unknown."""
-        entered = tuple(1e-3 * side for side in self.settings.tile_size)
-        return entered if min(entered) > 0 else self.own_metres
+        return self.settings.tile_metres(self.own_metres)
 
     @property
     def place(self):
@@ -89,7 +97,11 @@ def tile_map(tile, metrics):
                 f"Material '{tile.material}': its model does not store the size of its tile; enter Tile Size"
                 " in its Placement panel, or choose Repeats there."
             )
-        repeats, lengths = 1 / np.array(tile.metres), lengths / _density(settings, metrics)
+        if metrics.projected is None:
+            density = settings.density(metrics.local.density())
+        else:
+            density = np.full(2, 1 / metrics.projected)
+        repeats, lengths = 1 / np.array(tile.metres), lengths / density
     elif metrics.projected is None:
         repeats = settings.repeats
     else:  # projected coordinates have no unit square: repeats of the real tile size
@@ -107,12 +119,23 @@ def _composed(after, before):
     return np.ascontiguousarray((after @ before)[:2])
 
 
-def _density(settings, metrics):
-    """Density of u and v on the object without its scale, 1/m."""
-    if metrics.projected is not None:
-        return 1 / metrics.projected
-    given = np.array(settings.uv_density)
-    return given if given.min() > 0 else np.array(metrics.local.density())
+def place_tiles(tile, metrics, side):
+    """Sets the Repeats with which tiles on a surface have their aspect ratio and sides of a geometric mean of
+    `side` meters, whatever else places them."""
+    settings = tile.settings
+    settings.mode = "REPEATS"
+    density = np.array(_placed(tile, metrics).density()) / settings.repeats
+    settings.repeats = whole(repeats_of(side * np.array(tile.shape), density))
+
+
+def placed_side(tile, metrics):
+    """Geometric mean of the sides of tiles on a surface, in meters."""
+    return 1 / math.sqrt(math.prod(_placed(tile, metrics).density()))
+
+
+def _placed(tile, metrics):
+    """UvMetric of tile coordinates on a surface."""
+    return metrics.world.placed(tile_map(tile, metrics))
 
 
 def lie_on(tile, metrics, uv_map):
@@ -133,6 +156,13 @@ def missing_coordinates(obj, material_name):
         f"Object '{obj.name}': its UV map is missing or has no extent, so one point of material"
         f" '{material_name}' covers all of it. Unwrap it, or choose another material."
     )
+
+
+def uv_problem(obj, shown, material_name):
+    """What a ShownSurface lacks to place tiles as its user wants; "" if nothing."""
+    if shown.metrics is None:
+        return missing_coordinates(obj, material_name)
+    return projected_onto(obj, material_name) if shown.is_projected else ""
 
 
 def projected_onto(obj, material_name):

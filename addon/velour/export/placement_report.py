@@ -9,13 +9,7 @@ from ..core.placement import LARGEST_STRETCH
 from .camera_texels import texels_per_pixel
 from .meshes import has_uv_maps, triangle_faces
 from .notes import ExportError
-from .placement import (
-    lie_on,
-    missing_coordinates,
-    projected_onto,
-    stretch_sentence,
-    tile_map,
-)
+from .placement import lie_on, projected_onto, stretch_sentence, tile_map, uv_problem
 from .shown_surface import ShownSurface
 
 _SAME = 0.005  # relative deviation from real size that is not visible
@@ -29,10 +23,11 @@ class PlacementReport(NamedTuple):
 def report_on(depsgraph, obj, material, tile):
     """PlacementReport of an original object that shows `material`, whose Tile is `tile`."""
     shown = ShownSurface.of(depsgraph, obj, material)
-    metrics = shown.metrics
+    metrics, problem = shown.metrics, uv_problem(obj, shown, material.name)
+    warnings = (problem,) if problem else ()
     if metrics is None:
-        return PlacementReport((), (missing_coordinates(obj, material.name),))
-    rows, warnings = [_density_row(metrics)], _warnings(obj, material, shown.is_projected)
+        return PlacementReport((), warnings)
+    rows = [_density_row(metrics)]
     try:
         uv_map = tile_map(tile, metrics)
     except ExportError as error:
@@ -49,21 +44,15 @@ def report_on(depsgraph, obj, material, tile):
 def uv_density_on(depsgraph, obj, material):
     """UV density without the object's scale, 1/m. Raises ExportError if there is no UV map."""
     shown = ShownSurface.of(depsgraph, obj, material)
-    if shown.metrics is None:
-        raise ExportError(missing_coordinates(obj, material.name))
-    if shown.is_projected:
-        raise ExportError(projected_onto(obj, material.name))
+    if problem := uv_problem(obj, shown, material.name):
+        raise ExportError(problem)
     return shown.metrics.local.density()
 
 
 def report_on_brushed(depsgraph, obj, material):
     """PlacementReport of an anisotropic material, which has no tile."""
     is_projected = not has_uv_maps(obj.evaluated_get(depsgraph))
-    return PlacementReport((), _warnings(obj, material, is_projected))
-
-
-def _warnings(obj, material, is_projected):
-    return (projected_onto(obj, material.name),) if is_projected else ()
+    return PlacementReport((), (projected_onto(obj, material.name),) if is_projected else ())
 
 
 def _of_faces(shown, values):

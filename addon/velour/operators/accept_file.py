@@ -1,7 +1,6 @@
 """Accepts a file that has changed on disk."""
 
 import bpy
-from bpy.props import StringProperty
 
 from ..export import ExportError
 from ..export.files import StoredFile, sha256
@@ -13,15 +12,11 @@ from .reads_first import ReadsFirst
 _MEASUREMENT = "measurement"
 
 
-class VELOUR_OT_accept_file(ReadsFirst, bpy.types.Operator):
+class VELOUR_OT_accept_file(measured.OfMaterial, ReadsFirst, bpy.types.Operator):
     bl_idname = "velour.accept_file"
     bl_label = "Accept Changed File"
     bl_description = "Accept the model and measurement files as they are on disk now"
     bl_options = {"UNDO"}
-
-    material: StringProperty(
-        name="Material", description="Name of the material. Empty: the active one", options={"SKIP_SAVE"}
-    )
 
     def _read(self, context):
         material = measured.find_material(context, self.material)

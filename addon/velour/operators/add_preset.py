@@ -1,16 +1,16 @@
 """Adds one of the preset materials."""
 
 import bpy
-from bpy.props import BoolProperty, IntProperty, StringProperty
+from bpy.props import BoolProperty, StringProperty
 
 from ..core import presets
 from ..core.files import read_bytes
 from ..native import Model, VelourError
 from . import measured
-from .slots import SlotTarget
+from .slots import PutsInSlot, SlotTarget
 
 
-class VELOUR_OT_add_preset(bpy.types.Operator):
+class VELOUR_OT_add_preset(PutsInSlot, bpy.types.Operator):
     bl_idname = "velour.add_preset"
     bl_label = "Add Preset Material"
     bl_description = "Add a preset material and put it into the active slot"
@@ -25,14 +25,6 @@ class VELOUR_OT_add_preset(bpy.types.Operator):
     )
     assign: BoolProperty(
         name="Assign", description="Put the material into a slot", default=True, options={"SKIP_SAVE"}
-    )
-    object: StringProperty(
-        name="Object",
-        description="Object that gets the material. Empty: the active one",
-        options={"HIDDEN", "SKIP_SAVE"},
-    )
-    slot: IntProperty(
-        name="Slot", description="Index of the material slot, from 0", min=0, options={"HIDDEN", "SKIP_SAVE"}
     )
 
     def execute(self, context):

@@ -1,7 +1,6 @@
 """Approximates a measured material: in the background or, without a window, synchronously."""
 
 import bpy
-from bpy.props import StringProperty
 
 from ..core.read_job import ReadJob
 from ..export import ExportError
@@ -51,7 +50,7 @@ class MakesModel(AsksUsers, JobsInSteps):
         return {"FINISHED"} if self._user is not None else failed
 
 
-class VELOUR_OT_approximate(JobsInSteps, bpy.types.Operator):
+class VELOUR_OT_approximate(measured.OfMaterial, JobsInSteps, bpy.types.Operator):
     bl_idname = "velour.approximate"
     bl_label = "Approximate"
     bl_description = (
@@ -59,10 +58,6 @@ class VELOUR_OT_approximate(JobsInSteps, bpy.types.Operator):
         " your own are not changed"
     )
     bl_options = {"UNDO"}
-
-    material: StringProperty(
-        name="Material", description="Name of the material. Empty: the active one", options={"SKIP_SAVE"}
-    )
 
     _what = "The approximation"
 

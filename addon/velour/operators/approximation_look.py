@@ -6,6 +6,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ..core.approximation_look import Look, dyed, with_look
+from ..core.placement import repeats_of
 from ..export.color import rec709_to_working
 from ..export.measured_look import constant_look
 from ..export.nodes import (
@@ -121,7 +122,7 @@ def _place(node):
             if part.bl_idname in ("ShaderNodeTangent", "ShaderNodeNormalMap"):
                 _set(part, "uv_map", placed_by(node))
             elif part.label == HEIGHT:
-                height = fitted(group.node_tree)["height"] / (placement.uv_density[0] or 1.0)
+                height = fitted(group.node_tree)["height"] / placement.density()[0]
                 _set(part.inputs[1], "default_value", height)
 
 
@@ -139,13 +140,10 @@ def set_value(shader, name, value):
 
 
 def _repeats(placement, metres):
-    """Repeats per unit of texture coordinates. For real-size tiles that is 1 m, unless a density is set."""
+    """Repeats per unit of texture coordinates."""
     if placement.mode == "REPEATS":
         return tuple(placement.repeats)
-    entered = tuple(1e-3 * side for side in placement.tile_size)
-    sides = entered if min(entered) > 0 else metres or (1.0, 1.0)
-    density = placement.uv_density if min(placement.uv_density) > 0 else (1.0, 1.0)
-    return tuple(1.0 / (side * d) for side, d in zip(sides, density, strict=True))
+    return repeats_of(placement.tile_metres(metres) or (1.0, 1.0), placement.density())
 
 
 def _set(owner, name, value):

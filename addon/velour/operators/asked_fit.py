@@ -13,7 +13,7 @@ from ..export.nodes import velour_node
 from ..native import Btf
 from ..properties.btf_fit_settings import METHODS, NAMES, SHAPE_OF
 from . import measured
-from .tiles import capture_folder, find_tile
+from .tiles import OfTile, capture_folder, find_tile
 
 
 class Chosen(NamedTuple):
@@ -33,7 +33,7 @@ class Chosen(NamedTuple):
         return functools.partial(stored._replace(expected="").raw, Btf)
 
 
-class AskedFit:
+class AskedFit(OfTile):
     """Operator mixin with the parameters of a BTF fit."""
 
     _keeps = True  # stores given properties in the settings of the tile or the material
@@ -42,11 +42,6 @@ class AskedFit:
         name="BTF",
         subtype="FILE_PATH",
         description="Folder, CSV index or .btf file of a BTF. Empty: the captured BTF of the tile",
-        options={"SKIP_SAVE"},
-    )
-    collection: StringProperty(
-        name="Collection",
-        description="Collection that is the tile. Empty: the active object",
         options={"SKIP_SAVE"},
     )
     material: StringProperty(

@@ -8,7 +8,7 @@ from bpy.props import IntProperty, StringProperty
 from ..export import ExportError
 from ..export.tiles import TileSource, export_tile
 from . import measured
-from .tiles import find_tile, tile_of
+from .tiles import OfTile, find_tile, tile_of
 
 
 class Asked(NamedTuple):
@@ -18,22 +18,14 @@ class Asked(NamedTuple):
     texels: int
 
 
-class AskedOutline:
+class AskedOutline(measured.OfMaterial, OfTile):
     """Operator mixin with the parameters of a VOTF."""
 
     _keeps = True  # stores given properties in the settings of the material
 
-    material: StringProperty(
-        name="Material", description="Name of the material. Empty: the active one", options={"SKIP_SAVE"}
-    )
     structure: StringProperty(
         name="Structure",
         description="Object that is the tile. Empty: the structure that is set in the material",
-        options={"SKIP_SAVE"},
-    )
-    collection: StringProperty(
-        name="Collection",
-        description="Collection that is the tile, instead of an object",
         options={"SKIP_SAVE"},
     )
     texels: IntProperty(name="Texels", min=4, max=4096, default=128, options={"SKIP_SAVE"})

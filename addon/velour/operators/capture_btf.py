@@ -11,24 +11,27 @@ from ..export.tiles import export_tile
 from ..native import capture_job
 from ..properties.tile_settings import SIDES
 from .background_job import OneJob
-from .tiles import CAPTURE_NUMBERS, capture_folder, capture_options, find_tile, held_out_folder, new_folder
+from .tiles import (
+    CAPTURE_NUMBERS,
+    OfTile,
+    capture_folder,
+    capture_options,
+    find_tile,
+    held_out_folder,
+    new_folder,
+)
 
 _NEW_FOLDER = "Capture into a new folder. The previous capture is kept"
 _SETTINGS = ("directory", *CAPTURE_NUMBERS, "sides", "use_approximate")
 
 
-class VELOUR_OT_capture_btf(OneJob, bpy.types.Operator):
+class VELOUR_OT_capture_btf(OfTile, OneJob, bpy.types.Operator):
     bl_idname = "velour.capture_btf"
     bl_label = "Capture BTF"
     bl_description = (
         "Render the endlessly repeated tile from all views under all lights, and write the BTF to a folder"
     )
 
-    collection: StringProperty(
-        name="Collection",
-        description="Collection that is the tile. Empty: the active object",
-        options={"SKIP_SAVE"},
-    )
     # If set, these replace the settings of the tile.
     directory: StringProperty(name="Folder", subtype="DIR_PATH", options={"SKIP_SAVE"})
     texels: IntProperty(name="Texels", min=1, default=64, options={"SKIP_SAVE"})

@@ -1,7 +1,7 @@
 """Compares a material's measurement and its model side by side in an image."""
 
 import bpy
-from bpy.props import FloatProperty, IntProperty, StringProperty
+from bpy.props import FloatProperty, IntProperty
 
 from ..export.color import rec709_pixels_to_working
 from ..export.files import absolute_path, file_stamp
@@ -11,16 +11,13 @@ from .comparison import Comparison
 from .shown_image import all_made, made_image, show
 
 
-class VELOUR_OT_compare(JobsInSteps, bpy.types.Operator):
+class VELOUR_OT_compare(measured.OfMaterial, JobsInSteps, bpy.types.Operator):
     bl_idname = "velour.compare"
     bl_label = "Compare with Measurement"
     bl_description = (
         "Show a ball with the measurement, with the model, and their difference in an Image Editor"
     )
 
-    material: StringProperty(
-        name="Material", description="Name of the material. Empty: the active one", options={"SKIP_SAVE"}
-    )
     side: IntProperty(
         name="Size", description="Width and height of each image in pixels", default=512, min=64, max=4096
     )

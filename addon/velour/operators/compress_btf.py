@@ -7,7 +7,7 @@ import os
 from pathlib import Path
 
 import bpy
-from bpy.props import BoolProperty, IntProperty, StringProperty
+from bpy.props import BoolProperty
 
 from ..core.fit_time import fit_of, remember
 from ..core.read_job import ReadJob, check
@@ -20,11 +20,11 @@ from . import measured
 from .approximate import MakesModel
 from .asked_fit import AskedFit, keep, options_of
 from .job_target import JobOwner, JobTarget
-from .slots import SlotTarget
+from .slots import PutsInSlot, SlotTarget
 from .tiles import held_out_folder
 
 
-class VELOUR_OT_compress_btf(AskedFit, MakesModel, bpy.types.Operator):
+class VELOUR_OT_compress_btf(AskedFit, PutsInSlot, MakesModel, bpy.types.Operator):
     bl_idname = "velour.compress_btf"
     bl_label = "Make Material from BTF"
     bl_description = (
@@ -36,14 +36,6 @@ class VELOUR_OT_compress_btf(AskedFit, MakesModel, bpy.types.Operator):
         name="Assign",
         description="Put the material into the given slot, or else the active slot",
         options={"SKIP_SAVE"},
-    )
-    object: StringProperty(
-        name="Object",
-        description="Object that gets the material. Empty: the active one",
-        options={"SKIP_SAVE"},
-    )
-    slot: IntProperty(
-        name="Slot", description="Index of the material slot, from 0", min=0, options={"SKIP_SAVE"}
     )
 
     _what = "Making the material"

@@ -1,7 +1,7 @@
 """Displaces surfaces by the relief of a BTF in Cycles."""
 
 import bpy
-from bpy.props import BoolProperty, StringProperty
+from bpy.props import BoolProperty
 
 from ..export import ExportError
 from ..export.nodes import active_output
@@ -9,7 +9,7 @@ from . import approximation_group, measured
 from .approximation_image import images_of
 
 
-class VELOUR_OT_displace(bpy.types.Operator):
+class VELOUR_OT_displace(measured.OfMaterial, bpy.types.Operator):
     bl_idname = "velour.displace"
     bl_label = "Displace by Relief"
     bl_description = (
@@ -19,9 +19,6 @@ class VELOUR_OT_displace(bpy.types.Operator):
     bl_options = {"REGISTER", "UNDO"}
 
     enable: BoolProperty(name="Displace", default=True)
-    material: StringProperty(
-        name="Material", description="Name of the material. Empty: the active one", options={"SKIP_SAVE"}
-    )
 
     def execute(self, context):
         try:

@@ -5,25 +5,18 @@ import tempfile
 from types import SimpleNamespace
 
 import bpy
-from bpy.props import StringProperty
 
 from ..core.capture_size import Timed, capture_text, probes, spread
 from ..export.tiles import export_tile
 from ..native import capture_job
 from .background_job import JobsInSteps
-from .tiles import CAPTURE_NUMBERS, capture_options, captured_as, find_tile
+from .tiles import CAPTURE_NUMBERS, OfTile, capture_options, captured_as, find_tile
 
 
-class VELOUR_OT_estimate_capture(JobsInSteps, bpy.types.Operator):
+class VELOUR_OT_estimate_capture(OfTile, JobsInSteps, bpy.types.Operator):
     bl_idname = "velour.estimate_capture"
     bl_label = "Estimate"
     bl_description = "Estimate time, memory and disk space of the capture from two small captures"
-
-    collection: StringProperty(
-        name="Collection",
-        description="Collection that is the tile. Empty: the active object",
-        options={"SKIP_SAVE"},
-    )
 
     _what = "The estimate"
 

@@ -1,7 +1,7 @@
 """Fits a model to a material's measurement: in the background or, without a window, synchronously."""
 
 import bpy
-from bpy.props import EnumProperty, FloatProperty, IntProperty, StringProperty
+from bpy.props import EnumProperty, FloatProperty, IntProperty
 
 from ..core import verdict
 from ..core.model_warnings import panel_warnings
@@ -18,15 +18,12 @@ from .job_target import JobTarget
 _SETTINGS = ("model", "tolerance", "max_lobes", "kernel", "seed")
 
 
-class VELOUR_OT_fit(MakesModel, bpy.types.Operator):
+class VELOUR_OT_fit(measured.OfMaterial, MakesModel, bpy.types.Operator):
     bl_idname = "velour.fit"
     bl_label = "Fit"
     bl_description = "Fit a model to the material's measurement. The previous model is kept"
     bl_options = {"UNDO"}
 
-    material: StringProperty(
-        name="Material", description="Name of the material. Empty: the active one", options={"SKIP_SAVE"}
-    )
     # If set, these replace the settings of the material.
     model: EnumProperty(name="Model", items=MODELS, default="PARAMETRIC", options={"SKIP_SAVE"})
     tolerance: FloatProperty(name="Max Error", min=0.0005, max=1.0, default=0.02, options={"SKIP_SAVE"})

@@ -3,7 +3,7 @@
 import time
 
 import bpy
-from bpy.props import BoolProperty, StringProperty
+from bpy.props import BoolProperty
 
 from ..core.model_warnings import panel_warnings
 from ..export import ExportError
@@ -16,7 +16,7 @@ _OBSERVING = 0.5  # share of the progress bar for observing frames
 _TICK_SECONDS = 0.1  # spent on observing frames per timer event, to keep the window responsive
 
 
-class VELOUR_OT_fit_for_scene(BackgroundJob, bpy.types.Operator):
+class VELOUR_OT_fit_for_scene(measured.OfMaterial, BackgroundJob, bpy.types.Operator):
     bl_idname = "velour.fit_for_scene"
     bl_label = "Fit for This Scene"
     bl_description = (
@@ -25,9 +25,6 @@ class VELOUR_OT_fit_for_scene(BackgroundJob, bpy.types.Operator):
     )
     bl_options = {"UNDO"}
 
-    material: StringProperty(
-        name="Material", description="Name of the material. Empty: the active one", options={"SKIP_SAVE"}
-    )
     current_frame: BoolProperty(
         name="Current Frame Only",
         description="Use the current frame instead of the scene's frame range",

@@ -4,7 +4,7 @@ import os
 from typing import NamedTuple
 
 import bpy
-from bpy.props import BoolProperty, CollectionProperty, IntProperty, StringProperty
+from bpy.props import BoolProperty, CollectionProperty, StringProperty
 from bpy_extras.io_utils import ImportHelper
 
 from ..core.files import read_bytes
@@ -17,7 +17,7 @@ from ..export.other_context import other_context
 from ..native import VelourError, library
 from . import measured
 from .background_job import OneJob
-from .slots import SlotTarget, slot_under
+from .slots import PutsInSlot, SlotTarget, slot_under
 
 _MOST_SENTENCES = 10  # in a report
 
@@ -66,7 +66,7 @@ def _find(paths):
     return found, sentences
 
 
-class VELOUR_OT_load_material(OneJob, bpy.types.Operator, ImportHelper):
+class VELOUR_OT_load_material(PutsInSlot, OneJob, bpy.types.Operator, ImportHelper):
     bl_idname = "velour.load_material"
     bl_label = "Import Material"
     bl_description = "Import materials from model files (.velour) or measurements (MERL, RGL, Cornell, BTFs)"
@@ -87,14 +87,6 @@ class VELOUR_OT_load_material(OneJob, bpy.types.Operator, ImportHelper):
 
     assign: BoolProperty(
         name="Assign", description="Put the first material into a slot", default=True, options={"SKIP_SAVE"}
-    )
-    object: StringProperty(
-        name="Object",
-        description="Object that gets the material. Empty: the active one",
-        options={"HIDDEN", "SKIP_SAVE"},
-    )
-    slot: IntProperty(
-        name="Slot", description="Index of the material slot, from 0", min=0, options={"HIDDEN", "SKIP_SAVE"}
     )
 
     _what = "The import"

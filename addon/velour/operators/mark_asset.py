@@ -13,15 +13,12 @@ _SIDE, _SAMPLES = 256, 256
 _TEXTS = ("author", "license", "description")
 
 
-class VELOUR_OT_mark_asset(JobsInSteps, bpy.types.Operator):
+class VELOUR_OT_mark_asset(measured.OfMaterial, JobsInSteps, bpy.types.Operator):
     bl_idname = "velour.mark_asset"
     bl_label = "Mark as Asset"
     bl_description = "Mark the material as an asset, with a preview of it on a ball"
     bl_options = {"UNDO"}
 
-    material: StringProperty(
-        name="Material", description="Name of the material. Empty: the active one", options={"SKIP_SAVE"}
-    )
     # Properties that are not set remain unchanged.
     author: StringProperty(name="Author", options={"SKIP_SAVE"})
     license: StringProperty(name="License", options={"SKIP_SAVE"})

@@ -4,6 +4,7 @@ import os
 from typing import NamedTuple
 
 import bpy
+from bpy.props import StringProperty
 
 from ..core.measurement_files import INDICES
 from ..export import ExportError
@@ -11,6 +12,14 @@ from ..export.files import StoredFile, absolute_path, sha256
 from ..export.nodes import velour_node
 from . import approximation_group, measured_group
 from .convert import convert
+
+
+class OfMaterial:
+    """Mixin for an operator that works on a material, by name or the active one."""
+
+    material: StringProperty(
+        name="Material", description="Name of the material. Empty: the active one", options={"SKIP_SAVE"}
+    )
 
 
 def find_material(context, name):

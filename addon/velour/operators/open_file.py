@@ -22,14 +22,11 @@ _NAMES = {
 _MODELS = ".velour"
 
 
-class _OpensFile(ReadsFirst, ImportHelper):
+class _OpensFile(measured.OfMaterial, ReadsFirst, ImportHelper):
     """Operator mixin. `_kinds`: accepted kinds of files; `_put(material, node, file)` takes the file
     that was read."""
 
     filepath: StringProperty(name="File", subtype="FILE_PATH", options={"SKIP_SAVE"})
-    material: StringProperty(
-        name="Material", description="Name of the material. Empty: the active one", options={"SKIP_SAVE"}
-    )
 
     _asks = False
 

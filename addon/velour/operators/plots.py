@@ -16,12 +16,9 @@ from .shown_image import made_image, show
 _KINDS_OF_FILES = (".png", ".svg", ".csv")
 
 
-class _OfMaterial(JobsInSteps):
+class _OfMaterial(measured.OfMaterial, JobsInSteps):
     """Operator mixin that makes a plot of a material. `_use(plot)` takes it."""
 
-    material: StringProperty(
-        name="Material", description="Name of the material. Empty: the active one", options={"SKIP_SAVE"}
-    )
     kind: plot_kind()
     view: plot_view()
     azimuth: plot_azimuth()

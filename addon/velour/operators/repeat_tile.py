@@ -7,17 +7,16 @@ drivers are simple expressions, which work even if files may not run Python. A n
 import contextlib
 
 import bpy
-from bpy.props import StringProperty
 from mathutils import Vector
 
 from ..export import ExportError
 from ..properties import changed
-from .tiles import find_tile, tile_of
+from .tiles import OfTile, find_tile, tile_of
 
 _AROUND = [(x, y) for y in (-1, 0, 1) for x in (-1, 0, 1) if (x, y) != (0, 0)]
 
 
-class VELOUR_OT_repeat_tile(bpy.types.Operator):
+class VELOUR_OT_repeat_tile(OfTile, bpy.types.Operator):
     bl_idname = "velour.repeat_tile"
     bl_label = "Show Repeats"
     bl_description = (
@@ -25,12 +24,6 @@ class VELOUR_OT_repeat_tile(bpy.types.Operator):
         " spaced by the current bounding box"
     )
     bl_options = {"REGISTER", "UNDO"}
-
-    collection: StringProperty(
-        name="Collection",
-        description="Collection that is the tile. Empty: the active object",
-        options={"SKIP_SAVE"},
-    )
 
     @classmethod
     def poll(cls, context):

@@ -11,16 +11,13 @@ from ..export.nodes import velour_node
 from . import measured
 
 
-class VELOUR_OT_save_model(bpy.types.Operator, ExportHelper):
+class VELOUR_OT_save_model(measured.OfMaterial, bpy.types.Operator, ExportHelper):
     bl_idname = "velour.save_model"
     bl_label = "Save Model"
     bl_description = "Save the material's model to a file. The material keeps its own copy"
 
     filename_ext = ".velour"
     filter_glob: StringProperty(default="*.velour", options={"HIDDEN"})
-    material: StringProperty(
-        name="Material", description="Name of the material. Empty: the active one", options={"SKIP_SAVE"}
-    )
     for_scene: BoolProperty(
         name="Scene Model",
         description="Save the scene model instead of the full model",

@@ -1,10 +1,9 @@
 """The material slot that an operator puts its material into: a named one or the active one."""
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 import bpy
+from bpy.props import IntProperty, StringProperty
 from bpy_extras import view3d_utils
 from mathutils import Vector
 
@@ -67,6 +66,19 @@ def takes_materials(obj) -> bool:
     return obj is not None and hasattr(obj.data, "materials") and obj.library is None
 
 
+class PutsInSlot:
+    """Mixin for an operator that puts its material into a slot; whether it does is its property `assign`."""
+
+    object: StringProperty(
+        name="Object",
+        description="Object that gets the material. Empty: the active one",
+        options={"HIDDEN", "SKIP_SAVE"},
+    )
+    slot: IntProperty(
+        name="Slot", description="Index of the material slot, from 0", min=0, options={"HIDDEN", "SKIP_SAVE"}
+    )
+
+
 class SlotTarget:
     """A slot that is fixed when a job begins, regardless of selection, renaming and undo until it ends."""
 
@@ -82,7 +94,7 @@ class SlotTarget:
 
     @classmethod
     def asked(cls, context, operator):
-        """Uses the properties `assign`, `object` and `slot` of an operator; None: no slot is wanted."""
+        """Uses the properties of a PutsInSlot; None: no slot is wanted."""
         if not operator.assign:
             return None
         return cls(context, Slot(operator.object, operator.slot) if operator.object else None)

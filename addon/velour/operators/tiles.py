@@ -6,12 +6,23 @@ import re
 import shutil
 
 import bpy
+from bpy.props import StringProperty
 
 from ..export import ExportError
 from ..export.tiles import collection_tile, object_tile
 from ..native import directions
 
 CAPTURE_NUMBERS = ("texels", "views", "lights", "samples", "bounces")
+
+
+class OfTile:
+    """Mixin for an operator that works on a tile."""
+
+    collection: StringProperty(
+        name="Collection",
+        description="Collection that is the tile, instead of an object",
+        options={"SKIP_SAVE"},
+    )
 
 
 def find_tile(context, collection_name):

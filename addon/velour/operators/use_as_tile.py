@@ -1,23 +1,17 @@
 """Shows the settings of a mesostructure for an object or a collection."""
 
 import bpy
-from bpy.props import StringProperty
 
 from ..export import ExportError
 from ..export.objects import GEOMETRY
+from .tiles import OfTile
 
 
-class VELOUR_OT_use_as_tile(bpy.types.Operator):
+class VELOUR_OT_use_as_tile(OfTile, bpy.types.Operator):
     bl_idname = "velour.use_as_tile"
     bl_label = "Use as Mesostructure"
     bl_description = "Show the settings that capture this geometry as the tile of a material"
     bl_options = {"REGISTER", "UNDO"}
-
-    collection: StringProperty(
-        name="Collection",
-        description="Collection that is the tile. Empty: the active object",
-        options={"SKIP_SAVE"},
-    )
 
     def execute(self, context):
         try:

@@ -115,3 +115,13 @@ class VelourPlacementSettings(bpy.types.PropertyGroup):
     @property
     def keeps_size(self):
         return getattr(self, self.scale_property) == "KEEP"
+
+    def tile_metres(self, own):
+        """Width and height of a tile in meters: the entered ones, or else `own`, the BTF's or None."""
+        entered = tuple(1e-3 * side for side in self.tile_size)
+        return entered if min(entered) > 0 else own
+
+    def density(self, measured=(1.0, 1.0)):
+        """UV density without the object's scale, 1/m: the entered one, or else `measured`. Without an object,
+        as in nodes for other engines, a unit of texture coordinates is a meter."""
+        return tuple(self.uv_density) if min(self.uv_density) > 0 else tuple(measured)

@@ -2,18 +2,11 @@
 
 import bpy
 
-from ..engine.engine import VelourRenderEngine
+from .properties_panel import PropertiesPanel
 
 
-class LayerPanel:
-    bl_space_type = "PROPERTIES"
-    bl_region_type = "WINDOW"
+class LayerPanel(PropertiesPanel):
     bl_context = "view_layer"
-    COMPAT_ENGINES = {VelourRenderEngine.bl_idname}
-
-    @classmethod
-    def poll(cls, context):
-        return context.engine in cls.COMPAT_ENGINES
 
 
 class VELOUR_VIEWLAYER_PT_filter(LayerPanel, bpy.types.Panel):

@@ -2,21 +2,18 @@
 
 import bpy
 
-from ..engine.engine import VelourRenderEngine
+from .properties_panel import PropertiesPanel
 
 _NEWER_POWER = ("exposure", "normalize")  # 4.5 and newer
 
 
-class VELOUR_LIGHT_PT_light(bpy.types.Panel):
+class VELOUR_LIGHT_PT_light(PropertiesPanel, bpy.types.Panel):
     bl_label = "Light"
-    bl_space_type = "PROPERTIES"
-    bl_region_type = "WINDOW"
     bl_context = "data"
-    COMPAT_ENGINES = {VelourRenderEngine.bl_idname}
 
     @classmethod
     def poll(cls, context):
-        return context.engine in cls.COMPAT_ENGINES and context.light is not None
+        return super().poll(context) and context.light is not None
 
     def draw(self, context):
         layout, light = self.layout, context.light

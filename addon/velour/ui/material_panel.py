@@ -4,7 +4,6 @@ import bpy
 
 from ..core import verdict
 from ..core.model_warnings import gain_warning, roughness_reason
-from ..engine.engine import VelourRenderEngine
 from ..export.measured_look import INPUTS, constant_look
 from ..export.newer import has_nodes
 from ..export.nodes import active_output, former_node, velour_node
@@ -24,22 +23,20 @@ from ..operators.use_as_tile import VELOUR_OT_use_as_tile
 from .draw_btf_fit import draw_btf_fit
 from .preset_grid import draw_presets
 from .progress import draw_progress
+from .properties_panel import PropertiesPanel
 from .summaries import is_changed, measurement_summary, model_summary
 from .text import draw_sentence
 
 _LOOK = ("Tint", "Exposure", "Roughness Offset", "Normal", "Scale")
 
 
-class MaterialPanel:
-    bl_space_type = "PROPERTIES"
-    bl_region_type = "WINDOW"
+class MaterialPanel(PropertiesPanel):
     bl_context = "material"
-    COMPAT_ENGINES = {VelourRenderEngine.bl_idname}
 
     @classmethod
     def poll(cls, context):
         is_there = context.object is not None or context.material is not None  # pinned ones have no object
-        return context.engine in cls.COMPAT_ENGINES and is_there
+        return super().poll(context) and is_there
 
 
 class VELOUR_MATERIAL_PT_measured(MaterialPanel, bpy.types.Panel):

@@ -3,12 +3,12 @@
 import bpy
 
 from ..engine import denoising
-from ..engine.engine import VelourRenderEngine
 from ..handlers.saved_files import newer_sentence
 from ..operators.check_scene import VELOUR_OT_check_scene
 from ..operators.copy_cycles_settings import VELOUR_OT_copy_cycles_settings
 from ..operators.sampling_preset import PRESETS, VELOUR_OT_sampling_preset
 from . import library_state
+from .properties_panel import PropertiesPanel
 from .text import draw_sentence
 
 _COMPOSITOR = (  # 4.3 and newer; denoising: 5.2 and newer
@@ -20,15 +20,8 @@ _COMPOSITOR = (  # 4.3 and newer; denoising: 5.2 and newer
 )
 
 
-class _RenderPanel:
-    bl_space_type = "PROPERTIES"
-    bl_region_type = "WINDOW"
+class _RenderPanel(PropertiesPanel):
     bl_context = "render"
-    COMPAT_ENGINES = {VelourRenderEngine.bl_idname}
-
-    @classmethod
-    def poll(cls, context):
-        return context.engine in cls.COMPAT_ENGINES
 
 
 class VELOUR_RENDER_PT_library(_RenderPanel, bpy.types.Panel):

@@ -4,7 +4,6 @@ import bpy
 
 from ..core.capture_size import capture_bytes, pairs_bytes
 from ..core.sizes import data_size
-from ..engine.engine import VelourRenderEngine
 from ..export.nodes import velour_node
 from ..export.objects import GEOMETRY
 from ..operators.add_votf import VELOUR_OT_add_votf
@@ -17,21 +16,18 @@ from ..operators.tiles import captured_as, is_temporary
 from .draw_btf_fit import ESTIMATE, draw_fit_buttons, draw_fit_settings
 from .draw_plot import draw_chosen, draw_plot
 from .progress import draw_progress
+from .properties_panel import PropertiesPanel
 from .summaries import model_summary
 from .text import draw_sentence
 from .tile_steps import steps
 
 
-class TilePanel:
+class TilePanel(PropertiesPanel):
     """Mixin for a panel of the object or the collection that is a tile; a tab gives it `_owner`."""
-
-    bl_space_type = "PROPERTIES"
-    bl_region_type = "WINDOW"
-    COMPAT_ENGINES = {VelourRenderEngine.bl_idname}
 
     @classmethod
     def poll(cls, context):
-        return context.engine in cls.COMPAT_ENGINES and cls._owner(context) is not None
+        return super().poll(context) and cls._owner(context) is not None
 
     def draw(self, context):
         layout, owner = self.layout, self._owner(context)

@@ -2,16 +2,13 @@
 
 import bpy
 
-from ..engine.engine import VelourRenderEngine
 from ..export.objects import GEOMETRY
+from .properties_panel import PropertiesPanel
 from .text import draw_sentence
 
 
-class _VisibilityPanel:
+class _VisibilityPanel(PropertiesPanel):
     bl_label = "Ray Visibility"
-    bl_space_type = "PROPERTIES"
-    bl_region_type = "WINDOW"
-    COMPAT_ENGINES = {VelourRenderEngine.bl_idname}
 
 
 class VELOUR_OBJECT_PT_ray_visibility(_VisibilityPanel, bpy.types.Panel):
@@ -21,7 +18,7 @@ class VELOUR_OBJECT_PT_ray_visibility(_VisibilityPanel, bpy.types.Panel):
     @classmethod
     def poll(cls, context):
         obj = context.object
-        return context.engine in cls.COMPAT_ENGINES and obj is not None and obj.type in GEOMETRY
+        return super().poll(context) and obj is not None and obj.type in GEOMETRY
 
     def draw(self, context):
         layout, obj = self.layout, context.object
@@ -47,7 +44,7 @@ class VELOUR_WORLD_PT_ray_visibility(_VisibilityPanel, bpy.types.Panel):
     @classmethod
     def poll(cls, context):
         has_switch = hasattr(context.world, "cycles_visibility")  # stored with Cycles, while it is enabled
-        return context.engine in cls.COMPAT_ENGINES and has_switch
+        return super().poll(context) and has_switch
 
     def draw(self, context):
         self.layout.use_property_split = True

@@ -24,10 +24,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         required=True,
         help="BTF folder to write; with --microsurface: measurement file",
     )
-    parser.add_argument("--seed", type=numbers.seed, metavar="K", help="random seed")
-    parser.add_argument(
-        "--threads", type=numbers.whole(0, 1024), metavar="T", help="number of threads (0: all)"
-    )
+    numbers.add_job_arguments(parser)
     parser.add_argument(
         "--roughness",
         type=numbers.real(0, 1),

@@ -58,10 +58,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         metavar="FULL",
         help="with --for-scene: the full model to start from (default: fitted first)",
     )
-    parser.add_argument("--seed", type=numbers.seed, metavar="K", help="random seed")
-    parser.add_argument(
-        "--threads", type=numbers.whole(0, 1024), metavar="T", help="number of threads (0: all)"
-    )
+    numbers.add_job_arguments(parser)
     tensors = parser.add_argument_group("clustered tensors")
     tensors.add_argument(
         "--clusters", type=numbers.whole(1, 256), metavar="C",

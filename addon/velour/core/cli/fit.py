@@ -64,10 +64,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--all-data", action="store_true", help="hold out no data for validation (for production)"
     )
-    parser.add_argument("--seed", type=numbers.seed, metavar="K", help="random seed")
-    parser.add_argument(
-        "--threads", type=numbers.whole(0, 1024), metavar="T", help="number of threads (0: all)"
-    )
+    numbers.add_job_arguments(parser)
     parser.add_argument(
         "--for-scene", metavar="SCENE.json",
         help="fit a parametric scene model for this scene usage (written by velour observe)",

@@ -102,3 +102,9 @@ def camera(text: str) -> Camera:
             f"the field of view is {values[6]:g} degrees; it must be between 0 and 180"
         )
     return Camera(values[:3], values[3:6], math.radians(values[6]))
+
+
+def add_job_arguments(parser: argparse.ArgumentParser) -> None:
+    """Adds the options of every command that computes."""
+    parser.add_argument("--seed", type=seed, metavar="K", help="random seed")
+    parser.add_argument("--threads", type=whole(0, 1024), metavar="T", help="number of threads (0: all)")

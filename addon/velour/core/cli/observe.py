@@ -25,10 +25,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "--merge", action="append", default=[], metavar="OTHER.json",
         help="add the scene usage in another file; may be repeated",
     )  # fmt: skip
-    parser.add_argument("--seed", type=numbers.seed, metavar="K", help="random seed")
-    parser.add_argument(
-        "--threads", type=numbers.whole(0, 1024), metavar="T", help="number of threads (0: all)"
-    )
+    numbers.add_job_arguments(parser)
 
 
 def run(args: argparse.Namespace) -> dict:

@@ -73,10 +73,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--sequence", choices=table.SEQUENCES, help="sequence of random numbers (default: sobol)"
     )
-    parser.add_argument("--seed", type=numbers.seed, metavar="K", help="random seed")
-    parser.add_argument(
-        "--threads", type=numbers.whole(0, 1024), metavar="T", help="number of threads (0: all)"
-    )
+    numbers.add_job_arguments(parser)
     parser.add_argument(
         "--time-limit",
         type=numbers.real(0, 1e9),

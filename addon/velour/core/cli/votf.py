@@ -45,10 +45,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         help="number of views in which the result is compared with traced rays, or with a BTF's own views"
         " (default: 64; 0: none)",
     )
-    parser.add_argument("--seed", type=numbers.seed, metavar="K", help="random seed")
-    parser.add_argument(
-        "--threads", type=numbers.whole(0, 1024), metavar="T", help="number of threads (0: all)"
-    )
+    numbers.add_job_arguments(parser)
     subject.add_place_arguments(parser.add_argument_group("meshes"))
 
 
