@@ -2,24 +2,17 @@
 
 import bpy
 
-from ..engine.engine import VelourRenderEngine
 from ..export.objects import GEOMETRY
+from .properties_panel import PropertiesPanel
 
 
-class _MotionPanel:
+class _MotionPanel(PropertiesPanel):
     bl_label = "Motion Blur"
-    bl_space_type = "PROPERTIES"
-    bl_region_type = "WINDOW"
     bl_options = {"DEFAULT_CLOSED"}
-    COMPAT_ENGINES = {VelourRenderEngine.bl_idname}
 
 
 class VELOUR_RENDER_PT_motion_blur(_MotionPanel, bpy.types.Panel):
     bl_context = "render"
-
-    @classmethod
-    def poll(cls, context):
-        return context.engine in cls.COMPAT_ENGINES
 
     def draw_header(self, context):
         self.layout.prop(context.scene.render, "use_motion_blur", text="")
@@ -42,7 +35,7 @@ class VELOUR_OBJECT_PT_motion_blur(_MotionPanel, bpy.types.Panel):
     def poll(cls, context):
         obj = context.object
         blurs = obj is not None and obj.type in (*GEOMETRY, "CAMERA") and hasattr(obj, "cycles")
-        return context.engine in cls.COMPAT_ENGINES and blurs
+        return super().poll(context) and blurs
 
     def draw_header(self, context):
         self.layout.prop(context.object.cycles, "use_motion_blur", text="")
