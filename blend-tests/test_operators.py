@@ -320,11 +320,14 @@ class Operators(BlenderTest):
 
 class Options(BlenderTest):
     def test_none_that_waits_is_done_again(self):
-        """Adjust Last Operation and Repeat Last would wait in the window. One step of undo is no matter."""
+        """Adjust Last Operation and Repeat Last would wait in the window. One step of undo is no matter.
+
+        Apply Material has a number to adjust, and waits only for the description of a model.
+        """
         waiting = [each for each in operators.CLASSES if issubclass(each, (BackgroundJob, ReadsFirst))]
         self.assertIn(VELOUR_OT_fit, waiting)
         names = [each.__name__ for each in waiting if "REGISTER" in getattr(each, "bl_options", ())]
-        self.assertEqual(names, [])
+        self.assertEqual(names, ["VELOUR_OT_apply_material"])
         own = {
             "fit",
             "fit_for_scene",
