@@ -6,7 +6,7 @@ import numpy as np
 
 from ..core.warning_table import sentences
 from ..native import VelourError, images
-from .color import is_data, is_linear_rec709
+from .color import is_data, is_linear_rec709, is_srgb
 from .files import absolute_path
 
 _FLOATS = (".exr", ".hdr")
@@ -18,23 +18,19 @@ def linear_file(image):
     Cycles reads such files itself, too. Blender's reader supports neither lowercase channel names nor files
     with passes, and reorients Radiance images that Cycles shows as stored.
     """
-    path = _own_file(image)
-    if path is None or image.is_dirty or not path.lower().endswith(_FLOATS):
-        return None
-    return path if is_linear_rec709(image.colorspace_settings.name) else None
+    is_read = has_own_file(image, _FLOATS) and is_linear_rec709(image.colorspace_settings.name)
+    return _own_file(image) if is_read else None
 
 
 def file_pixels(image):
-    """[height x width x 4] float32 of an OpenEXR or Radiance file, row 0 at the bottom, premultiplied.
+    """[height x width x 4] float32 of an OpenEXR or Radiance file, row 0 at the bottom, as stored.
 
     None: use Blender's pixels. Raises VelourError if Blender has none either.
     """
-    path = _own_file(image)
     space = image.colorspace_settings.name
-    if path is None or image.is_dirty or not path.lower().endswith(_FLOATS):
+    if not has_own_file(image, _FLOATS) or not (is_linear_rec709(space) or is_data(space) or is_srgb(space)):
         return None
-    if not (is_linear_rec709(space) or is_data(space)):
-        return None
+    path = _own_file(image)
     try:
         return with_alpha(images.read_picture(path, as_stored=True))
     except VelourError:
@@ -54,6 +50,17 @@ def note_header(image, notes):
         return  # reported when the pixels are read, unless Blender can read them
     for sentence in sentences(found):
         notes.add(f"Image '{image.name}': {sentence}")
+
+
+def has_own_file(image, endings=("",)):
+    """Whether Cycles reads the image's file itself, and its name has one of the endings."""
+    path = _own_file(image)
+    return path is not None and not image.is_dirty and path.lower().endswith(endings)
+
+
+def is_png(image):
+    """Whether Cycles reads a PNG file: Blender decodes one of 16 bits to floats, which Cycles does not."""
+    return has_own_file(image, ".png")
 
 
 def _own_file(image):
