@@ -56,11 +56,6 @@ def is_srgb(space_name):
     return space_name == "sRGB"
 
 
-def to_srgb(linear):
-    """Encodes linear Rec. 709 (IEC 61966-2-1)."""
-    return np.where(linear <= 0.0031308, 12.92 * linear, 1.055 * np.maximum(linear, 0) ** (1 / 2.4) - 0.055)
-
-
 def bytes_to_working(pixels, space_name):
     """Working-space values of an 8-bit image's pixels [... x channels], which Blender returns undecoded.
 

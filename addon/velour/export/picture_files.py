@@ -4,6 +4,7 @@ import os
 
 import numpy as np
 
+from ..core.srgb import encoded
 from ..core.warning_table import sentences
 from ..native import VelourError, images
 from .color import is_data, is_linear_rec709, is_srgb
@@ -22,7 +23,7 @@ def linear_file(image):
     return _own_file(image) if is_read else None
 
 
-def file_pixels(image):
+def float_pixels(image):
     """[height x width x 4] float32 of an OpenEXR or Radiance file, row 0 at the bottom, as stored.
 
     None: use Blender's pixels. Raises VelourError if Blender has none either.
@@ -30,13 +31,24 @@ def file_pixels(image):
     space = image.colorspace_settings.name
     if not has_own_file(image, _FLOATS) or not (is_linear_rec709(space) or is_data(space) or is_srgb(space)):
         return None
-    path = _own_file(image)
     try:
-        return with_alpha(images.read_picture(path, as_stored=True))
+        return with_alpha(images.read_picture(_own_file(image), as_stored=True))
     except VelourError:
         if image.size[0] == 0:
             raise
         return None
+
+
+def png_pixels(image):
+    """[height x width x 4] float32 of a PNG file, row 0 at the bottom, as stored; None: use Blender's pixels."""
+    if not has_own_file(image, ".png"):
+        return None
+    try:
+        values = with_alpha(images.read_picture(_own_file(image), as_stored=True))
+    except VelourError:
+        return None
+    values[..., :3] = encoded(values[..., :3])  # the library decodes sRGB, whatever the space is
+    return values
 
 
 def note_header(image, notes):
@@ -56,11 +68,6 @@ def has_own_file(image, endings=("",)):
     """Whether Cycles reads the image's file itself, and its name has one of the endings."""
     path = _own_file(image)
     return path is not None and not image.is_dirty and path.lower().endswith(endings)
-
-
-def is_png(image):
-    """Whether Cycles reads a PNG file: Blender decodes one of 16 bits to floats, which Cycles does not."""
-    return has_own_file(image, ".png")
 
 
 def _own_file(image):

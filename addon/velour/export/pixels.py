@@ -5,16 +5,18 @@ from typing import NamedTuple
 import bpy
 import numpy as np
 
-from .color import bytes_to_working, is_data, is_srgb, to_srgb
-from .picture_files import file_pixels, has_own_file, is_png, note_header, with_alpha
+from .color import bytes_to_working, is_data, is_linear_rec709, is_srgb
+from .picture_files import float_pixels, has_own_file, note_header, png_pixels, with_alpha
 
-_MODE_COUNTS = bpy.app.version >= (5, 2)  # Cycles multiplies by the alpha mode; before, by the kind of values
+# Cycles multiplies colors by alpha where the alpha mode says so; before, where the kind of values does.
+_MODE_COUNTS = bpy.app.version >= (5, 2)
 
 
 class _Stored(NamedTuple):
     """What Cycles starts from."""
 
     values: np.ndarray  # [height x width x 4] float32
+    are_bytes: bool
     is_encoded: bool  # not yet decoded from the image's color space
     is_straight: bool  # Cycles multiplies colors by alpha, if the alpha belongs to them
 
@@ -35,7 +37,7 @@ def working_pixels(image, notes, beside_alpha=False):
     if image.alpha_mode == "NONE":
         values[..., 3] = 1
     if has_alpha and stored.is_straight:
-        _multiply(values, not image.is_float)
+        _multiply(values, stored.are_bytes)
     if has_alpha and beside_alpha:
         _divide(values)
     if stored.is_encoded:
@@ -45,29 +47,29 @@ def working_pixels(image, notes, beside_alpha=False):
     return values
 
 
+def multiplies_floats(image):
+    """Whether Cycles multiplies the float colors of an image by alpha, if it belongs to them."""
+    return _MODE_COUNTS and image.alpha_mode == "STRAIGHT"
+
+
 def _stored(image, has_alpha):
-    is_straight = image.alpha_mode == "STRAIGHT"
-    is_srgb_space = is_srgb(image.colorspace_settings.name)
-    of_file = file_pixels(image)
+    """Blender returns float colors multiplied by alpha and byte colors divided by it, whatever is stored."""
+    space = image.colorspace_settings.name
+    of_file = float_pixels(image)
     if of_file is not None:
-        return _Stored(of_file, is_srgb_space, is_straight and _MODE_COUNTS)
+        return _Stored(of_file, False, is_srgb(space), multiplies_floats(image))
+    multiplies_integers = image.alpha_mode == "STRAIGHT" or not _MODE_COUNTS
+    needs_file = has_alpha and (image.is_float or image.alpha_mode == "PREMUL")
+    if needs_file and (is_srgb(space) or is_linear_rec709(space)):
+        of_file = png_pixels(image)
+        if of_file is not None:
+            return _Stored(of_file, not image.is_float, True, multiplies_integers)
     values = _blender_pixels(image)
     if values is None:
         return None
-    # Blender returns float colors multiplied by alpha, and byte colors divided, whatever the file has.
     if not image.is_float:
-        if has_alpha and not is_straight and has_own_file(image):
-            values[..., :3] = np.rint(255 * values[..., :3] * values[..., 3:]) / 255
-        return _Stored(values, True, is_straight or not _MODE_COUNTS)
-    if not has_own_file(image):
-        return _Stored(values, False, is_straight and _MODE_COUNTS)
-    if not (has_alpha and is_png(image)):
-        return _Stored(values, False, False)
-    if is_srgb_space:  # Cycles multiplies before it decodes
-        _divide(values)
-        values[..., :3] = to_srgb(values[..., :3])
-        _multiply(values)
-    return _Stored(values, is_srgb_space, not (is_straight or _MODE_COUNTS))
+        return _Stored(values, True, True, multiplies_integers)
+    return _Stored(values, False, False, multiplies_floats(image) and not has_own_file(image))
 
 
 def _blender_pixels(image):
@@ -79,7 +81,7 @@ def _blender_pixels(image):
     return with_alpha(values.reshape(height, width, image.channels))
 
 
-def _multiply(values, are_bytes=False):
+def _multiply(values, are_bytes):
     color, alpha = values[..., :3], values[..., 3:]
     if are_bytes:  # Cycles truncates the product
         color[:] = np.floor(np.rint(255 * color) * np.rint(255 * alpha) / 255) / 255
