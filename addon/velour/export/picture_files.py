@@ -40,7 +40,7 @@ def float_pixels(image):
 
 
 def png_pixels(image):
-    """[height x width x 4] float32 of a PNG file as stored, row 0 at the bottom; None: use Blender's pixels."""
+    """[height x width x 4] float32 of a PNG file as stored, row 0 at the bottom; None: there is none."""
     if not has_own_file(image, ".png"):
         return None
     try:
