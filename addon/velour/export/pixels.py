@@ -16,7 +16,7 @@ class _Stored(NamedTuple):
     """What Cycles starts from."""
 
     values: np.ndarray  # [height x width x 4] float32
-    are_bytes: bool
+    largest: int  # of integers, 0: floats
     is_encoded: bool  # not yet decoded from the image's color space
     is_straight: bool  # Cycles multiplies colors by alpha, if the alpha belongs to them
 
@@ -37,7 +37,7 @@ def working_pixels(image, notes, beside_alpha=False):
     if image.alpha_mode == "NONE":
         values[..., 3] = 1
     if has_alpha and stored.is_straight:
-        _multiply(values, stored.are_bytes)
+        _multiply(values, stored.largest)
     if has_alpha and beside_alpha:
         _divide(values)
     if stored.is_encoded:
@@ -57,19 +57,19 @@ def _stored(image, has_alpha):
     space = image.colorspace_settings.name
     of_file = float_pixels(image)
     if of_file is not None:
-        return _Stored(of_file, False, is_srgb(space), multiplies_floats(image))
+        return _Stored(of_file, 0, is_srgb(space), multiplies_floats(image))
     multiplies_integers = image.alpha_mode == "STRAIGHT" or not _MODE_COUNTS
     needs_file = has_alpha and (image.is_float or image.alpha_mode == "PREMUL")
     if needs_file and (is_srgb(space) or is_linear_rec709(space)):
         of_file = png_pixels(image)
         if of_file is not None:
-            return _Stored(of_file, not image.is_float, True, multiplies_integers)
+            return _Stored(of_file, 65535 if image.is_float else 255, True, multiplies_integers)
     values = _blender_pixels(image)
     if values is None:
         return None
     if not image.is_float:
-        return _Stored(values, True, True, multiplies_integers)
-    return _Stored(values, False, False, multiplies_floats(image) and not has_own_file(image))
+        return _Stored(values, 255, True, multiplies_integers)
+    return _Stored(values, 0, False, multiplies_floats(image) and not has_own_file(image))
 
 
 def _blender_pixels(image):
@@ -81,10 +81,11 @@ def _blender_pixels(image):
     return with_alpha(values.reshape(height, width, image.channels))
 
 
-def _multiply(values, are_bytes):
+def _multiply(values, largest):
     color, alpha = values[..., :3], values[..., 3:]
-    if are_bytes:  # Cycles truncates the product
-        color[:] = np.floor(np.rint(255 * color) * np.rint(255 * alpha) / 255) / 255
+    if largest:  # Cycles truncates the product
+        whole = np.rint(largest * color.astype(np.float64)) * np.rint(largest * alpha.astype(np.float64))
+        color[:] = np.floor(whole / largest) / largest
     else:
         color *= alpha
 
