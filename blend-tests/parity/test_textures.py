@@ -6,6 +6,7 @@ import bpy
 import numpy as np
 
 from parity import stage
+from parity.board import BoardTest
 from parity.case import ParityTest
 
 
@@ -172,3 +173,69 @@ class Alpha(WallTest):
         """Cycles divides by alpha between texels, Velour at them."""
         self._cut_out(self._shown(True, "PREMUL", "Linear"))
         self.assert_approximate("Image Texture: alpha, cut out, linear", 10)
+
+
+class AlphaModes(BoardTest):
+    """Images with alpha in .blend files and in files of their own, of each number format."""
+
+    def _image(self, name, values, is_float):
+        image = bpy.data.images.new(name, *values.shape[1::-1], alpha=True, float_buffer=is_float)
+        image.pixels.foreach_set(values.ravel())
+        return image
+
+    def _packed(self, is_float):
+        # Whole fifths: Cycles truncates products of bytes.
+        values = np.random.default_rng(8).integers(1, 6, (4, 4, 4)).astype(np.float32) / 5
+        image = self._image("packed", values, is_float)
+        image.pack()
+        return image
+
+    def _file(self, ending, depth, space=None):
+        values = np.random.default_rng(9).uniform(0.3, 0.9, (4, 4, 4)).astype(np.float32)
+        values[..., :3] *= values[..., 3:]
+        path = self.folder / f"stored{ending}"
+        settings = self.scene.render.image_settings
+        settings.file_format, settings.color_mode = ("PNG" if ending == ".png" else "OPEN_EXR"), "RGBA"
+        settings.color_depth = depth
+        self._image("source", values, True).save_render(str(path), scene=self.scene)
+        image = bpy.data.images.load(str(path))
+        if space:
+            image.colorspace_settings.name = space
+        return image
+
+    def _assert_all(self, feature, make):
+        """Colors of each alpha mode, alone and beside the alpha."""
+
+        def build(mode, is_used):
+            def built(nodes):
+                image = make()
+                image.alpha_mode = mode
+                node = nodes.add("TexImage", image=image, interpolation="Closest")
+                if not is_used:
+                    return node.outputs["Color"]
+                inputs = {0: node.outputs["Alpha"], 1: (0.2,) * 3, 2: node.outputs["Color"]}
+                return nodes.add("VectorMath", inputs, operation="MULTIPLY_ADD").outputs[0]
+
+            return built
+
+        modes = ("STRAIGHT", "PREMUL", "CHANNEL_PACKED", "NONE")
+        self.show([build(mode, is_used) for mode in modes for is_used in (False, True)])
+        self.assert_parity(f"Image Texture: alpha modes, {feature}")
+
+    def test_packed_bytes(self):
+        self._assert_all("packed bytes", lambda: self._packed(False))
+
+    def test_packed_floats(self):
+        self._assert_all("packed floats", lambda: self._packed(True))
+
+    def test_png(self):
+        self._assert_all("PNG of 8 bits", lambda: self._file(".png", "8"))
+
+    def test_deep_png(self):
+        self._assert_all("PNG of 16 bits", lambda: self._file(".png", "16"))
+
+    def test_exr(self):
+        self._assert_all("OpenEXR", lambda: self._file(".exr", "32"))
+
+    def test_encoded_exr(self):
+        self._assert_all("OpenEXR in sRGB", lambda: self._file(".exr", "32", "sRGB"))

@@ -51,6 +51,11 @@ def is_data(space_name):
     return space_name in _DATA
 
 
+def is_srgb(space_name):
+    """Whether the named color space is sRGB, which Cycles decodes after it has used alpha."""
+    return space_name == "sRGB"
+
+
 def bytes_to_working(pixels, space_name):
     """Working-space values of an 8-bit image's pixels [... x channels], which Blender returns undecoded.
 

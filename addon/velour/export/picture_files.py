@@ -4,9 +4,10 @@ import os
 
 import numpy as np
 
+from ..core.srgb import encoded
 from ..core.warning_table import sentences
 from ..native import VelourError, images
-from .color import is_data, is_linear_rec709
+from .color import is_data, is_linear_rec709, is_srgb
 from .files import absolute_path
 
 _FLOATS = (".exr", ".hdr")
@@ -18,29 +19,36 @@ def linear_file(image):
     Cycles reads such files itself, too. Blender's reader supports neither lowercase channel names nor files
     with passes, and reorients Radiance images that Cycles shows as stored.
     """
-    path = _own_file(image)
-    if path is None or image.is_dirty or not path.lower().endswith(_FLOATS):
-        return None
-    return path if is_linear_rec709(image.colorspace_settings.name) else None
+    is_read = has_own_file(image, _FLOATS) and is_linear_rec709(image.colorspace_settings.name)
+    return _own_file(image) if is_read else None
 
 
-def file_pixels(image):
-    """[height x width x 4] float32 of an OpenEXR or Radiance file, row 0 at the bottom, premultiplied.
+def float_pixels(image):
+    """[height x width x 4] float32 of an OpenEXR or Radiance file, row 0 at the bottom, as stored.
 
     None: use Blender's pixels. Raises VelourError if Blender has none either.
     """
-    path = _own_file(image)
     space = image.colorspace_settings.name
-    if path is None or image.is_dirty or not path.lower().endswith(_FLOATS):
-        return None
-    if not (is_linear_rec709(space) or is_data(space)):
+    if not has_own_file(image, _FLOATS) or not (is_linear_rec709(space) or is_data(space) or is_srgb(space)):
         return None
     try:
-        return with_alpha(images.read_picture(path, as_stored=True))
+        return with_alpha(images.read_picture(_own_file(image), as_stored=True))
     except VelourError:
         if image.size[0] == 0:
             raise
         return None
+
+
+def png_pixels(image):
+    """[height x width x 4] float32 of a PNG file as stored, row 0 at the bottom; None: there is none."""
+    if not has_own_file(image, ".png"):
+        return None
+    try:
+        values = with_alpha(images.read_picture(_own_file(image), as_stored=True))
+    except VelourError:
+        return None
+    values[..., :3] = encoded(values[..., :3])  # the library decodes sRGB, whatever the space is
+    return values
 
 
 def note_header(image, notes):
@@ -54,6 +62,12 @@ def note_header(image, notes):
         return  # reported when the pixels are read, unless Blender can read them
     for sentence in sentences(found):
         notes.add(f"Image '{image.name}': {sentence}")
+
+
+def has_own_file(image, endings=("",)):
+    """Whether Cycles reads the image's file itself, and its name has one of the endings."""
+    path = _own_file(image)
+    return path is not None and not image.is_dirty and path.lower().endswith(endings)
 
 
 def _own_file(image):

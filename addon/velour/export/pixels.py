@@ -1,33 +1,75 @@
 """The pixels of Blender's images, in the working space."""
 
+from typing import NamedTuple
+
+import bpy
 import numpy as np
 
-from .color import bytes_to_working, is_data
-from .picture_files import file_pixels, note_header, with_alpha
+from .color import bytes_to_working, is_data, is_linear_rec709, is_srgb
+from .picture_files import float_pixels, has_own_file, note_header, png_pixels, with_alpha
+
+# Cycles multiplies colors by alpha where the alpha mode says so; before, where the kind of values does.
+_MODE_COUNTS = bpy.app.version >= (5, 2)
+
+
+class _Stored(NamedTuple):
+    """What Cycles starts from."""
+
+    values: np.ndarray  # [height x width x 4] float32
+    largest: int  # of integers, 0: floats
+    is_encoded: bool  # not yet decoded from the image's color space
+    is_straight: bool  # Cycles multiplies colors by alpha, if the alpha belongs to them
 
 
 def working_pixels(image, notes, beside_alpha=False):
     """[height x width x 4] float32, row 0 at the bottom, for any image source; None if it has no pixels.
 
     Colors are multiplied by alpha, as in Cycles, unless the alpha is unrelated to them (channel packed, or
-    data). `beside_alpha`: the image's alpha is used too, so colors are not multiplied.
+    data). `beside_alpha`: the image's alpha is used too, so Cycles divides by it afterwards.
     """
     note_header(image, notes)
-    of_file = file_pixels(image)
-    values = _blender_pixels(image) if of_file is None else of_file
-    if values is None:
-        return None
-    is_float = of_file is not None or image.is_float
     space = image.colorspace_settings.name
+    has_alpha = image.alpha_mode in ("STRAIGHT", "PREMUL") and not is_data(space)
+    stored = _stored(image, has_alpha)
+    if stored is None:
+        return None
+    values = stored.values
     if image.alpha_mode == "NONE":
         values[..., 3] = 1
-    elif image.alpha_mode != "CHANNEL_PACKED" and not is_data(space):
-        _apply_alpha(values, is_float, beside_alpha)
-    if not is_float:
+    if has_alpha and stored.is_straight:
+        _multiply(values, stored.largest)
+    if has_alpha and beside_alpha:
+        _divide(values)
+    if stored.is_encoded:
         values, known = bytes_to_working(values, space)
         if not known:
             notes.add(f"Image '{image.name}': its color space '{space}' is not supported; read as sRGB.")
     return values
+
+
+def multiplies_floats(image):
+    """Whether Cycles multiplies the float colors of an image by alpha, if it belongs to them."""
+    return _MODE_COUNTS and image.alpha_mode == "STRAIGHT"
+
+
+def _stored(image, has_alpha):
+    """Blender returns float colors multiplied by alpha and byte colors divided by it, whatever is stored."""
+    space = image.colorspace_settings.name
+    of_file = float_pixels(image)
+    if of_file is not None:
+        return _Stored(of_file, 0, is_srgb(space), multiplies_floats(image))
+    multiplies_integers = image.alpha_mode == "STRAIGHT" or not _MODE_COUNTS
+    needs_file = has_alpha and (image.is_float or image.alpha_mode == "PREMUL")
+    if needs_file and (is_srgb(space) or is_linear_rec709(space)):
+        of_file = png_pixels(image)
+        if of_file is not None:
+            return _Stored(of_file, 65535 if image.is_float else 255, True, multiplies_integers)
+    values = _blender_pixels(image)
+    if values is None:
+        return None
+    if not image.is_float:
+        return _Stored(values, 255, True, multiplies_integers)
+    return _Stored(values, 0, False, multiplies_floats(image) and not has_own_file(image))
 
 
 def _blender_pixels(image):
@@ -39,13 +81,15 @@ def _blender_pixels(image):
     return with_alpha(values.reshape(height, width, image.channels))
 
 
-def _apply_alpha(values, is_float, beside_alpha):
-    """Blender returns float colors premultiplied by alpha, and byte colors unmultiplied.
-
-    Cycles multiplies the stored bytes and truncates the result.
-    """
+def _multiply(values, largest):
     color, alpha = values[..., :3], values[..., 3:]
-    if is_float and beside_alpha:
-        np.divide(color, alpha, out=color, where=alpha != 0)
-    elif not is_float and not beside_alpha:
-        color[:] = np.floor(np.rint(255 * color) * np.rint(255 * alpha) / 255) / 255
+    if largest:  # Cycles truncates the product
+        whole = np.rint(largest * color.astype(np.float64)) * np.rint(largest * alpha.astype(np.float64))
+        color[:] = np.floor(whole / largest) / largest
+    else:
+        color *= alpha
+
+
+def _divide(values):
+    color, alpha = values[..., :3], values[..., 3:]
+    np.divide(color, alpha, out=color, where=alpha != 0)

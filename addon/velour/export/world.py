@@ -12,7 +12,7 @@ from .newer import has_nodes
 from .nodes import active_output, output, source
 from .notes import ExportError
 from .picture_files import linear_file
-from .pixels import working_pixels
+from .pixels import multiplies_floats, working_pixels
 from .sequences import sequence_file, sequence_number
 from .unused_settings import note_emitter
 
@@ -102,7 +102,7 @@ def _add_environment(light, owner, node, strength, frame, notes):
     path = absolute_path(image)
     if image.source in _MOVING:
         light.set_file(_file_of_frame(owner, node, path, frame), strength, rotation)
-    elif linear_file(image):
+    elif linear_file(image) and not multiplies_floats(image):
         light.set_file(path, strength, rotation)
     else:
         light.set_image(image, path, lambda: _pixels(owner, image, path, notes), strength, rotation)
