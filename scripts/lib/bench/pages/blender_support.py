@@ -64,7 +64,7 @@ def values(found: dict) -> dict:
     return {
         "scenes": sum(group["scenes"] for group in groups),
         "features": len(groups),
-        "apart": max(group["errors"] for group in groups),
+        "apart": max(group["errors"] for group in groups if group["errors"] is not None),
         "notable": _NOTABLE,
         "groups": [group for group in groups if group["percent"] >= _NOTABLE],
         "others": [row | {"errors": _shown(row["z"])} for row in found["others"]],
@@ -78,9 +78,9 @@ def _groups(rows: Iterable[dict]) -> Iterator[dict]:
     for row in rows:
         groups.setdefault(row["feature"].partition(": ")[0], []).append(row)
     for group, own in groups.items():
-        percent, errors = (max(row[key] or 0 for row in own) for key in ("percent", "z"))
+        errors = [row["z"] for row in own if row["z"] is not None]  # None: pictures without noise
         features = "; ".join(filter(None, (row["feature"].partition(": ")[2] for row in own)))
-        numbers = {"percent": percent, "errors": errors}
+        numbers = {"percent": max(row["percent"] for row in own), "errors": max(errors, default=None)}
         yield {"honored": group, "scenes": len(own), **numbers, "features": features}
 
 
