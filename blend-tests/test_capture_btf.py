@@ -257,7 +257,7 @@ class Refusals(BlenderTest):
 
     def test_unsupported_material(self):
         self._glass()
-        self._refused(["Material 'Glass'", "Glass BSDF", "Approximate"])
+        self._refused(["Material 'Glass'", "transmitted light", "Approximate"])
         path = self.folder / "glass.btf"
         result = bpy.ops.velour.capture_btf(**_SMALL, directory=str(path), use_approximate=True)
         self.assertEqual(result, {"FINISHED"})
@@ -283,6 +283,7 @@ class Refusals(BlenderTest):
             ("Coat Weight", "Clearcoat"),
             ("Specular Tint",),
             ("Sheen Weight", "Sheen"),
+            ("Transmission Weight", "Transmission"),
         ):
             obj, socket = self._textured(sockets, (0.2, 0.4, 0.6, 0.8))
             bpy.context.view_layer.objects.active = obj

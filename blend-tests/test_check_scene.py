@@ -41,16 +41,16 @@ class CheckScene(BlenderTest):
         self.lamp.data.specular_factor = 0.5
         self.ball.visible_glossy = False
         tree = self.ball.active_material.node_tree
-        glass = tree.nodes.new("ShaderNodeBsdfGlass")
-        tree.links.new(glass.outputs[0], tree.nodes["Material Output"].inputs["Surface"])
-        self.scene.render.use_motion_blur = True
+        toon = tree.nodes.new("ShaderNodeBsdfToon")
+        tree.links.new(toon.outputs[0], tree.nodes["Material Output"].inputs["Surface"])
+        self.scene.view_layers[0].use_solid = False
         found, drawn = self._found(), self._drawn()
         self.assertEqual(len(found), 4, found)
         for words in (
             "Light 'Fill': its diffuse, specular and volume factors are not supported; ignored.",
             "Object 'Sphere': hiding it from glossy rays only is not supported; ignored.",
-            "Material 'Diffuse': node 'Glass BSDF' (Glass BSDF) is not supported; rendered gray.",
-            f"Scene '{self.scene.name}': motion blur is not supported; ignored.",
+            "Material 'Diffuse': node 'Toon BSDF' (Toon BSDF) is not supported; rendered gray.",
+            f"View layer '{self.scene.view_layers[0].name}': leaving out surfaces is not supported; ignored.",
         ):
             self.assertIn((False, words), found)
             self.assertIn(words, drawn)

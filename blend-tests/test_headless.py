@@ -78,8 +78,8 @@ class Headless(BlenderTest):
     def test_notes_on_the_console(self):
         material = scenes.diffuse_material()
         tree = material.node_tree
-        glass = tree.nodes.new("ShaderNodeBsdfGlass")
-        tree.links.new(glass.outputs[0], tree.nodes["Material Output"].inputs["Surface"])
+        toon = tree.nodes.new("ShaderNodeBsdfToon")
+        tree.links.new(toon.outputs[0], tree.nodes["Material Output"].inputs["Surface"])
         scenes.add_sphere(material)
         self._save()
         self.assertIn("Velour: Material 'Diffuse'", self._render("-f", 1))

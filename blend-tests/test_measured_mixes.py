@@ -147,12 +147,12 @@ class Mixes(MixTest):
         self.assert_color(0.75 * np.array(ALBEDO) + 0.25 * np.array((0.2, 0.2, 0.6)))
 
     def test_what_is_left_out_is_said(self):
-        glass = self.add("BsdfGlass")
-        self.show(self.mix("MixShader", self.node, glass, 0.5))
+        toon = self.add("BsdfToon")
+        self.show(self.mix("MixShader", self.node, toon, 0.5))
         notes = inputs.module("export.notes").Notes()
         shaders = inputs.module("export.shaders")
         shaders.surface_layers(self.material, notes)
-        self.assertTrue(any("'Paint'" in note and "Glass" in note for note in notes), list(notes))
+        self.assertTrue(any("'Paint'" in note and "Toon" in note for note in notes), list(notes))
 
     def test_two_silhouettes_are_refused(self):
         bpy.ops.velour.add_mesostructure(type="NET", count=2, resolution=8)

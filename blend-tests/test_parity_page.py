@@ -9,10 +9,10 @@ from support.check_folder import ROOT, CheckFolderTest
 class ParityPage(CheckFolderTest):
     def test_what_is_alike_and_what_is_not(self):
         self.save("alike")
-        self._mix_glass()
+        self._mix_toon()
         inside = self.shots / "more"
         inside.mkdir()
-        self.save("more/glass")
+        self.save("more/toon")
         bpy.data.objects.remove(self.scene.camera)
         self.save("blind")
         status, said, outcomes = self.check(
@@ -24,8 +24,8 @@ class ParityPage(CheckFolderTest):
             {
                 "alike, direct light": True,
                 "alike, 4 bounces": True,
-                "more/glass, direct light": False,
-                "more/glass, 4 bounces": False,
+                "more/toon, direct light": False,
+                "more/toon, 4 bounces": False,
                 "blind": False,
             },
             said,
@@ -33,7 +33,7 @@ class ParityPage(CheckFolderTest):
         self.assertEqual(next(iter(outcomes)), "blind")  # what was not even rendered
         self.assertIn("Cycles: it has no camera; give its scene one.", outcomes["blind"]["sentence"])
         page = (self.shots / "velour-check/index.html").read_text()
-        self.assertIn("(Glass BSDF) is not supported; rendered gray.", page)
+        self.assertIn("(Toon BSDF) is not supported; rendered gray.", page)
         self.assertIn("<figcaption>Cycles</figcaption>", page)
 
     def command(self, *arguments):
@@ -44,11 +44,11 @@ class ParityPage(CheckFolderTest):
         self.assertEqual(done.returncode, 1)
         self.assertIn("holds no .blend file; name a folder that does.", done.stdout + (done.stderr or ""))
 
-    def _mix_glass(self):
-        material = scenes.diffuse_material(name="Glass")
+    def _mix_toon(self):
+        material = scenes.diffuse_material(name="Toon")
         tree = material.node_tree
-        glass = tree.nodes.new("ShaderNodeBsdfGlass")
-        tree.links.new(glass.outputs[0], tree.nodes["Material Output"].inputs["Surface"])
+        toon = tree.nodes.new("ShaderNodeBsdfToon")
+        tree.links.new(toon.outputs[0], tree.nodes["Material Output"].inputs["Surface"])
         for obj in self.scene.objects:
             if obj.type == "MESH":
                 obj.data.materials.clear()

@@ -342,7 +342,7 @@ class PersistentData(BlenderTest):
         self.assertEqual(len(self._pictures(True)[1][0]), 3)
 
     def test_warnings_are_said_once(self):
-        node = bpy.data.materials["Green"].node_tree.nodes.new("ShaderNodeBsdfGlass")
+        node = bpy.data.materials["Green"].node_tree.nodes.new("ShaderNodeBsdfToon")
         tree = bpy.data.materials["Green"].node_tree
         tree.links.new(node.outputs[0], tree.nodes["Material Output"].inputs["Surface"])
         said = {}

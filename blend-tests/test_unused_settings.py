@@ -76,6 +76,10 @@ class Settings(NotesTest):
         self.scene.render.use_simplify = True
         self.assert_said("Scene 'Scene'", "Culling and Texture Limit")
 
+    def test_rolling_shutter(self):
+        self.scene.render.use_motion_blur = True
+        self._said("Scene 'Scene'", "Rolling Shutter", self.scene.cycles, rolling_shutter_type="TOP")
+
     def test_resolution_of_textures(self):
         if not hasattr(self.scene.cycles, "texture_resolution_render"):
             self.skipTest("no such setting before Blender 5.2")

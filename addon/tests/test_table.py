@@ -59,6 +59,7 @@ def test_sizes_and_offsets_agree_with_the_compiler(compiler, tmp_path):
         ("VLR_WRAP_", table.WRAPS),
         ("VLR_FILTER_", table.FILTERS),
         ("VLR_LAYER_", table.LAYERS),
+        ("VLR_GLASS_", table.GLASS_FRESNELS),
         ("VLR_FACTOR_", table.FACTORS),
         ("VLR_RELIEF_", table.RELIEF_CORRECTIONS),
         ("VLR_OPERATION_", table.OPERATIONS),

@@ -40,7 +40,8 @@ def set_size(effort):
 def set_up_cycles(cycles, bounces):
     """Without what is biased, and with a filter of one pixel."""
     cycles.use_denoising = cycles.use_adaptive_sampling = False
-    cycles.max_bounces = cycles.diffuse_bounces = cycles.glossy_bounces = bounces
+    for name in ("max_bounces", "diffuse_bounces", "glossy_bounces", "transmission_bounces"):
+        setattr(cycles, name, bounces)
     cycles.sample_clamp_direct = cycles.sample_clamp_indirect = 0.0
     cycles.light_sampling_threshold = 0.0
     cycles.pixel_filter_type = "BOX"

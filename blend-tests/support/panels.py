@@ -23,7 +23,7 @@ STOCK = {
 }
 # And Velour's own, in place of what Blender shows with other engines alone.
 OURS = {
-    "render": {"film", "sampling", "performance", "simplify", "check"},
+    "render": {"film", "sampling", "performance", "simplify", "motion_blur", "check"},
     "output": set(),
     "view_layer": {"filter", "override", "passes", "passes_data", "passes_cryptomatte"},
     "world": {"ray_visibility"},

@@ -21,6 +21,10 @@ class MeshArrays(NamedTuple):
     more_uvs: np.ndarray | None = None
     relief_uvs: np.ndarray | None = None
     corner_colors: np.ndarray | None = None
+    # Shapes of a mesh that deforms: [steps x ...] of the arrays of these names.
+    moved_positions: np.ndarray | None = None
+    moved_corner_normals: np.ndarray | None = None
+    moved_vertex_normals: np.ndarray | None = None
 
     @property
     def slots(self):

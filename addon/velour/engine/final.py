@@ -1,5 +1,6 @@
 """Final renders and material previews: export, render, deliver."""
 
+import contextlib
 import functools
 import logging
 import time
@@ -12,6 +13,7 @@ from ..export.black import refuse_dark_inside
 from ..export.camera import final_view
 from ..export.film import film_exposure
 from ..export.layer_passes import COMBINED, as_rendered, layer_passes, note_missing_passes
+from ..export.motion import motion_of_frame, shows_motion
 from ..export.unused_settings import note_strokes
 from ..native import biases, render_job
 from . import denoising, memory
@@ -53,10 +55,11 @@ def render_final(engine, depsgraph):
     begin = time.monotonic()
     shown = [COMBINED] if engine.is_preview else layer_passes(scene, depsgraph.view_layer_eval)
     asked = {each.asks for each in shown if each.asks}
-    with engine.kept_scene.frame(depsgraph, not engine.is_preview, asked) as export:
+    moves = not engine.is_preview and shows_motion(depsgraph, asked)
+    with engine.kept_scene.frame(depsgraph, not engine.is_preview, asked, moves) as export:
         notes = export.notes
-        view = final_view(depsgraph)
-        native_scene, materials, surroundings, passes = export.take(depsgraph, view, check_break)
+        view, taken = _take(engine, depsgraph, export, moves, check_break)
+        native_scene, materials, surroundings, passes = taken
         engine.update_stats("Velour", _exported(native_scene.info(), time.monotonic() - begin))
         stamps = {}
         if not engine.is_preview:
@@ -88,6 +91,14 @@ def render_final(engine, depsgraph):
         engine.stamps.add(result, depsgraph, materials.models, stamps, fields)
         if passes:
             stamp_cryptomattes(result, depsgraph.view_layer_eval, passes.names)
+
+
+def _take(engine, depsgraph, export, moves, check_break):
+    """The View and the Export of a frame. `moves`: with its motion."""
+    read = motion_of_frame(engine, depsgraph, check_break) if moves else contextlib.nullcontext()
+    with read as motion:
+        view = motion.on(final_view(depsgraph)) if motion else final_view(depsgraph)
+        return view, export.take(depsgraph, view, check_break, motion)
 
 
 def _render_layer(engine, depsgraph, view, shown, surroundings, film, denoise):

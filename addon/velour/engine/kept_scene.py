@@ -31,9 +31,10 @@ class KeptScene:
         self._export = None
 
     @contextlib.contextmanager
-    def frame(self, depsgraph, strict, asked):
-        """The SceneExport of a frame, which is not kept after an error or a cancel."""
-        export = self._followed(depsgraph, strict, asked) or SceneExport(
+    def frame(self, depsgraph, strict, asked, moves):
+        """The SceneExport of a frame, which is not kept after an error, a cancel, or a frame with motion, of
+        which changes between frames say nothing."""
+        export = self._followed(depsgraph, strict and not moves, asked) or SceneExport(
             Notes(), strict, asked, metres_per_unit(depsgraph.scene)
         )
         try:
@@ -42,7 +43,7 @@ class KeptScene:
             export.close()
             raise
         # A scene model may replace a material in one frame but not in the next.
-        if strict and _is_persistent(depsgraph) and not export.materials.reduced:
+        if strict and not moves and _is_persistent(depsgraph) and not export.materials.reduced:
             self._export, self._key = export, _key(depsgraph, asked)
         else:
             export.close()

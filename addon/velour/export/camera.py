@@ -1,5 +1,6 @@
 """Blender's camera as a screen window: left, right, bottom, top."""
 
+from types import MappingProxyType
 from typing import NamedTuple
 
 import numpy as np
@@ -21,10 +22,11 @@ class View(NamedTuple):
     width: int
     height: int
     lens: dict  # aperture keywords; empty: no depth of field
+    motion: dict = MappingProxyType({})  # keywords of motion and shutter (Motion.on); empty: no motion
 
     def add_to(self, scene):
         clips = {"clip_start": self.clip_start, "clip_end": self.clip_end}
-        scene.set_camera(self.kind, self.camera_to_world, self.window, **clips, **self.lens)
+        scene.set_camera(self.kind, self.camera_to_world, self.window, **clips, **self.lens, **self.motion)
 
     def along_axes(self, directions):
         """World directions [n x 3] along the camera's axes: right, up and into the scene."""
@@ -32,14 +34,18 @@ class View(NamedTuple):
         return directions @ np.linalg.pinv(axes).T  # a flattened camera's axes may be coplanar
 
 
-def final_view(depsgraph, whole=False):
-    """View of a final render: the scene's camera, film size and, unless `whole`, render border."""
+def final_view(depsgraph, whole=False, camera=None):
+    """View of a final render: the scene's camera, film size and, unless `whole`, render border.
+
+    `camera`: instead of the one that the scene has at its current frame.
+    """
     scene = depsgraph.scene_eval
-    if scene.camera is None:
+    camera = camera or scene.camera
+    if camera is None:
         raise ExportError(
             f"Scene '{scene.name}' has no camera; add one, or choose one in its Scene properties."
         )
-    camera = scene.camera.evaluated_get(depsgraph)
+    camera = camera.evaluated_get(depsgraph)
     if camera.type != "CAMERA":
         raise ExportError(
             f"Camera '{camera.name}' is not a camera object; choose one in the Scene properties."

@@ -15,18 +15,22 @@ class InstanceGroups:
         self._notes = notes
         self._groups = {}
 
-    def add(self, mesh, look, matrix, owner):
+    def add(self, mesh, look, matrix, owner, motion=None):
         """`mesh`: index in a MeshQueue; `look`: (materials, hidden, terminator) of Scene.add_instances.
 
-        `owner`: the object's Owner.
+        `owner`: the object's Owner. `motion`: matrices [steps x 3 x 4] in place of `matrix`.
         """
-        group = self._groups.get(look)
+        key = (look, 0 if motion is None else len(motion))
+        group = self._groups.get(key)
         if group is None:
-            group = self._groups[look] = (array("I"), array("f"), [])
+            group = self._groups[key] = (array("I"), array("f"), [])
         places, rows, owners = group
         places.append(mesh)
         owners.append(owner)
-        rows.fromlist([*matrix[0], *matrix[1], *matrix[2]])
+        if motion is None:
+            rows.fromlist([*matrix[0], *matrix[1], *matrix[2]])
+        else:
+            rows.frombytes(motion.tobytes())
 
     def add_to_scene(self, numbers):
         """Adds the groups; returns the owners in the order of the instances in the scene.
@@ -35,11 +39,12 @@ class InstanceGroups:
         """
         all_owners = []
         numbers = np.array([_NOTHING if number is None else number for number in numbers], np.uint32)
-        for look, (places, rows, owners) in self._groups.items():
+        for (look, steps), (places, rows, owners) in self._groups.items():
             meshes = numbers[np.frombuffer(places, np.uint32)]
-            matrices = np.frombuffer(rows, np.float32).reshape(-1, 3, 4)
-            self._note_endless(matrices, owners)
-            shown = np.isfinite(matrices).all(axis=(1, 2)) & (meshes != _NOTHING)
+            matrices = np.frombuffer(rows, np.float32).reshape(-1, *([steps] if steps else []), 3, 4)
+            finite = np.isfinite(matrices.reshape(len(matrices), -1)).all(axis=1)
+            self._note_endless(finite, owners)
+            shown = finite & (meshes != _NOTHING)
             if not shown.all():
                 meshes, matrices = meshes[shown], matrices[shown]
                 owners = [owners[i] for i in np.flatnonzero(shown)]
@@ -48,6 +53,6 @@ class InstanceGroups:
         self._groups = {}
         return all_owners
 
-    def _note_endless(self, matrices, owners):
-        for i in np.flatnonzero(~np.isfinite(matrices).all(axis=(1, 2))):
+    def _note_endless(self, finite, owners):
+        for i in np.flatnonzero(~finite):
             self._notes.add(f"Object '{owners[i].name}': its transform is not finite; left out.")

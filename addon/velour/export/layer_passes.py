@@ -4,6 +4,7 @@ from typing import NamedTuple
 
 import bpy
 
+from .motion import shutter_is_open
 from .notes import listed
 
 
@@ -11,7 +12,7 @@ class LayerPass(NamedTuple):
     name: str
     letters: str  # one per channel
     kind: str  # type of the compositor's socket
-    source: str | None  # the library's pass; None: all zero, since motion is not supported
+    source: str | None  # the library's pass; None: all zero, as Vector of a blurred image in Cycles
     asks: str | None = None  # key in table.PASSES; None: every film has it
 
     @property
@@ -30,7 +31,7 @@ _SWITCHES = (
     ("use_pass_mist", (LayerPass("Mist", "Z", "VALUE", "Mist", "mist"),)),
     ("use_pass_position", (LayerPass("Position", "XYZ", "VECTOR", "Position", "position"),)),
     ("use_pass_normal", (LayerPass("Normal", "XYZ", "VECTOR", "Normal"),)),
-    ("use_pass_vector", (LayerPass("Vector", "XYZW", "VECTOR", None),)),
+    ("use_pass_vector", (LayerPass("Vector", "XYZW", "VECTOR", "Vector", "vector"),)),
     ("use_pass_uv", (LayerPass("UV", "UVA", "VECTOR", "UV", "uv"),)),
     ("use_pass_object_index", (_OBJECT_INDEX,)),
     ("use_pass_material_index", (_MATERIAL_INDEX,)),
@@ -63,7 +64,14 @@ _NOISY = LayerPass("Noisy Image", "RGBA", "COLOR", "Combined")
 
 def layer_passes(scene, layer):
     """The LayerPasses of a scene's view layer."""
-    return [*([_DENOISED, _NOISY] if scene.velour.use_denoising else [COMBINED]), *_further_passes(layer)]
+    further = _further_passes(layer)
+    if shutter_is_open(scene, layer):
+        further = [_still(each) for each in further]
+    return [*([_DENOISED, _NOISY] if scene.velour.use_denoising else [COMBINED]), *further]
+
+
+def _still(each):
+    return each._replace(source=None, asks=None) if each.asks == "vector" else each
 
 
 def _further_passes(layer):

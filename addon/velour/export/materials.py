@@ -169,13 +169,14 @@ class MaterialTable:
         self._programs[_key(material)] = draft and self._finished(draft, material)
         self.glows = self.glows or any(map(shines, layers))
         plain = as_principled(layers)
-        if plain:
-            number = self._scene.add_textured_material(self._slots(plain, material), **plain.values)
-            return self._with_rays(number, material)
         self.beyond_reflection += [
             f"{_owner(material)}: {words} cannot be captured in a BTF; left out."
             for words in unlike_reflection(layers)
+            if not plain or words == "transmitted light"
         ]
+        if plain:
+            number = self._scene.add_textured_material(self._slots(plain, material), **plain.values)
+            return self._with_rays(number, material)
         with Shader.new() as shader:
             for layer in layers:
                 for part in split(layer):

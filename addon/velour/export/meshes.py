@@ -2,6 +2,7 @@
 
 import contextlib
 import math
+from typing import NamedTuple
 
 import bpy
 import numpy as np
@@ -34,6 +35,32 @@ def object_arrays(obj, uv_maps=(), colors=(), empty=_own, shows_uvs=False):
         return mesh_arrays(obj.data, uv_maps, colors, empty, shows_uvs)
     with _mesh_of(obj) as mesh:
         return mesh_arrays(mesh, uv_maps, colors, empty, shows_uvs) if mesh else None
+
+
+class Shape(NamedTuple):
+    """What of a mesh changes when it deforms."""
+
+    positions: np.ndarray  # [vertices x 3]
+    vertex_normals: np.ndarray | None  # [vertices x 3]
+    corner_normals: np.ndarray | None  # [corners x 3]
+
+    def fits(self, other):
+        """Whether both have arrays of the same sizes."""
+        return all(
+            (a is None) == (b is None) and (a is None or a.shape == b.shape)
+            for a, b in zip(self, other, strict=True)
+        )
+
+
+def object_shape(obj):
+    """The Shape of an evaluated object; None if it has no faces."""
+    with _mesh_of(obj) as mesh:
+        if mesh is None or len(mesh.polygons) == 0:
+            return None
+        mesh.calc_loop_triangles()
+        positions = _read(mesh.vertices, "co", (len(mesh.vertices), 3))
+        corner_normals, vertex_normals, _ = _normals(mesh, len(mesh.loop_triangles), _own)
+        return Shape(positions, vertex_normals, corner_normals)
 
 
 def has_uv_map(obj, name):

@@ -69,16 +69,20 @@ class ObjectExport:
     """Adds visible objects to `scene`; instances share the geometry of their evaluated datablock.
 
     `to_scene`: 4 x 4 matrix from Blender's world space to that of `scene`; None: identity.
+    `motion`: Motion of the frame; None: nothing moves.
     `meshes`: KeptMeshes of earlier exports into the same scene. `shows_uvs`: meshes include the texture
     coordinates of a UV pass.
     """
 
-    def __init__(self, scene, materials, notes, check_break, to_scene=None, meshes=None, shows_uvs=False):
+    def __init__(
+        self, scene, materials, notes, check_break, to_scene=None, meshes=None, shows_uvs=False, motion=None
+    ):
         self._scene = scene
         self._materials = materials
         self._notes = notes
         self._check_break = check_break  # called once per instance; raises to cancel
         self._to_scene = to_scene
+        self._motion = motion
         self._meshes = KeptMeshes() if meshes is None else meshes
         self._queue = self._meshes.queue(scene, notes)
         self._asked = {}  # UV maps and colors of a mesh, by the materials of its slots
@@ -178,17 +182,21 @@ class ObjectExport:
         if abs(matrix.to_3x3().determinant()) <= _FLAT:
             self._notes.add(f"Object '{shown.owner.name}': its scale is zero along an axis; left out.")
             return
+        motion = self._motion and self._motion.places(instance)
+        if self._motion and self._motion.is_hidden(instance):
+            return
         placements = None
         if shown.is_placed:
             placements = self._placements.of(instance, shown.mesh, shown.slots, metres)
         if self._to_scene is not None:
             matrix = self._to_scene @ matrix
         if placements is None:
-            self._groups.add(shown.mesh, shown.look, matrix, shown.owner)
+            self._groups.add(shown.mesh, shown.look, matrix, shown.owner, motion)
         else:
             numbers, hidden, terminator = shown.look
             mesh = self._queue.numbers()[shown.mesh]
-            self._scene.add_instance(mesh, affine(matrix), numbers, placements, hidden, terminator)
+            place = affine(matrix) if motion is None else motion
+            self._scene.add_instance(mesh, place, numbers, placements, hidden, terminator)
             self.owners.append(shown.owner)
 
     def _mesh(self, obj, kind, data, materials):
@@ -200,6 +208,8 @@ class ObjectExport:
         key = (kind, (data or obj).as_pointer(), asked)
         if not self._meshes.has(key, obj):
             arrays = object_arrays(obj, *asked, self._queue.empty, self._shows_uvs)
+            if arrays and self._motion:
+                arrays = arrays._replace(**self._motion.shapes(obj))
             self._meshes[key] = arrays and _Mesh(
                 self._queue.add(arrays, obj.name),
                 arrays.slot_count,

@@ -64,16 +64,21 @@ class SceneExport:
         has_pictures = any(map(self.materials.has_pictures, changes.changed_materials(depsgraph)))
         return not (changes.everything or has_pictures or self._meshes.are_worn)
 
-    def take(self, depsgraph, view, check_break=lambda: None):
-        """Returns an Export. `check_break` is called often and raises to cancel. After any error, close()."""
+    def take(self, depsgraph, view, check_break=lambda: None, motion=None):
+        """Returns an Export. `check_break` is called often and raises to cancel. After any error, close().
+
+        `motion`: Motion of the frame, with the depsgraph in its middle; None: nothing moves.
+        """
         if self._strict:
             refuse_missing_libraries(depsgraph.scene)
         if self._changes is None:
             set_working_space(self.scene)
         else:
             self._drop_changed(depsgraph)
-        objects = self._add_objects(depsgraph, check_break)
-        self._add_world(depsgraph)
+        for sentence in motion.sentences if motion else ():
+            self.notes.add(sentence)
+        objects = self._add_objects(depsgraph, check_break, motion)
+        self._add_world(depsgraph, motion.frame if motion else depsgraph.scene.frame_current)
         if self._strict:
             refuse_black(depsgraph, objects, self.materials, self._world_shines, self.notes)
         view.add_to(self.scene)
@@ -96,20 +101,24 @@ class SceneExport:
         self.scene.clear_lights()
         self._meshes.begin(self._changes.geometry)
 
-    def _add_objects(self, depsgraph, check_break):
-        shows_uvs = "uv" in self._asked
+    def _add_objects(self, depsgraph, check_break, motion):
         objects = ObjectExport(
-            self.scene, self.materials, self.notes, check_break, meshes=self._meshes, shows_uvs=shows_uvs
+            self.scene,
+            self.materials,
+            self.notes,
+            check_break,
+            meshes=self._meshes,
+            shows_uvs="uv" in self._asked,
+            motion=motion,
         )
         objects.add_all(depsgraph)
         if self._changes is not None:
             self._meshes.remove_unused(self.scene)
         return objects
 
-    def _add_world(self, depsgraph):
+    def _add_world(self, depsgraph, frame):
         world = shown_world(depsgraph)
         if self._changes is None or self._changes.world or has_moving_picture(world):
-            frame = depsgraph.scene.frame_current
             self._world_shines = add_world(self._world, world, frame, self.notes)
 
     def _passes(self, depsgraph, objects):

@@ -13,8 +13,6 @@ _BOUNCES = 1024  # default for the light of a light or a world: no limit
 
 def note_scene(scene, notes):
     owner = f"Scene '{scene.name}'"
-    if scene.render.use_motion_blur:
-        notes.add(f"{owner}: motion blur is not supported; ignored.")
     cycles = getattr(scene, "cycles", None)
     if cycles is None:
         return
@@ -24,6 +22,8 @@ def note_scene(scene, notes):
             f"{owner}: {listed(other)} of Cycles: ignored; use Copy from Cycles in Render > Light Paths."
         )
     asked = [words for words, is_asked in _OF_CYCLES.items() if is_asked(cycles)]
+    if scene.render.use_motion_blur and getattr(cycles, "rolling_shutter_type", "NONE") != "NONE":
+        asked.append("Rolling Shutter")
     if scene.render.use_simplify:
         asked += [words for words, is_asked in _OF_SIMPLIFY.items() if is_asked(cycles)]
     if asked:
@@ -49,6 +49,8 @@ _OF_CYCLES = {
     "Open Shading Language": lambda cycles: cycles.shading_system,
     "Fast GI Approximation": lambda cycles: cycles.use_fast_gi,
     "Pixel Filter": lambda cycles: not _is_usual_filter(cycles),
+    "Refractive Caustics off": lambda cycles: not cycles.caustics_refractive,
+    "Transparent Glass": lambda cycles: cycles.film_transparent_glass,
 }
 _OF_SIMPLIFY = {
     "Culling": lambda cycles: cycles.use_camera_cull or cycles.use_distance_cull,

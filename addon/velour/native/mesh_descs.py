@@ -23,6 +23,9 @@ MESH_ARRAYS = {
     "smooth": (np.uint8, "t", ()),
     "corner_vertices": (np.uint32, "k", ()),
     "vertex_normals": (np.float32, "v", (3,)),
+    "moved_positions": (np.float32, "v", (3,)),
+    "moved_corner_normals": (np.float32, "c", (3,)),
+    "moved_vertex_normals": (np.float32, "v", (3,)),
 }
 
 
@@ -68,8 +71,10 @@ _COUNT_FIELDS = {
     "k": "corner_count",
     "more_uvs": "more_uv_sets",
     "corner_colors": "color_sets",
+    "moved_positions": "steps",
 }
-_SETS = ("more_uvs", "corner_colors")  # arrays with several sets, back to back
+_MOVED = ("moved_positions", "moved_corner_normals", "moved_vertex_normals")
+_SETS = ("more_uvs", "corner_colors", *_MOVED)  # arrays with several sets, back to back
 
 
 def _counts(sizes, meshes):
@@ -82,8 +87,9 @@ def _counts(sizes, meshes):
     }
     counts["c"] = np.where(counts["k"] > 0, counts["k"], 3 * counts["t"])
     for name in _SETS:
-        of_set = counts["c"] * int(np.prod(MESH_ARRAYS[name][2]))
+        of_set = counts[MESH_ARRAYS[name][1]] * int(np.prod(MESH_ARRAYS[name][2]))
         counts[name] = sizes.get(name, none) // np.maximum(of_set, 1)
+    counts |= {name: counts["moved_positions"] for name in _MOVED}
     for name, size in sizes.items():
         _, kind, rest = MESH_ARRAYS[name]
         wanted = counts[kind] * int(np.prod(rest)) * (counts[name] if name in _SETS else 1)

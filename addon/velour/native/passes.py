@@ -27,6 +27,7 @@ _CHANNELS = {
     "Error": 3,
     "Denoising Albedo": 3,
     "Halves": 18,
+    "Vector": 4,
     "Denoised": 4,
 }
 # Each is a sequence of passes with two ids each: CryptoObject00, CryptoObject01, ...
@@ -80,7 +81,7 @@ def channels_of(name: str) -> int:
 
 _SUMS = 12  # floats per pixel of every film: light, alpha, normal, depth, halves, numbers of rays
 _VALUES = {"position": 3, "uv": 3, "object_index": 1, "material_index": 1, "mist": 1, "albedo": 3, "error": 3}
-_VALUES |= {"denoising_albedo": 3, "halves": 12}
+_VALUES |= {"denoising_albedo": 3, "halves": 12, "vector": 5}
 _SPARE_IDS = 2  # ids that are kept in addition to those shown
 
 

@@ -57,6 +57,9 @@ class Scene(Handle):
         With corner_vertices (uint32 [c]: the vertex of each face corner) `triangles` index corners, and
         arrays of t x 3 corners have c instead. Without corner_normals, smooth triangles have vertex_normals
         [v x 3], by default the means of the triangles around each vertex. The library copies all arrays.
+
+        A mesh that deforms while the shutter is open has moved_positions [steps x v x 3], at even times from
+        its opening to its close, and moved_corner_normals or moved_vertex_normals of as many steps.
         """
         mesh = checked_mesh({"positions": positions, "triangles": triangles, **arrays})
         numbers, dropped = self.add_meshes(mesh)
@@ -92,10 +95,19 @@ class Scene(Handle):
         material, which also applies to footprints and tangents; None: the mesh's own. hidden: names of rays
         that pass through the instance ("camera", "bounces", "shadows"); "holdout": the camera sees neither
         the instance nor anything behind it. terminator: geometry offset of the shadow terminator, 0 to 1.
+
+        object_to_world [3 x 4], or [steps x 3 x 4] of an instance that moves, at even times while the shutter
+        is open.
         """
-        self._set_looks(hidden, terminator)
+        moves = getattr(object_to_world, "ndim", 2) == 3
+        steps = len(object_to_world) if moves else 1
+        self._set_looks(hidden, terminator, steps)
         numbers = (c_uint32 * len(materials))(*materials)
-        matrix = affine("object_to_world", object_to_world)
+        matrix = (
+            small("object_to_world", object_to_world, 12 * steps)
+            if moves
+            else affine("object_to_world", object_to_world)
+        )
         if placements is not None:
             placements = small("placements", placements, 6 * len(materials))
         self._lib.vlr_scene_add_placed_instance(self.pointer, mesh, matrix, numbers, placements, len(numbers))
@@ -103,21 +115,24 @@ class Scene(Handle):
     def add_instances(
         self, meshes: np.ndarray, object_to_world: np.ndarray, materials, hidden=(), terminator: float = 0.0
     ) -> None:
-        """Adds instances that differ only in meshes, uint32 [n], and matrices, float32 [n x 3 x 4].
+        """Adds instances that differ only in meshes, uint32 [n], and matrices, float32 [n x 3 x 4] or
+        [n x steps x 3 x 4].
 
         Otherwise like add_instance().
         """
-        matrices = checked("object_to_world", object_to_world, (None, 3, 4))
+        rest = (None, 3, 4) if getattr(object_to_world, "ndim", 3) == 4 else (3, 4)
+        matrices = checked("object_to_world", object_to_world, (None, *rest))
         meshes = checked("meshes", meshes, (len(matrices),), np.uint32)
-        self._set_looks(hidden, terminator)
+        self._set_looks(hidden, terminator, matrices.shape[1] if matrices.ndim == 4 else 1)
         numbers = (c_uint32 * len(materials))(*materials)
         self._lib.vlr_scene_add_instances(
             self.pointer, address(meshes), address(matrices), len(matrices), numbers, len(numbers)
         )
 
-    def _set_looks(self, hidden, terminator: float) -> None:
+    def _set_looks(self, hidden, terminator: float, steps: int) -> None:
         self._lib.vlr_scene_hide_instances(self.pointer, sum(table.HIDDEN[name] for name in set(hidden)))
         self._lib.vlr_scene_soften_terminator(self.pointer, terminator)
+        self._lib.vlr_scene_move_instances(self.pointer, steps)
 
     def clear_instances(self) -> None:
         """Removes all instances. Meshes and materials stay."""
@@ -180,9 +195,11 @@ class Scene(Handle):
         emission [3]: radiance; alpha: 0..1, coverage of the surface; rays pass through the rest. formula:
         layered (Blender since 4.0) or disney (before). lobe: whole (with multiple scattering), single, or
         separable (separable masking and shadowing: before Blender 3.5). specular_tint [3]: for dielectrics at
-        normal incidence, not negative; for metals near 82 degrees, 0..1. Only layered: coat: 0..1, weight of
-        a dielectric layer on top; coat_roughness, coat_index (at least 1), coat_tint [3]; coat_lobe: whole
-        (Blender since 4.5) or single.
+        normal incidence, not negative; for metals near 82 degrees, 0..1. coat: 0..1, weight of a dielectric
+        layer on top (disney: of its clear coat); coat_roughness; only layered: coat_index (at least 1),
+        coat_tint [3], coat_lobe: whole (Blender since 4.5) or single. transmission: 0..1, share of glass in
+        what is not metal; index: its index of refraction; transmission_roughness: only disney. sheen: weight
+        of fuzz; sheen_tint [3]; only layered: sheen_roughness.
         """
         return self.add_textured_material({}, **values)
 
@@ -257,16 +274,29 @@ class Scene(Handle):
 
     # ---- camera
 
-    def set_camera(self, kind: str, camera_to_world, window, **values) -> None:
+    def set_camera(
+        self, kind: str, camera_to_world, window, shutter=None, motion=None, motion_window=None, **values
+    ) -> None:
         """`kind`: perspective, orthographic; looks along its -z, +y up.
 
         window: left, right, bottom, top of the picture at distance 1 (perspective) or in meters
         (orthographic). clip_start, clip_end in meters. aperture: radius of the lens, focus: focus distance,
         meters; blades, blade_rotation (radians), aperture_ratio (height over width): shape of the aperture.
+
+        shutter, float32 [n]: how far it is open, at even times; None: nothing blurs. motion [steps x 3 x 4]
+        and motion_window [steps x 4], float32: in place of camera_to_world and window, if they change.
         """
         values = {"type": choice("camera", kind, table.CAMERAS), "window": window, **values}
         desc = self._desc(structs.CameraDesc, "vlr_camera_desc_init", values)
         desc.camera_to_world = affine("camera_to_world", camera_to_world)
+        if shutter is not None:
+            desc.shutter = address(checked("shutter", shutter, (None,)))
+            desc.shutter_count = len(shutter)
+        keys = [len(each) for each in (motion, motion_window) if each is not None]
+        desc.steps = max(keys, default=0)
+        for name, array, rest in (("motion", motion, (3, 4)), ("motion_window", motion_window, (4,))):
+            if array is not None:
+                setattr(desc, name, address(checked(name, array, (desc.steps, *rest))))
         self._lib.vlr_scene_set_camera(self.pointer, byref(desc))
 
     def look_at(self, eye, target, fov: float, aspect: float) -> None:

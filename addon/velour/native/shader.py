@@ -16,8 +16,13 @@ if TYPE_CHECKING:
     from .measurement import Measurement
     from .model import Model
 
-_COLORS = {"base_color": 3, "emission": 3, "specular_tint": 3, "coat_tint": 3}
-_CHOICES = {"formula": table.FORMULAS, "lobe": table.LOBES, "coat_lobe": table.LOBES}
+_COLORS = {"base_color": 3, "emission": 3, "specular_tint": 3, "coat_tint": 3, "sheen_tint": 3}
+_CHOICES = {
+    "formula": table.FORMULAS,
+    "lobe": table.LOBES,
+    "coat_lobe": table.LOBES,
+    "glass_fresnel": table.GLASS_FRESNELS,
+}
 
 
 class Shader(Handle):
@@ -39,10 +44,12 @@ class Shader(Handle):
         interreflection: bool = False,
         **values,
     ) -> None:
-        """Adds a layer with weight 1. `kind`: principled, diffuse, glossy, transparent, emission.
+        """Adds a layer with weight 1. `kind`: principled, diffuse, glossy, transparent, emission, glass,
+        refraction, translucent.
 
         textures and values: as for Scene.add_textured_material, without alpha and emission. diffuse uses
-        base_color and roughness, glossy also lobe. base_color is the factor on transmitted light for
+        base_color and roughness, glossy also lobe, glass and refraction also index and glass_fresnel,
+        translucent base_color. base_color is the factor on transmitted light for
         transparent, the radiance for emission. normal: a normal map (colors) for reflection.
         normal_correction: treatment of steep normals: turned, faded, shadowed, as-it-is. interreflection: a
         rough diffuse layer keeps its energy.

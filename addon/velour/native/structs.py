@@ -181,6 +181,10 @@ class MeshDesc(Struct):
         ("corner_vertices", c_void_p),
         ("vertex_normals", c_void_p),
         ("corner_colors", c_void_p),
+        ("moved_positions", c_void_p),
+        ("moved_corner_normals", c_void_p),
+        ("moved_vertex_normals", c_void_p),
+        ("steps", c_uint32),
     ]
 
 
@@ -216,6 +220,13 @@ class PrincipledDesc(Struct):
         ("coat_index", c_float),
         ("coat_tint", c_float * 3),
         ("coat_lobe", c_int32),
+        ("transmission", c_float),
+        ("transmission_roughness", c_float),
+        ("index", c_float),
+        ("glass_fresnel", c_int32),
+        ("sheen", c_float),
+        ("sheen_roughness", c_float),
+        ("sheen_tint", c_float * 3),
     ]
 
 
@@ -355,6 +366,11 @@ class CameraDesc(Struct):
         ("blades", c_uint32),
         ("blade_rotation", c_float),
         ("aperture_ratio", c_float),
+        ("shutter", c_void_p),
+        ("motion", c_void_p),
+        ("motion_window", c_void_p),
+        ("shutter_count", c_uint32),
+        ("steps", c_uint32),
     ]
 
 

@@ -48,6 +48,7 @@ PASSES = {  # VLR_PASS_*
     "crypto_asset": 512,
     "denoising_albedo": 1024,
     "halves": 2048,
+    "vector": 4096,
 }
 CAMERAS = ("perspective", "orthographic")
 HEURISTICS = ("balance", "power")
@@ -55,7 +56,17 @@ SIDES = ("automatic", "one", "two")
 SEQUENCES = ("random", "sobol", "independent")
 WRAPS = ("repeat", "extend", "clip", "mirror")
 FILTERS = ("closest", "linear")
-LAYERS = ("principled", "diffuse", "glossy", "transparent", "emission")
+LAYERS = (
+    "principled",
+    "diffuse",
+    "glossy",
+    "transparent",
+    "emission",
+    "glass",
+    "refraction",
+    "translucent",
+)
+GLASS_FRESNELS = ("facets", "surface")
 FORMULAS = ("layered", "disney")
 LOBES = ("whole", "single", "separable")
 FACTORS = ("share", "rest", "gain", "tint")
@@ -336,6 +347,7 @@ STATUS_CALLS = {
         _floats,
     ],
     "vlr_scene_place_world": [_handle, c_float, _floats],
+    "vlr_scene_move_instances": [_handle, c_uint32],
     "vlr_scene_set_camera": [_handle, POINTER(structs.CameraDesc)],
     "vlr_scene_look_at": [_handle, _floats, _floats, c_float, c_float],
     "vlr_scene_frame_camera": [_handle, c_float, c_uint32],

@@ -25,6 +25,7 @@ from .material_panel import (
 )
 from .material_settings_panel import VELOUR_MATERIAL_PT_settings
 from .model_panel import VELOUR_MATERIAL_PT_model
+from .motion_panels import VELOUR_OBJECT_PT_motion_blur, VELOUR_RENDER_PT_motion_blur
 from .outline_panel import VELOUR_MATERIAL_PT_outline
 from .pass_panels import (
     VELOUR_VIEWLAYER_PT_passes,
@@ -60,6 +61,7 @@ CLASSES = (
     VELOUR_RENDER_PT_viewport,
     VELOUR_RENDER_PT_light_paths,
     VELOUR_RENDER_PT_simplify,
+    VELOUR_RENDER_PT_motion_blur,
     VELOUR_RENDER_PT_film,
     VELOUR_RENDER_PT_check,
     VELOUR_RENDER_PT_performance,
@@ -83,6 +85,7 @@ CLASSES = (
     VELOUR_MATERIAL_PT_settings,
     VELOUR_LIGHT_PT_light,
     VELOUR_OBJECT_PT_ray_visibility,
+    VELOUR_OBJECT_PT_motion_blur,
     VELOUR_WORLD_PT_ray_visibility,
     VELOUR_VIEW3D_PT_lighting,
     *tile_panel.CLASSES,

@@ -33,7 +33,7 @@ extern "C" {
 #endif
 
 /* Increases whenever a struct or the meaning of a call changes. */
-#define VLR_ABI_VERSION 11
+#define VLR_ABI_VERSION 12
 
 typedef int32_t vlr_status;
 enum {
@@ -412,6 +412,12 @@ typedef struct vlr_mesh_desc {
   const uint32_t* corner_vertices;
   const float* vertex_normals; /* [vertex_count x 3] for smooth triangles; NULL: means of the adjacent triangles */
   const float* corner_colors;  /* [color_sets x triangle_count x 3 x 3] for vlr_texture_of_corners, working space */
+  /* Shapes of a mesh that deforms while the shutter is open, at even times from its opening to its close and linear in
+   * between; the arrays above are those of the middle. */
+  const float* moved_positions;      /* [steps x vertex_count x 3] */
+  const float* moved_corner_normals; /* [steps x corner_normals]; NULL: those of the triangles at each time */
+  const float* moved_vertex_normals; /* [steps x vertex_count x 3]; likewise */
+  uint32_t steps;                    /* 0: the mesh keeps its shape; 2..129 */
 } vlr_mesh_desc;
 /* Adds a mesh without its degenerate triangles and non-finite vertices; *dropped (may be NULL) is the number of
  * triangles left out. */
@@ -469,6 +475,9 @@ enum {
   VLR_GGX_SINGLE = 1,   /* height-correlated: GGX since Blender 3.5 */
   VLR_GGX_SEPARABLE = 2 /* independent for both directions: GGX before Blender 3.5 */
 };
+/* How glass divides light: by the angle with each facet, as the Glass BSDF since Blender 3.6 and the Refraction BSDF
+ * since 4.0; or by the angle with the surface, as before. */
+enum { VLR_GLASS_FACETS = 0, VLR_GLASS_SURFACE = 1 };
 typedef struct vlr_principled_desc {
   uint32_t struct_size;
   float base_color[3]; /* working space */
@@ -481,13 +490,21 @@ typedef struct vlr_principled_desc {
   int32_t lobe;        /* VLR_GGX_* */
   /* Dielectrics: at normal incidence, not negative; metals: near 82 degrees, 0..1 (VLR_PRINCIPLED_LAYERED). White. */
   float specular_tint[3];
-  /* A dielectric layer on top, not affected by a normal map (VLR_PRINCIPLED_LAYERED). */
+  /* A dielectric layer on top, not affected by a normal map; VLR_PRINCIPLED_DISNEY: its clear coat. */
   float coat;           /* 0..1: its weight; 0 */
   float coat_roughness; /* 0..1; 0.03 */
   float coat_index;     /* at least 1; 1.5 */
   float coat_tint[3];   /* not negative: its transmission straight down and back; white */
   int32_t coat_lobe;    /* VLR_GGX_WHOLE since Blender 4.5; VLR_GGX_SINGLE: 4.0 to 4.4, which dim the layers below as a
                            smooth coat does */
+  float transmission;   /* 0..1: share of glass in what is not metal; 0 */
+  float transmission_roughness; /* 0..1, VLR_PRINCIPLED_DISNEY: adds to that of refraction; 0 */
+  float index;                  /* > 0: index of refraction of glass; 1.5. Below 1 it inverts that of the dielectric
+                                   (VLR_PRINCIPLED_LAYERED) */
+  int32_t glass_fresnel;        /* VLR_GLASS_*, of glass and refraction layers */
+  float sheen;                  /* weight of fuzz, not negative; 0 */
+  float sheen_roughness;        /* 0..1, VLR_PRINCIPLED_LAYERED; 0.5 */
+  float sheen_tint[3];          /* not negative; white */
 } vlr_principled_desc;
 VLR_API void vlr_principled_desc_init(vlr_principled_desc* desc);
 VLR_API vlr_status vlr_scene_add_principled_material(vlr_scene* scene, const vlr_principled_desc* desc,
@@ -507,6 +524,9 @@ VLR_API vlr_status vlr_scene_add_placed_instance(vlr_scene* scene, uint32_t mesh
 VLR_API vlr_status vlr_scene_add_instances(vlr_scene* scene, const uint32_t* meshes, const float* object_to_world,
                                            uint64_t instances, const uint32_t* materials, uint32_t count);
 
+/* Applies to all instances added from here on: each has `steps` (1..129) matrices in a row in place of one, where it is
+ * at even times while the shutter is open; rotations turn evenly in between. 1 (initially): it stays. */
+VLR_API vlr_status vlr_scene_move_instances(vlr_scene* scene, uint32_t steps);
 /* Removes all instances; meshes and materials stay. */
 VLR_API vlr_status vlr_scene_clear_instances(vlr_scene* scene);
 
@@ -575,6 +595,15 @@ typedef struct vlr_camera_desc {
   uint32_t blades;      /* sides of the aperture, with corners on the circle; below 3: the circle; 0 */
   float blade_rotation; /* rotation of that polygon, counterclockwise as seen by the camera, radians */
   float aperture_ratio; /* height over width of the aperture; 1 */
+  /* How far the shutter is open, at even times from its opening to its close, at least 0 and linear in between: camera
+   * rays are distributed over time in proportion, and what moves blurs. NULL: it opens for an instant in the middle. */
+  const float* shutter; /* [shutter_count] */
+  /* Where a camera that moves is at such times, in between as instances are, and its windows; camera_to_world and
+   * window are then ignored. NULL: it stays, or does not zoom. */
+  const float* motion;        /* [steps x 12] */
+  const float* motion_window; /* [steps x 4] */
+  uint32_t shutter_count;     /* 1: constant */
+  uint32_t steps;             /* of `motion` and `motion_window`; 0, 2..129 */
 } vlr_camera_desc;
 VLR_API void vlr_camera_desc_init(vlr_camera_desc* desc);
 VLR_API vlr_status vlr_scene_set_camera(vlr_scene* scene, const vlr_camera_desc* desc);
@@ -909,7 +938,10 @@ enum {
   VLR_LAYER_DIFFUSE = 1,     /* base_color and roughness: Oren-Nayar; 0: Lambert */
   VLR_LAYER_GLOSSY = 2,      /* base_color, roughness and lobe: GGX with this reflectance at every angle */
   VLR_LAYER_TRANSPARENT = 3, /* base_color: factor of light that passes straight through */
-  VLR_LAYER_EMISSION = 4     /* base_color: radiance */
+  VLR_LAYER_EMISSION = 4,    /* base_color: radiance */
+  VLR_LAYER_GLASS = 5,      /* base_color, roughness, index, lobe, glass_fresnel: GGX facets that reflect and refract */
+  VLR_LAYER_REFRACTION = 6, /* the same, without reflection */
+  VLR_LAYER_TRANSLUCENT = 7 /* base_color: diffuse light from the other side */
 };
 /* The weight of a layer is the product of its factors. For a mix, SHARE is its factor and REST 1 minus that, both
  * within [0, 1]; GAIN is any non-negative number. */
@@ -1127,9 +1159,12 @@ enum {
   VLR_PASS_CRYPTO_MATERIAL = 256, /* "CryptoMaterial00", ...: likewise */
   VLR_PASS_CRYPTO_ASSET = 512,    /* "CryptoAsset00", ...: likewise */
   VLR_PASS_DENOISING_ALBEDO =
-      1024,              /* "Denoising Albedo" 3: albedo plus emission of surfaces and environment; may exceed 1 */
-  VLR_PASS_HALVES = 2048 /* "Halves" 18: means of color, denoising albedo and normal (3 each) over the even camera rays,
-                            then over the odd ones */
+      1024,               /* "Denoising Albedo" 3: albedo plus emission of surfaces and environment; may exceed 1 */
+  VLR_PASS_HALVES = 2048, /* "Halves" 18: means of color, denoising albedo and normal (3 each) over the even camera
+                             rays, then over the odd ones */
+  /* "Vector" 4: motion of what is seen, in pixels, x to the right and y up: its place when the shutter opens minus that
+   * in the middle, then the latter minus that when it closes; mean over the camera rays that hit something. */
+  VLR_PASS_VECTOR = 4096
 };
 
 typedef struct vlr_instance_label {

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <string>
+#include <vector>
 #include "base/error.h"
 #include "capi/guard.h"
 #include "capi/handles.h"
@@ -37,6 +38,13 @@ inline Affine affine_from(const float* m) {
   Affine map;
   std::copy(m, m + 12, map.m);
   return map;
+}
+
+/// `m` [count x 3 x 4, row-major].
+inline std::vector<Affine> affines_from(const float* m, size_t count) {
+  std::vector<Affine> maps;
+  for (size_t i = 0; i < count; ++i) maps.push_back(affine_from(m + 12 * i));
+  return maps;
 }
 
 /// `given` NULL: the defaults.

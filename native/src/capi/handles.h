@@ -54,6 +54,7 @@ struct vlr_scene {
   std::string info;
   uint8_t hidden_from = 0;  // of the instances added next
   float terminator = 0;     // likewise
+  uint32_t steps = 1;       // matrices per instance, likewise
 };
 
 /// Exactly one member is set.

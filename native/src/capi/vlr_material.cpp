@@ -64,6 +64,9 @@ void vlr_principled_desc_init(vlr_principled_desc* desc) {
   desc->coat_index = defaults.coat_index;
   for (int i = 0; i < 3; ++i) desc->coat_tint[i] = defaults.coat_tint[i];
   desc->coat_lobe = static_cast<int32_t>(defaults.coat_lobe);
+  desc->index = defaults.index;
+  desc->sheen_roughness = defaults.sheen_roughness;
+  for (int i = 0; i < 3; ++i) desc->sheen_tint[i] = defaults.sheen_tint[i];
 }
 
 vlr_status vlr_scene_add_principled_material(vlr_scene* scene, const vlr_principled_desc* desc, uint32_t* material) {

@@ -40,7 +40,11 @@ MeshArrays arrays_of(const vlr_mesh_desc& desc) {
           .material_slots = array_of<uint32_t>(desc.material_slots, triangles),
           .smooth = array_of<uint8_t>(desc.smooth, triangles),
           .corner_vertices = array_of<uint32_t>(desc.corner_vertices, corners),
-          .vertex_normals = array_of<Vec3>(desc.vertex_normals, desc.vertex_count)};
+          .vertex_normals = array_of<Vec3>(desc.vertex_normals, desc.vertex_count),
+          .steps = desc.steps,
+          .moved_positions = array_of<Vec3>(desc.moved_positions, size_t{desc.steps} * desc.vertex_count),
+          .moved_corner_normals = array_of<Vec3>(desc.moved_corner_normals, desc.steps * corners),
+          .moved_vertex_normals = array_of<Vec3>(desc.moved_vertex_normals, size_t{desc.steps} * desc.vertex_count)};
 }
 
 void initialize(vlr_mesh_desc* desc) {
@@ -118,8 +122,8 @@ vlr_status vlr_scene_add_placed_instance(vlr_scene* scene, uint32_t mesh, const 
     require(materials, "materials");
     std::vector<TextureMap> maps;
     for (uint32_t i = 0; placements != nullptr && i < count; ++i) maps.push_back(map_from(placements + 6 * i));
-    scene->scene->add_instance(mesh, affine_from(object_to_world), {materials, materials + count}, std::move(maps),
-                               scene->hidden_from, scene->terminator);
+    scene->scene->add_moving_instance(mesh, affines_from(object_to_world, scene->steps), {materials, materials + count},
+                                      std::move(maps), scene->hidden_from, scene->terminator);
   });
 }
 
@@ -131,8 +135,9 @@ vlr_status vlr_scene_add_instances(vlr_scene* scene, const uint32_t* meshes, con
     require(object_to_world, "object_to_world");
     require(materials, "materials");
     for (uint64_t i = 0; i < instances; ++i) {
-      scene->scene->add_instance(meshes[i], affine_from(object_to_world + 12 * i), {materials, materials + count}, {},
-                                 scene->hidden_from, scene->terminator);
+      const float* const matrices = object_to_world + 12 * scene->steps * i;
+      scene->scene->add_moving_instance(meshes[i], affines_from(matrices, scene->steps), {materials, materials + count},
+                                        {}, scene->hidden_from, scene->terminator);
     }
   });
 }
@@ -153,6 +158,18 @@ vlr_status vlr_scene_soften_terminator(vlr_scene* scene, float offset) {
                   "The shadow terminator offset is " + std::to_string(offset) + "; it must be 0 to 1.");
     }
     scene->terminator = offset;
+  });
+}
+
+vlr_status vlr_scene_move_instances(vlr_scene* scene, uint32_t steps) {
+  return guard([&] {
+    require(scene, "scene");
+    if (steps < 1 || steps > kMaxMotionSteps) {
+      throw Error(Status::invalid_argument, "Instances move in " + std::to_string(steps) +
+                                                " steps; the number must be 1 to " + std::to_string(kMaxMotionSteps) +
+                                                ".");
+    }
+    scene->steps = steps;
   });
 }
 

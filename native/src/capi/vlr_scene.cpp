@@ -67,6 +67,26 @@ Aperture aperture_from(const vlr_camera_desc& desc) {
           .ratio = desc.aperture_ratio};
 }
 
+void add_motion(const vlr_camera_desc& desc, Camera& camera) {
+  if (!desc.motion && !desc.motion_window) return;
+  if (desc.steps < 2 || desc.steps > kMaxMotionSteps) {
+    throw Error(Status::invalid_argument, "vlr_camera_desc.steps is " + std::to_string(desc.steps) +
+                                              "; the camera moves in 2 to " + std::to_string(kMaxMotionSteps) +
+                                              " steps.");
+  }
+  if (desc.motion) {
+    const std::vector<Affine> keys = affines_from(desc.motion, desc.steps);
+    camera.steps = motion_steps(keys);
+    camera.camera_to_world = camera.steps.empty() ? keys[0] : interpolated(camera.steps, kMiddleTime);
+  }
+  for (const float* w = desc.motion_window; w && w < desc.motion_window + 4 * desc.steps; w += 4) {
+    camera.windows.push_back({w[0], w[1], w[2], w[3]});
+  }
+  if (camera.windows.empty()) return;
+  const std::array<float, 4> middle = camera.window_at(kMiddleTime);
+  std::copy(middle.begin(), middle.end(), camera.window);
+}
+
 }  // namespace
 
 void vlr_camera_desc_init(vlr_camera_desc* desc) {
@@ -100,6 +120,10 @@ vlr_status vlr_scene_set_camera(vlr_scene* scene, const vlr_camera_desc* desc) {
                   .clip_end = given.clip_end,
                   .aperture = aperture_from(given)};
     std::copy(std::begin(given.window), std::end(given.window), camera.window);
+    if (given.shutter) {
+      camera.shutter.emplace(std::vector<float>(given.shutter, given.shutter + given.shutter_count));
+    }
+    add_motion(given, camera);
     scene->scene->set_camera(camera);
   });
 }

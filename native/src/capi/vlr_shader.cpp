@@ -3,6 +3,7 @@
 
 #include "capi/conversions.h"
 #include "capi/measured_materials.h"
+#include "material/glass_material.h"
 #include "material/glossy_material.h"
 #include "material/normal_map.h"
 #include "material/placed_material.h"
@@ -44,6 +45,7 @@ std::shared_ptr<const Material> with_normals(std::shared_ptr<const Material> mat
 }
 
 /// Steep normals affect base and lobes differently, so each is a layer of its own, as is the coat, which stays flat.
+/// Disney's clear coat dims nothing.
 std::shared_ptr<const Material> principled(const vlr_layer_desc& layer, const vlr_principled_desc& desc,
                                            PrincipledTextures textures) {
   PrincipledParameters parameters = parameters_of(desc);
@@ -55,8 +57,16 @@ std::shared_ptr<const Material> principled(const vlr_layer_desc& layer, const vl
     return make_principled_material(parameters, textures);
   };
   const PrincipledParameters coated = parameters;
+  const bool is_layered = parameters.formula == PrincipledFormula::layered;
   if (coated.coat > 0) parts.reflecting.push_back({part(PrincipledPart::coat)});
   parameters.coat = 0;
+  if (is_layered && coated.sheen > 0) {
+    parts.reflecting.push_back({with_normals(part(PrincipledPart::sheen), layer, ReliefPart::lobe)});
+    parameters.sheen = 0;
+  }
+  if (coated.transmission > 0) {
+    parts.reflecting.push_back({with_normals(part(PrincipledPart::glass), layer, ReliefPart::lobe), {}, coated});
+  }
   parts.reflecting.push_back({with_normals(part(PrincipledPart::base), layer, ReliefPart::base), {}, coated});
   parts.reflecting.push_back({with_normals(part(PrincipledPart::specular), layer, ReliefPart::lobe), {}, coated});
   return make_layered_material(std::move(parts));
@@ -68,6 +78,21 @@ std::shared_ptr<const Material> reflecting(const vlr_layer_desc& layer, const vl
     const GlossyParameters glossy{base_color(desc), desc.roughness, lobe_of(desc), textures.base_color,
                                   textures.roughness};
     return with_normals(make_glossy_material(glossy), layer, ReliefPart::lobe);
+  }
+  if (layer.kind == VLR_LAYER_TRANSLUCENT) {
+    return with_normals(make_translucent_material(base_color(desc), textures.base_color), layer, ReliefPart::diffuse);
+  }
+  if (layer.kind == VLR_LAYER_GLASS || layer.kind == VLR_LAYER_REFRACTION) {
+    const PrincipledParameters checked = parameters_of(desc);
+    const GlassParameters glass{.reflected = checked.base_color,
+                                .refracted = checked.base_color,
+                                .roughness = checked.roughness,
+                                .refraction_roughness = checked.roughness,
+                                .index = checked.index,
+                                .only_refracts = layer.kind == VLR_LAYER_REFRACTION,
+                                .fresnel = static_cast<GlassFresnel>(desc.glass_fresnel),
+                                .lobe = checked.lobe};
+    return with_normals(make_glass_material(glass, {textures.base_color, textures.roughness}), layer, ReliefPart::lobe);
   }
   if (layer.kind == VLR_LAYER_DIFFUSE) {
     const RoughDiffuseParameters diffuse{base_color(desc), desc.roughness, layer.interreflection != 0,
@@ -185,7 +210,7 @@ vlr_status vlr_shader_add_layer(vlr_shader* shader, const vlr_layer_desc* desc) 
   return guard([&] {
     require(shader, "shader");
     const auto layer = read_options(desc, vlr_layer_desc_init, "vlr_layer_desc");
-    require_choice(layer.kind, VLR_LAYER_EMISSION, "vlr_layer_desc.kind");
+    require_choice(layer.kind, VLR_LAYER_TRANSLUCENT, "vlr_layer_desc.kind");
     require_choice(layer.normal_correction, VLR_RELIEF_AS_IT_IS, "vlr_layer_desc.normal_correction");
     require_normal(layer);
     shader->last = &add_layer(*shader, layer);

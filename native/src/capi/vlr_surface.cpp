@@ -1,5 +1,7 @@
-
+#include <cmath>
 #include <iterator>
+#include <string>
+
 #include "capi/conversions.h"
 #include "capi/guard.h"
 #include "capi/handles.h"
@@ -83,6 +85,11 @@ GgxLobe lobe_of(const vlr_principled_desc& desc) {
 PrincipledParameters parameters_of(const vlr_principled_desc& desc) {
   require_choice(desc.formula, VLR_PRINCIPLED_DISNEY, "vlr_principled_desc.formula");
   require_choice(desc.coat_lobe, VLR_GGX_SINGLE, "vlr_principled_desc.coat_lobe");
+  require_choice(desc.glass_fresnel, VLR_GLASS_SURFACE, "vlr_principled_desc.glass_fresnel");
+  if (!(desc.index > 0) || !std::isfinite(desc.index)) {
+    throw Error(Status::invalid_argument, "vlr_principled_desc.index is " + std::to_string(desc.index) +
+                                              "; an index of refraction must be finite and above 0.");
+  }
   const auto color = [](const float* c) { return Rgb(c[0], c[1], c[2]); };
   return {.base_color = color(desc.base_color),
           .metallic = desc.metallic,
@@ -93,6 +100,12 @@ PrincipledParameters parameters_of(const vlr_principled_desc& desc) {
           .coat_roughness = desc.coat_roughness,
           .coat_index = desc.coat_index,
           .coat_tint = color(desc.coat_tint),
+          .transmission = desc.transmission,
+          .transmission_roughness = desc.transmission_roughness,
+          .index = desc.index,
+          .sheen = desc.sheen,
+          .sheen_roughness = desc.sheen_roughness,
+          .sheen_tint = color(desc.sheen_tint),
           .formula = static_cast<PrincipledFormula>(desc.formula),
           .lobe = lobe_of(desc),
           .coat_lobe = static_cast<GgxLobe>(desc.coat_lobe)};

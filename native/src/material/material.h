@@ -15,6 +15,33 @@ namespace velour {
 
 class TableSampler;
 
+/// Lobes without width: directions in which a surface reflects or refracts light without scattering it.
+struct DeltaLobes {
+  static constexpr int kCapacity = 4;
+  struct Lobe {
+    Vec3 wl;     // below the horizon for refraction
+    Rgb weight;  // share of the radiance from there that leaves towards the view
+  };
+  int count = 0;
+  Lobe lobe[kCapacity];
+  float rest = 1;  // approximate albedo of what PreparedBrdf::eval() describes, which only steers sampling; 0: nothing
+
+  /// Lobes of one direction are merged; beyond the capacity, a lobe joins the one nearest to it.
+  void add(const Vec3& wl, const Rgb& weight) {
+    if (weight == Rgb(0.0f)) return;
+    int nearest = -1;
+    for (int i = 0; i < count; ++i) {
+      if (nearest < 0 || glm::dot(lobe[i].wl, wl) > glm::dot(lobe[nearest].wl, wl)) nearest = i;
+    }
+    const bool is_same = nearest >= 0 && glm::distance(lobe[nearest].wl, wl) < 1e-5f;
+    if (is_same || count == kCapacity) {
+      lobe[nearest].weight += weight;
+    } else {
+      lobe[count++] = {wl, weight};
+    }
+  }
+};
+
 /// A material at a site, seen from one view. Directions are in the local shading frame. Lives in a ScratchArena, and
 /// uses its material and other objects of that arena. No allocation, no lock; any number of threads may call it.
 class PreparedBrdf {
@@ -52,6 +79,12 @@ class PreparedBrdf {
   /// microfacets. The default suits materials without microfacet lobes: the cosine density over `pdf`.
   virtual float diffuse_share(const Vec3& wl, float pdf) const { return std::min(std::abs(wl.z) / (kPi * pdf), 1.0f); }
 
+  /// Replaces `lobes` by those without width, which eval() and sample() leave out. The default: none.
+  virtual void delta_lobes(DeltaLobes& lobes) const {
+    lobes.count = 0;
+    lobes.rest = 1;
+  }
+
   /// A few Gaussians over light directions that approximate f cos; `product` sampling multiplies them with the
   /// environment. They only steer sampling, so lobes of another space may be approximated. False: there are none.
   virtual bool proposal_lobes(ProposalLobes& /*lobes*/) const { return false; }
@@ -64,6 +97,9 @@ class PreparedBrdf {
 struct PrepareOptions {
   bool value_only = false;          // no sampling; densities may be 0
   bool interpolated_draws = false;  // per-view models sample as in [T09]
+  /// For paths of a render: smooth glass has delta_lobes() in place of very sharp ones, and rough glass is evaluated as
+  /// in Cycles (glass_lobe.h).
+  bool of_path = false;
   LobeFilter filter{};
 };
 
@@ -80,7 +116,7 @@ class Material {
     return prepare(wv, SurfaceSite::everywhere(), {}, arena);
   }
 
-  /// False for a uniform material, which ignores the site, so callers need not determine it.
+  /// False for a uniform material, which uses nothing of the site except `back`.
   virtual bool varies() const { return false; }
   /// Texels along both coordinates at the finest level of a pyramid over the tile; (1, 1) without one.
   virtual Vec2 texels() const { return Vec2(1.0f); }

@@ -45,6 +45,17 @@ class PreparedNormalMapped final : public PreparedBrdf {
     return material_->diffuse_share(relief_.to_local(wl), pdf);
   }
 
+  void delta_lobes(DeltaLobes& lobes) const override {
+    DeltaLobes own;
+    material_->delta_lobes(own);
+    lobes.count = 0;
+    lobes.rest = own.rest;
+    for (int i = 0; i < own.count; ++i) {
+      const Vec3 wl = relief_.to_world(own.lobe[i].wl);
+      if (wl.z * own.lobe[i].wl.z > 0) lobes.add(wl, own.lobe[i].weight);
+    }
+  }
+
  private:
   const PreparedBrdf* material_;
   Frame relief_;

@@ -33,6 +33,10 @@ class PreparedPlaced final : public PreparedBrdf {
   float diffuse_share(const Vec3& wl, float pdf) const override {
     return material_->diffuse_share(frame_.to_local(wl), pdf);
   }
+  void delta_lobes(DeltaLobes& lobes) const override {
+    material_->delta_lobes(lobes);
+    for (int i = 0; i < lobes.count; ++i) lobes.lobe[i].wl = frame_.to_world(lobes.lobe[i].wl);
+  }
   bool proposal_lobes(ProposalLobes& lobes) const override {
     if (!material_->proposal_lobes(lobes)) return false;
     for (int j = 0; j < lobes.count; ++j) lobes.lobe[j].center = frame_.to_world(lobes.lobe[j].center);

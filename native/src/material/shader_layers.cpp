@@ -42,6 +42,11 @@ struct PreparedLayer {
   float share;                // probability of sampling this layer; all sum to 1
   const Mat3* to_working;     // conversion of its f to the working space; null: none
   bool above_only;            // the material transmits light, but not this layer
+  DeltaLobes deltas;          // of its own; empty unless PrepareOptions::of_path
+
+  bool is_sampled() const { return point != nullptr && share > 0; }
+  /// `c`, a share of the layer's light, in the working space.
+  Rgb in_working_space(const Rgb& c) const { return to_working != nullptr ? *to_working * c : c; }
 };
 
 /// Keeps the lobes of the largest masses.
@@ -89,7 +94,7 @@ class PreparedLayers final : public PreparedBrdf {
       layer.point->eval(wl, one, one_pdf);
       if (layer.above_only) leave_out_below(wl, one, one_pdf);
       for (int k = 0; k < wl.count; ++k) {
-        const Rgb own = layer.to_working != nullptr ? *layer.to_working * one.get(k) : one.get(k);
+        const Rgb own = layer.in_working_space(one.get(k));
         f.set(k, (first ? Rgb(0.0f) : f.get(k)) + layer.weight * own);
         pdf.v[k] = (first ? 0.0f : pdf.v[k]) + layer.share * one_pdf.v[k];
       }
@@ -101,11 +106,11 @@ class PreparedLayers final : public PreparedBrdf {
   void sample(std::span<const Vec2> u, DirectionBatch& wl) const override {
     wl.count = static_cast<int>(u.size());
     const PreparedLayer* last = nullptr;
-    for (const PreparedLayer& layer : layers_) last = layer.point != nullptr ? &layer : last;
+    for (const PreparedLayer& layer : layers_) last = layer.is_sampled() ? &layer : last;
     if (last == nullptr) return wl.fill(u, sample_cosine_hemisphere);
     float begin = 0;
     for (const PreparedLayer& layer : layers_) {
-      if (layer.point == nullptr) continue;
+      if (!layer.is_sampled()) continue;
       const float end = &layer == last ? 1.0f : begin + layer.share;
       sample_layer(layer, {begin, end}, u, wl);
       begin = end;
@@ -120,6 +125,19 @@ class PreparedLayers final : public PreparedBrdf {
       if (own > 0) density += layer.share * own * layer.point->diffuse_share(wl, own);
     }
     return std::min(density / pdf, 1.0f);
+  }
+
+  void delta_lobes(DeltaLobes& lobes) const override {
+    lobes.count = 0;
+    lobes.rest = 0;
+    for (const PreparedLayer& layer : layers_) {
+      if (layer.point == nullptr) continue;
+      lobes.rest += layer.deltas.rest;
+      for (int i = 0; i < layer.deltas.count; ++i) {
+        const DeltaLobes::Lobe& own = layer.deltas.lobe[i];
+        lobes.add(own.wl, layer.weight * layer.in_working_space(own.weight));
+      }
+    }
   }
 
   bool proposal_lobes(ProposalLobes& lobes) const override {
@@ -192,11 +210,17 @@ class LayeredMaterial final : public Material {
       PreparedLayer& layer = prepared[i];
       const ReflectingLayer& from = layers_.reflecting[i];
       layer.weight = Rgb(brighter * from.weight.at(site)) * from.weight.tint(site);
-      if (from.coated) layer.weight *= through_coat(*from.coated, wv.z, options.filter);
-      sum += layer.share = luminance(layer.weight) * albedo_[i];
+      if (from.coated) layer.weight *= through_top(*from.coated, wv.z, options.filter);
       layer.to_working = from.rec709_colors && layers_.rec709_to_working ? &*layers_.rec709_to_working : nullptr;
       layer.above_only = transmits_ && !from.material->transmits();
       layer.point = layer.weight != Rgb(0.0f) ? from.material->prepare(wv, site, options, arena) : nullptr;
+      layer.share = luminance(layer.weight) * albedo_[i];
+      if (options.of_path && layer.point != nullptr) {
+        layer.point->delta_lobes(layer.deltas);
+        if (layer.deltas.rest <= 0) layer.share = 0;
+        layer.deltas.rest = layer.share;
+      }
+      sum += layer.share;
     }
     for (size_t i = 0; i < albedo_.size() && sum > 0; ++i) prepared[i].share /= sum;
     return arena.make<PreparedLayers>(prepared);

@@ -13,7 +13,7 @@ struct SitePlace {
   Mat2 footprint{0.0f};
 };
 
-/// Input of materials that vary over the surface (Material::varies); uniform ones ignore it.
+/// Input of materials that vary over the surface (Material::varies); uniform ones use `back` alone.
 struct SurfaceSite {
   Vec2 uv{0.0f};  // u grows along the local frame's +x; +y is on the side to which v grows
   /// Ray footprint: sides (columns) of a parallelogram about `uv`, in texture coordinates. Zero: a point. At a grazing
@@ -57,8 +57,8 @@ struct SurfaceSite {
 /// Effect of Cycles' Filter Glossy and Reflective Caustics on microfacet lobes. Both bias the image. Measured materials
 /// have no such lobes and are unaffected.
 struct LobeFilter {
-  float min_alpha = 0;  // minimum alpha of lobes; does not change their brightness
-  bool diffuse_only = false;
+  float min_alpha = 0;        // minimum alpha of lobes; does not change their brightness
+  bool diffuse_only = false;  // no reflection by microfacets; refraction stays
 };
 
 }  // namespace velour

@@ -78,7 +78,7 @@ class PlaceReader {
   }
 
   Vec3 object_normal() const {
-    const Affine& map = place_.scene.instances()[place_.hit.instance].object_to_world;
+    const Affine map = place_.scene.instances()[place_.hit.instance].place(place_.hit.time);
     const Vec3& n = place_.point.shading_normal;
     const Vec3 local(glm::dot(map.column(0), n), glm::dot(map.column(1), n), glm::dot(map.column(2), n));
     const float length = glm::length(local);

@@ -40,15 +40,21 @@ void DirectLight::gather(std::span<const Receiver> receivers, bool go_on, Output
   for (size_t k = 0; k < receivers.size(); ++k) shade(receivers[k], static_cast<uint8_t>(k), output);
   settle(receivers, output);
   if (!lighting_.emissive().empty()) settle_emissive(receivers, output);
+  gather_deltas(receivers, output);
 }
 
 void DirectLight::prepare(const Receiver& receiver, bool go_on, Output output, Work& work, const LightView& view) {
   const Vertex& vertex = receiver.vertex;
   const PrepareOptions options{.interpolated_draws = is_dissertations(options_.strategy),
+                               .of_path = !output.is_incident(),
                                .filter = lobe_filter(options_.light_paths, receiver.past)};
   work.prepared = PreparedSurface(sampling_, vertex, options, arena_);
+  work.deltas.count = 0;
+  work.deltas.rest = 1.0f;
+  if (vertex.transmits && options.of_path) work.prepared.brdf().delta_lobes(work.deltas);
+  choose_continuation(receiver, go_on, work);
   work.goes_on_along_all = go_on && output.is_incident();
-  const bool lit = lighting_.has_extended(), explores = !lit && work.goes_on_along_all;
+  const bool lit = lighting_.has_extended() && work.deltas.rest > 0.0f, explores = !lit && work.goes_on_along_all;
   work.shares = explores ? Shares{0.0f, 1.0f, 0.0f} : shares_at(vertex, view, work);
   PathNumbers& numbers = *receiver.numbers;
   const auto all = numbers.all(lit || explores ? receiver.directions : 0, receiver.full);
@@ -58,7 +64,7 @@ void DirectLight::prepare(const Receiver& receiver, bool go_on, Output output, W
   work.from_surface = surface;
   work.from_lights = lights;
   // One of several directions would be every n-th point of their sequence; such points are not even.
-  work.goes_on_drawn = go_on && surface.count == 1 && !output.is_incident();
+  work.goes_on_drawn = go_on && surface.count == 1 && !output.is_incident() && work.along_delta < 0;
   work.continuation.reset();
   work.shared_term = -1;
 }
@@ -156,7 +162,7 @@ void DirectLight::shade(const Receiver& receiver, uint8_t place, Output output) 
   draw_from_surface(receiver, work);
   keep_world(vertex, towards_lights_, work.light_point, work.from_lights.count, Technique::lights);
   sharp_count_ = 0;
-  if (!output.is_incident()) draw_sharp(receiver);
+  if (!output.is_incident() && work.deltas.rest > 0.0f) draw_sharp(receiver);
   if (local_.count == 0) return;
   local_.pad();
   world_.pad();
@@ -206,8 +212,9 @@ void DirectLight::add_continuations(const Vertex& vertex, const Work& work, Inci
 
 void DirectLight::go_on_along(const Receiver& receiver, int i, int term, Work& work) {
   const Vertex& vertex = receiver.vertex;
-  work.continuation = continuation_along(vertex, local_.get(i), world_.get(i),
-                                         receiver.throughput * reflectance(vertex, i), surface_pdf_.v[i]);
+  work.continuation =
+      continuation_along(vertex, local_.get(i), world_.get(i),
+                         receiver.throughput * reflectance(vertex, i) / work.along_share, surface_pdf_.v[i]);
   const bool shares_ray = work.continuation && finite(work.continuation->throughput) && shares_rays_;
   if (shares_ray && vertex.rays_agree(world_.get(i))) work.shared_term = term;
 }
@@ -241,6 +248,7 @@ void DirectLight::settle_emissive(std::span<const Receiver> receivers, Output ou
   terms_.look_up_emissive(lighting_, views_, aims_, {rays, static_cast<size_t>(count)});
   for (const LightTerms::EmissiveTerm& g : terms_.emissive) {
     const Receiver& receiver = receivers[terms_.receiver[g.direction]];
+    if (along_deltas_ && !counts_emissive(g.hit)) continue;
     const auto [radiance, far] = lighting_.emissive().light(rays[g.direction], g.hit, receiver.vertex.cone);
     const Rgb light = g.weight * radiance * terms_.reflected.get(g.direction);
     settle_term(receivers, g.direction,
@@ -282,10 +290,12 @@ void DirectLight::add_incident(const Vertex& vertex, int term, const Contributio
 
 std::optional<Continuation> DirectLight::extend(const Receiver& receiver, size_t place) {
   const Work& work = work_[place];
+  if (work.along_delta < 0 && !(work.along_share > 0.0f)) return std::nullopt;
   const auto continuation =
-      work.goes_on_drawn ? work.continuation
-                         : sample_continuation(receiver.vertex, work.prepared, working_space_, receiver.throughput,
-                                               receiver.numbers->point(Purpose::continuation));
+      work.goes_on_drawn || work.along_delta >= 0
+          ? work.continuation
+          : sample_continuation(receiver.vertex, work.prepared, working_space_, receiver.throughput / work.along_share,
+                                receiver.numbers->point(Purpose::continuation));
   if (!continuation || finite(continuation->throughput)) return continuation;
   ++nan_samples_;
   return std::nullopt;

@@ -142,6 +142,8 @@ class DirectLight {
   /// Contributions are clamped like Cycles' samples, each of which has one direction from the lights and one from the
   /// surface. For strategies that are not mixed, one direction is a sample; a delta light is one as well.
   ///
+  /// Lobes without width (DeltaLobes) are added one by one, along a ray each, without other techniques.
+  ///
   /// If paths `go_on` from the vertices, a path with a single surface-sampled direction continues along it: the ray of
   /// extend() then also serves as its shadow ray, and the light is in awaited().
   void gather(std::span<const Receiver> receivers, bool go_on, ShadowQueue& shadows,
@@ -162,7 +164,8 @@ class DirectLight {
     return meets_surfaces_ ? emissive.holds(hit) : emissive.draws(hit);
   }
 
-  /// Continuation ray of vertex `place` of the last gather(), sampled from the surface alone. gather() included no
+  /// Continuation ray of vertex `place` of the last gather(), sampled from the surface alone, or along one of its lobes
+  /// without width, by their shares of the light. gather() included no
   /// light reflected by surfaces, but all light from lights and the environment, so only surfaces may be counted at the
   /// end of the ray.
   std::optional<Continuation> extend(const Receiver& receiver, size_t place);
@@ -187,8 +190,11 @@ class DirectLight {
     int product_direction;                          // index of the first in towards_products_
     bool goes_on_drawn;                             // continues along its only surface-sampled direction
     bool goes_on_along_all;                         // along all of them, for incident light
-    std::optional<Continuation> continuation;       // the ray along it
-    int shared_term;                                // index of the term waiting for `continuation`; -1: none
+    DeltaLobes deltas;
+    int along_delta;                           // the lobe that the path continues along; -1: none
+    float along_share;                         // probability of continuing so
+    std::optional<Continuation> continuation;  // the ray along it
+    int shared_term;                           // index of the term waiting for `continuation`; -1: none
   };
   /// Either shadow rays for camera samples, or incident light.
   struct Output {
@@ -211,6 +217,10 @@ class DirectLight {
   void draw_towards_products(std::span<const Receiver> receivers);
   void draw_from_surface(const Receiver& receiver, const Work& work);
   void draw_sharp(const Receiver& receiver);
+  /// Chooses between continuing along a lobe without width and along what eval() describes.
+  void choose_continuation(const Receiver& receiver, bool go_on, Work& work);
+  void gather_deltas(std::span<const Receiver> receivers, Output output);
+  void add_deltas(const Receiver& receiver, uint8_t place);
   void keep_if_lit(const Vertex& vertex, const Vec3& wl, const Vec3& wl_world, Technique technique, uint8_t aim = 0);
   void keep_world(const Vertex& vertex, const DirectionBatch& drawn, int first, int count, Technique technique);
   /// Samples and reflects at one vertex.
@@ -237,6 +247,7 @@ class DirectLight {
   void queue(const Receiver& receiver, const Contribution& contribution, Output output);
   /// Clamping limit for the contribution of one direction.
   float limit_of_term(const Receiver& receiver) const {
+    if (along_deltas_) return receiver.limit;
     return receiver.limit * (is_mixed(options_.strategy) ? 2.0f : 1.0f) / static_cast<float>(receiver.directions);
   }
   Rgb reflectance(const Vertex& vertex, int direction) const;
@@ -270,6 +281,7 @@ class DirectLight {
   RgbBatch f_;
   ScalarBatch material_pdf_, surface_pdf_, product_pdf_;
   LobeProducts products_;
+  bool along_deltas_ = false;  // whether terms_ are those of lobes without width
   SharpLight sharp_[kDeltaLights];
   int sharp_count_ = 0;
   uint64_t nan_samples_ = 0;

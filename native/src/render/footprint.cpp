@@ -30,17 +30,18 @@ PixelFootprint::PixelFootprint(const Scene& scene, int width, int height, int ca
   pitch_ = part_ * window / Vec2(static_cast<float>(width), static_cast<float>(height));
 }
 
-RayCone PixelFootprint::cone_along(const Vec3& direction) const {
+RayCone PixelFootprint::cone_along(const Vec3& direction, float time) const {
   const float side = std::sqrt(std::abs(pitch_.x * pitch_.y));
   if (camera_.type == Camera::Type::orthographic) return {side, 0.0f, part_};
   // A pixel lies at distance 1 / cosine from the eye, and its area appears scaled by the cosine.
-  const float cosine = -glm::dot(direction, camera_.camera_to_world.column(2));
+  const float cosine = std::max(0.0f, -glm::dot(direction, camera_.place(time).column(2)));
   return {0.0f, side * std::sqrt(cosine) * cosine, part_};
 }
 
-RaySides PixelFootprint::sides(const Vec3& position) const {
-  const float scale = camera_.type == Camera::Type::orthographic ? 1.0f : camera_.depth(position);
-  return {scale * pitch_.x * camera_.camera_to_world.column(0), scale * pitch_.y * camera_.camera_to_world.column(1)};
+RaySides PixelFootprint::sides(const Vec3& position, float time) const {
+  const Affine place = camera_.place(time);
+  const float scale = camera_.type == Camera::Type::orthographic ? 1.0f : camera_.depth(position, time);
+  return {scale * pitch_.x * place.column(0), scale * pitch_.y * place.column(1)};
 }
 
 Mat2 texture_footprint(const RaySides& sides, const Vec3& direction, const Vec3& normal, const TexturePoint& texture) {

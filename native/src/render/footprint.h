@@ -40,12 +40,14 @@ class PixelFootprint {
 
   /// Cone of a camera ray along unit `direction`, at the camera: as wide as its pixel's solid angle, or an orthographic
   /// pixel's area. Empty if no material of the scene varies.
-  RayCone cone(const Vec3& direction) const { return needed_ ? cone_along(direction) : RayCone{}; }
+  RayCone cone(const Vec3& direction, float time = kMiddleTime) const {
+    return needed_ ? cone_along(direction, time) : RayCone{};
+  }
   /// Sides for a camera ray that ends at `position`: exact, by ray differentials [Ige99].
-  RaySides sides(const Vec3& position) const;
+  RaySides sides(const Vec3& position, float time = kMiddleTime) const;
 
  private:
-  RayCone cone_along(const Vec3& direction) const;
+  RayCone cone_along(const Vec3& direction, float time) const;
 
   const Camera& camera_;
   const bool needed_;

@@ -34,10 +34,22 @@ RayDecisions PathNumbers::decisions() {
   return {mix64(~key(Purpose::camera)), ray_};
 }
 
+void PathNumbers::time(PointBatch& batch) {
+  if (sequence_ == Sequence::sobol) return batch.add(SobolSeeds(mix64(~key(Purpose::side))), ray_, 1);
+  point(Purpose::side, batch);
+}
+
 float PathNumbers::label() {
   if (sequence_ != Sequence::sobol) return random_.next();
   Vec2 u;
   sobol_points(mix64(~key(Purpose::continuation)), ray_, {&u, 1});
+  return u.x;
+}
+
+float PathNumbers::lobe() {
+  if (sequence_ != Sequence::sobol) return random_.next();
+  Vec2 u;
+  sobol_points(mix64(~key(Purpose::product_side)), ray_, {&u, 1});
   return u.x;
 }
 

@@ -94,8 +94,14 @@ class PathNumbers {
   /// Decisions of the continuation ray from this vertex, before it reaches the next.
   RayDecisions decisions();
 
-  /// Uniform over [0, 1): selects the lobe that the continuation ray from this vertex is attributed to.
+  /// Requests a point whose first coordinate decides about the time of a camera ray.
+  void time(PointBatch& batch);
+
+  /// Uniform over [0, 1): decides whether the continuation ray from this vertex counts as diffuse.
   float label();
+
+  /// Uniform over [0, 1): selects the lobe that the continuation ray from this vertex follows.
+  float lobe();
 
   /// Number of camera rays of the half before this one.
   uint32_t ray() const { return ray_; }

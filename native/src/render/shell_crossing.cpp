@@ -80,12 +80,12 @@ ShellWay ShellCrossing::way_at_side(const Ray& ray, const Hit& hit, const ShellE
 void ShellCrossing::end_at_sides(const Ray& ray, const Hit& hit) {
   if (foot_.is_side ? goes_in(ray, hit) : !leaving_) {
     const float way = way_.end - way_.begin, far = hit.distance + std::abs(way);
-    const float side = scene_.next_side(hit, {ray.origin, hit.distance, ray.direction, far}, false);
+    const float side = scene_.next_side(hit, {ray.origin, hit.distance, ray.direction, far, ray.time}, false);
     way_.end = side <= far ? std::copysign(side - hit.distance, way) : way_.end;
     if (!std::isfinite(way_.end)) way_.end = way_.begin;
   } else {
     const float from = std::max(0.0f, hit.distance - std::abs(way_.end - way_.begin));
-    const float side = scene_.next_side(hit, {ray.origin, from, ray.direction, hit.distance}, true);
+    const float side = scene_.next_side(hit, {ray.origin, from, ray.direction, hit.distance, ray.time}, true);
     if (side <= hit.distance) way_.end = way_.begin;
   }
 }

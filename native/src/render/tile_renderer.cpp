@@ -17,7 +17,7 @@ TileRenderer::TileRenderer(const RenderContext& context)
     : context_(context),
       pixel_(context.scene, context.options.width, context.options.height, context.camera_rays()),
       flight_(context.scene, context.lighting, context.options, context.sky.get()),
-      recorder_(context.scene) {}
+      recorder_(context.scene, context.options.width, context.options.height) {}
 
 void TileRenderer::render(const PixelRect& tile, int first, int count, Film& film, RayLog* log,
                           const Progress& progress) {
@@ -86,23 +86,29 @@ void TileRenderer::aim_paths(const PixelRect& run, int count) {
   const Vec2 size(static_cast<float>(o.width), static_cast<float>(o.height));
   const auto pixel_of = [&](size_t path) { return Vec2(run.x0 + static_cast<int>(path) / count, run.y0); };
   flight_.rays.clear();
-  PointBatch points, lens;
+  PointBatch points, lens, moments;
   const Camera& camera = context_.scene.camera();
   const bool has_lens = camera.aperture.radius > 0.0f;
   for (size_t first = 0; first < flight_.paths.size(); first += PointBatch::kCapacity) {
     const size_t end = std::min(flight_.paths.size(), first + PointBatch::kCapacity);
-    const auto make = [&](Purpose purpose, PointBatch& batch) {
+    const auto make = [&](PointBatch& batch, const auto& request) {
       batch.clear();
-      for (size_t i = first; i < end; ++i) flight_.paths[i].numbers.point(purpose, batch);
+      for (size_t i = first; i < end; ++i) request(flight_.paths[i].numbers, batch);
       batch.resolve();
       return batch.points(0, batch.count());
     };
-    const auto places = make(Purpose::camera, points);
-    const auto on_lens = has_lens ? make(Purpose::lens, lens) : places;
+    const auto points_for = [](Purpose purpose) {
+      return [purpose](PathNumbers& numbers, PointBatch& batch) { numbers.point(purpose, batch); };
+    };
+    const auto places = make(points, points_for(Purpose::camera));
+    const auto on_lens = has_lens ? make(lens, points_for(Purpose::lens)) : places;
+    const auto times =
+        camera.shutter ? make(moments, [](PathNumbers& numbers, PointBatch& batch) { numbers.time(batch); }) : places;
     for (size_t i = first; i < end; ++i) {
       const Vec2 through = has_lens ? camera.aperture.sample(on_lens[i - first]) : Vec2(0.0f);
-      flight_.rays.push_back(camera.ray((pixel_of(i) + places[i - first]) / size, through));
-      flight_.paths[i].cone = pixel_.cone(flight_.rays.back().direction);
+      const float time = camera.shutter ? camera.shutter->time(times[i - first].x) : kMiddleTime;
+      flight_.rays.push_back(camera.ray((pixel_of(i) + places[i - first]) / size, through, time));
+      flight_.paths[i].cone = pixel_.cone(flight_.rays.back().direction, time);
     }
   }
 }

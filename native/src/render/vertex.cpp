@@ -55,12 +55,14 @@ Vertex::Vertex(const Scene& scene, const SurfacePoint& point, const ShellCrossin
                const Hit& hit, const RayCone& cone_at_origin, const PixelFootprint* pixel)
     : Vertex(point, -ray.direction) {
   surface = &scene.materials()[point.material];
+  time = ray.time;
   cone = cone_at_origin.at(hit.distance);
-  if (!surface->material->varies()) return;
   transmits = surface->material->transmits();
+  site.back = glm::dot(point.geometric_normal, ray.direction) > 0.0f;
+  if (!surface->material->varies()) return;
   const TexturePoint texture = scene.texture(hit);
-  const RaySides sides = pixel != nullptr ? pixel->sides(position) : across(cone, ray.direction);
-  find_site(point, crossing != nullptr ? crossing->texture(texture) : texture, ray.direction, sides);
+  const RaySides sides = pixel != nullptr ? pixel->sides(position, time) : across(cone, ray.direction);
+  find_site(crossing != nullptr ? crossing->texture(texture) : texture, ray.direction, sides);
   if (surface->uv_sets > 1) find_others(scene, hit, ray.direction, sides);
   find_colors(scene, hit);
   if (surface->relief) find_relief(scene, hit);
@@ -101,11 +103,9 @@ void Vertex::find_computed(const Scene& scene, const SurfacePoint& point, const 
   }
 }
 
-void Vertex::find_site(const SurfacePoint& point, const TexturePoint& texture, const Vec3& direction,
-                       const RaySides& sides) {
+void Vertex::find_site(const TexturePoint& texture, const Vec3& direction, const RaySides& sides) {
   site.uv = texture.uv;
   site.footprint = texture_footprint(sides, direction, geometric_normal, texture);
-  site.back = glm::dot(point.geometric_normal, direction) > 0.0f;
   if (glm::dot(texture.v_gradient, frame.y) < 0.0f) {
     frame.y = -frame.y;
     wv.y = -wv.y;

@@ -40,6 +40,7 @@ struct Vertex {
   RayCone cone;               // cone of the incoming and of the continuation ray
   SurfaceSite site;           // practically empty for uniform materials
   bool transmits = false;     // Material::transmits()
+  float time = kMiddleTime;   // of the path: that of its camera ray
 
   /// `wv_world`: unit, toward the viewer.
   Vertex(const SurfacePoint& point, const Vec3& wv_world);
@@ -52,7 +53,7 @@ struct Vertex {
   static Vertex seen(const Scene& scene, const Ray& ray, const Hit& hit, const RayCone& cone_at_origin,
                      const PixelFootprint* pixel);
 
-  LightPlace light_place() const { return {position, frame.z, transmits}; }
+  LightPlace light_place() const { return {position, frame.z, transmits, time}; }
 
   /// Whether light from direction `wl_world` can reach the viewer; `wl`: the same in the frame.
   bool receives(const Vec3& wl, const Vec3& wl_world) const {
@@ -72,7 +73,7 @@ struct Vertex {
   /// Ray that starts on the side of the surface that it goes to.
   Ray ray(const Vec3& direction_world, float far) const {
     const bool through = transmits && glm::dot(direction_world, geometric_normal) < 0.0f;
-    return {position + (through ? -through_offset : offset) * geometric_normal, 0.0f, direction_world, far};
+    return {position + (through ? -through_offset : offset) * geometric_normal, 0.0f, direction_world, far, time};
   }
 
   /// Ray toward light. Directions close to the horizon start on the smooth surface, so that coarse meshes with smooth
@@ -101,7 +102,7 @@ struct Vertex {
   void find_others(const Scene& scene, const Hit& hit, const Vec3& direction, const RaySides& sides);
   void find_colors(const Scene& scene, const Hit& hit);
   void find_computed(const Scene& scene, const SurfacePoint& point, const Hit& hit, const Vec3& incoming);
-  void find_site(const SurfacePoint& point, const TexturePoint& texture, const Vec3& direction, const RaySides& sides);
+  void find_site(const TexturePoint& texture, const Vec3& direction, const RaySides& sides);
 };
 
 // Site of a hit on its material, and whether rays of a kind hit it.

@@ -29,20 +29,37 @@ Vec2 Aperture::sample(const Vec2& u) const {
   return radius * Vec2(place.x / ratio, place.y);
 }
 
-Ray Camera::ray(const Vec2& picture, const Vec2& lens) const {
-  const float x = window[0] + picture.x * (window[1] - window[0]);
-  const float y = window[2] + picture.y * (window[3] - window[2]);
+std::array<float, 4> Camera::window_at(float time) const {
+  if (windows.empty()) return {window[0], window[1], window[2], window[3]};
+  const MotionTime at(windows.size(), time);
+  std::array<float, 4> found;
+  for (size_t i = 0; i < 4; ++i) found[i] = at.between(windows[at.before][i], windows[at.before + 1][i]);
+  return found;
+}
+
+Ray Camera::ray(const Vec2& picture, const Vec2& lens, float time) const {
+  const Affine to_world = place(time);
+  const std::array<float, 4> edges = window_at(time);
+  const float x = edges[0] + picture.x * (edges[1] - edges[0]);
+  const float y = edges[2] + picture.y * (edges[3] - edges[2]);
   const bool perspective = type == Type::perspective;
   // Slope from the lens point to where the ray through the lens center meets the focal plane, per unit of depth.
   const Vec2 slope = (perspective ? Vec2(x, y) : Vec2(0.0f)) - lens / aperture.focus;
   const Vec3 direction(slope, -1.0f);
   const float length = glm::length(direction);  // of the ray per unit of clip distance
-  const Vec3 origin = camera_to_world.point(perspective ? Vec3(lens, 0.0f) : Vec3(Vec2(x, y) + lens, 0.0f));
-  return {origin, clip_start * length, glm::normalize(camera_to_world.vector(direction)), clip_end * length};
+  const Vec3 origin = to_world.point(perspective ? Vec3(lens, 0.0f) : Vec3(Vec2(x, y) + lens, 0.0f));
+  return {origin, clip_start * length, glm::normalize(to_world.vector(direction)), clip_end * length, time};
 }
 
-float Camera::depth(const Vec3& world) const {
-  return -glm::dot(world - camera_to_world.column(3), glm::normalize(camera_to_world.column(2)));
+float Camera::depth(const Vec3& world, float time) const {
+  const Affine to_world = place(time);
+  return -glm::dot(world - to_world.column(3), glm::normalize(to_world.column(2)));
+}
+
+Vec2 CameraProjection::picture(const Vec3& world) const {
+  const Vec3 local = to_camera_.point(world);
+  const Vec2 at = Vec2(local) / (type_ == Camera::Type::perspective ? -local.z : 1.0f);
+  return {(at.x - window_[0]) / (window_[1] - window_[0]), (at.y - window_[2]) / (window_[3] - window_[2])};
 }
 
 Camera Camera::look_at(const Vec3& eye, const Vec3& target, const Vec3& up, float fov, float aspect) {

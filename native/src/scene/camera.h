@@ -1,8 +1,14 @@
 // Cameras.
 #pragma once
 
+#include <array>
+#include <optional>
+#include <vector>
+
 #include "math/sphere/affine.h"
 #include "scene/embree_scene.h"
+#include "scene/motion.h"
+#include "scene/shutter.h"
 
 namespace velour {
 
@@ -28,17 +34,42 @@ struct Camera {
 
   Aperture aperture;
 
+  /// Where the camera is at even times while its shutter is open, linear in between; camera_to_world and window are
+  /// those of the middle. Empty: it does not move, or does not zoom.
+  std::vector<Affine> steps = {};
+  std::vector<std::array<float, 4>> windows = {};
+  /// Empty: the shutter opens for an instant in the middle, and nothing blurs.
+  std::optional<Shutter> shutter = std::nullopt;
+
+  Affine place(float time) const { return steps.empty() ? camera_to_world : interpolated(steps, time); }
+  std::array<float, 4> window_at(float time) const;
+
   /// World-space ray with unit direction through the point `picture`, from (0, 0) at the lower left corner of the
   /// picture to (1, 1) at the upper right, and the point `lens` of the aperture, in meters.
-  Ray ray(const Vec2& picture, const Vec2& lens = Vec2(0.0f)) const;
+  Ray ray(const Vec2& picture, const Vec2& lens = Vec2(0.0f), float time = kMiddleTime) const;
   /// Distance of `world` from the camera along its line of sight, as in a depth pass. Ignores shear.
-  float depth(const Vec3& world) const;
+  float depth(const Vec3& world, float time = kMiddleTime) const;
 
   /// Perspective camera at `eye`. `fov`: vertical angle of view, radians; `aspect`: width / height; `up`: world space.
   static Camera look_at(const Vec3& eye, const Vec3& target, const Vec3& up, float fov, float aspect);
   /// Fits `bounds` into the picture (by height, unless the box is wider than the picture), with a vertical angle of
   /// view of 40 degrees. `up_axis` 2: +z is up, viewed along +y (Blender's front view); 1: +y is up, viewed along -z.
   static Camera framing(const Bounds& bounds, float aspect, int up_axis);
+};
+
+/// Where a camera shows points at a time: the inverse of Camera::ray() through the center of the lens.
+class CameraProjection {
+ public:
+  CameraProjection(const Camera& camera, float time)
+      : type_(camera.type), to_camera_(camera.place(time).inverse()), window_(camera.window_at(time)) {}
+
+  /// Point of the picture, as in Camera::ray().
+  Vec2 picture(const Vec3& world) const;
+
+ private:
+  Camera::Type type_;
+  Affine to_camera_;
+  std::array<float, 4> window_;
 };
 
 }  // namespace velour

@@ -39,6 +39,7 @@ struct EmbreeApi {
   VELOUR_EMBREE(rtcGetGeometryBufferData);
   VELOUR_EMBREE(rtcSetGeometryInstancedScene);
   VELOUR_EMBREE(rtcSetGeometryTransform);
+  VELOUR_EMBREE(rtcSetGeometryTimeStepCount);
 #if VELOUR_EMBREE_MAJOR >= 4
   VELOUR_EMBREE(rtcIntersect1);
   VELOUR_EMBREE(rtcOccluded1);
@@ -90,6 +91,7 @@ struct EmbreeApi {
       packet.dir_z[i] = rays[i].dir_z;
       packet.tfar[i] = rays[i].tfar;
       packet.mask[i] = rays[i].mask;
+      packet.time[i] = rays[i].time;
     }
     rtcOccluded8(valid, scene, &packet, arguments);
     for (unsigned i = 0; i < count; ++i) rays[i].tfar = packet.tfar[i];

@@ -123,17 +123,18 @@ EmbreeMeshes::~EmbreeMeshes() {
   api_.rtcReleaseDevice(device_);
 }
 
-uint32_t EmbreeMeshes::add(std::span<const Vec3> positions, std::span<const glm::uvec3> triangles) {
-  scenes_.push_back(scene_of(positions, triangles));
-  sizes_.push_back({positions.size(), triangles.size()});
+uint32_t EmbreeMeshes::add(std::span<const Vec3> positions, std::span<const glm::uvec3> triangles, unsigned steps) {
+  scenes_.push_back(scene_of(positions, triangles, steps));
+  sizes_.push_back({positions.size() / steps, triangles.size(), steps});
   unbuilt_.push_back(static_cast<uint32_t>(scenes_.size() - 1));
   return unbuilt_.back();
 }
 
-void EmbreeMeshes::set(uint32_t number, std::span<const Vec3> positions, std::span<const glm::uvec3> triangles) {
-  RTCScene fresh = scene_of(positions, triangles);
+void EmbreeMeshes::set(uint32_t number, std::span<const Vec3> positions, std::span<const glm::uvec3> triangles,
+                       unsigned steps) {
+  RTCScene fresh = scene_of(positions, triangles, steps);
   api_.rtcReleaseScene(std::exchange(scenes_.at(number), fresh));
-  sizes_[number] = {positions.size(), triangles.size()};
+  sizes_[number] = {positions.size() / steps, triangles.size(), steps};
   if (std::ranges::find(unbuilt_, number) == unbuilt_.end()) unbuilt_.push_back(number);
 }
 
@@ -161,13 +162,16 @@ std::vector<RTCScene> EmbreeMeshes::unbuilt_scenes(std::span<const uint32_t> num
 RTCGeometry EmbreeMeshes::placed(uint32_t number, const Affine& place) const {
   RTCGeometry mesh = api_.rtcGetGeometry(scenes_.at(number), 0);
   RTCGeometry geometry = api_.rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_TRIANGLE);
-  const auto [vertices, triangles] = sizes_[number];
+  const auto [vertices, triangles, steps] = sizes_[number];
   if (triangles == 0) return geometry;
-  auto* to = static_cast<Vec3*>(
-      api_.rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, sizeof(Vec3), vertices));
-  check(api_.rtcGetDeviceError(device_));
-  const auto* from = static_cast<const Vec3*>(api_.rtcGetGeometryBufferData(mesh, RTC_BUFFER_TYPE_VERTEX, 0));
-  std::transform(from, from + vertices, to, [&](const Vec3& p) { return place.point(p); });
+  api_.rtcSetGeometryTimeStepCount(geometry, steps);
+  for (unsigned step = 0; step < steps; ++step) {
+    auto* to = static_cast<Vec3*>(api_.rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, step,
+                                                               RTC_FORMAT_FLOAT3, sizeof(Vec3), vertices));
+    check(api_.rtcGetDeviceError(device_));
+    const auto* from = static_cast<const Vec3*>(api_.rtcGetGeometryBufferData(mesh, RTC_BUFFER_TYPE_VERTEX, step));
+    std::transform(from, from + vertices, to, [&](const Vec3& p) { return place.point(p); });
+  }
   api_.rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
                                   api_.rtcGetGeometryBufferData(mesh, RTC_BUFFER_TYPE_INDEX, 0), 0, sizeof(glm::uvec3),
                                   triangles);
@@ -193,22 +197,27 @@ RTCScene EmbreeMeshes::new_scene() const {
   return scene;
 }
 
-RTCScene EmbreeMeshes::scene_of(std::span<const Vec3> positions, std::span<const glm::uvec3> triangles) const {
+RTCScene EmbreeMeshes::scene_of(std::span<const Vec3> positions, std::span<const glm::uvec3> triangles,
+                                unsigned steps) const {
+  const size_t vertices = positions.size() / steps;
   for (const glm::uvec3& t : triangles) {
-    if (std::max({t.x, t.y, t.z}) >= positions.size()) {
+    if (std::max({t.x, t.y, t.z}) >= vertices) {
       throw Error(Status::invalid_argument, "A triangle has vertex index " + std::to_string(std::max({t.x, t.y, t.z})) +
-                                                ", but the mesh has only " + std::to_string(positions.size()) +
-                                                " vertices.");
+                                                ", but the mesh has only " + std::to_string(vertices) + " vertices.");
     }
   }
   RTCGeometry geometry = api_.rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_TRIANGLE);
   if (!triangles.empty()) {
-    void* vertex = api_.rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, sizeof(Vec3),
-                                                positions.size());
+    api_.rtcSetGeometryTimeStepCount(geometry, steps);
+    for (unsigned step = 0; step < steps; ++step) {
+      void* vertex = api_.rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, step, RTC_FORMAT_FLOAT3,
+                                                  sizeof(Vec3), vertices);
+      check(api_.rtcGetDeviceError(device_));
+      std::memcpy(vertex, positions.data() + step * vertices, vertices * sizeof(Vec3));
+    }
     void* index = api_.rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, sizeof(glm::uvec3),
                                                triangles.size());
     check(api_.rtcGetDeviceError(device_));
-    std::memcpy(vertex, positions.data(), positions.size_bytes());
     std::memcpy(index, triangles.data(), triangles.size_bytes());
   }
   RTCScene scene = new_scene();

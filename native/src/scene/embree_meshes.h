@@ -23,8 +23,8 @@ class EmbreeMeshes {
   EmbreeMeshes& operator=(const EmbreeMeshes&) = delete;
 
   /// See EmbreeScene::add_mesh() and set_mesh().
-  uint32_t add(std::span<const Vec3> positions, std::span<const glm::uvec3> triangles);
-  void set(uint32_t number, std::span<const Vec3> positions, std::span<const glm::uvec3> triangles);
+  uint32_t add(std::span<const Vec3> positions, std::span<const glm::uvec3> triangles, unsigned steps);
+  void set(uint32_t number, std::span<const Vec3> positions, std::span<const glm::uvec3> triangles, unsigned steps);
   /// Builds the meshes among `numbers` that are not built yet. A cancel ends the wait, not the build: the next call
   /// waits for it, except for meshes that have been replaced or are not among its `numbers`.
   void build(std::span<const uint32_t> numbers, int threads, const Progress* progress);
@@ -46,8 +46,9 @@ class EmbreeMeshes {
   class Build;
   struct Size {
     size_t vertices, triangles;
+    unsigned steps;
   };
-  RTCScene scene_of(std::span<const Vec3> positions, std::span<const glm::uvec3> triangles) const;
+  RTCScene scene_of(std::span<const Vec3> positions, std::span<const glm::uvec3> triangles, unsigned steps) const;
   /// The unbuilt scenes among `numbers`.
   std::vector<RTCScene> unbuilt_scenes(std::span<const uint32_t> numbers) const;
   /// Waits until build_ has ended and takes the meshes that it built from unbuilt_.

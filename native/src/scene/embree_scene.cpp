@@ -23,7 +23,7 @@ void to_embree(const Ray& ray, RTCRay& r) {
   r.dir_x = ray.direction.x;
   r.dir_y = ray.direction.y;
   r.dir_z = ray.direction.z;
-  r.time = 0.0f;
+  r.time = ray.time;
   r.tfar = ray.far;
   r.mask = ~0u;
   r.id = 0;
@@ -38,6 +38,9 @@ struct EmbreeScene::Impl {
     Affine object_to_world;
     Mat3 normal_to_world;
     float front;  // -1 if mirrored, which reverses the winding in world space; else 1
+    std::vector<Affine> steps;
+
+    bool moves() const { return !steps.empty(); }
   };
 
   const EmbreeApi& api = embree();
@@ -71,8 +74,8 @@ struct EmbreeScene::Impl {
   RTCScene build_top() const {
     RTCScene scene = meshes->new_scene();
     for (uint32_t i = 0; i < instances.size(); ++i) {
-      RTCGeometry geometry = levels == Levels::one ? meshes->placed(instances[i].mesh, instances[i].object_to_world)
-                                                   : instance(instances[i]);
+      RTCGeometry geometry = is_placed(instances[i]) ? meshes->placed(instances[i].mesh, instances[i].object_to_world)
+                                                     : instance(instances[i]);
       api.rtcCommitGeometry(geometry);
       api.rtcAttachGeometryByID(scene, geometry, i);
       api.rtcReleaseGeometry(geometry);
@@ -83,9 +86,16 @@ struct EmbreeScene::Impl {
   RTCGeometry instance(const Instance& of) const {
     RTCGeometry geometry = api.rtcNewGeometry(meshes->device(), RTC_GEOMETRY_TYPE_INSTANCE);
     api.rtcSetGeometryInstancedScene(geometry, meshes->scene(of.mesh));
+    if (of.moves()) api.rtcSetGeometryTimeStepCount(geometry, static_cast<unsigned>(of.steps.size()));
     api.rtcSetGeometryTransform(geometry, 0, RTC_FORMAT_FLOAT3X4_ROW_MAJOR, of.object_to_world.m);
+    for (unsigned step = 0; step < of.steps.size(); ++step) {
+      api.rtcSetGeometryTransform(geometry, step, RTC_FORMAT_FLOAT3X4_ROW_MAJOR, of.steps[step].m);
+    }
     return geometry;
   }
+
+  /// Whether the triangles of an instance are in the top level.
+  bool is_placed(const Instance& of) const { return levels == Levels::one && !of.moves(); }
 
   static bool goes_on(void* progress, double /*fraction*/) {
     return !static_cast<const Progress*>(progress)->cancelled();
@@ -109,38 +119,46 @@ struct EmbreeScene::Impl {
       hit.instance = kNoHit;
       return;
     }
-    hit.instance = levels == Levels::one ? from.hit.geomID : from.hit.instID[0];
+    const bool in_top = from.hit.instID[0] == RTC_INVALID_GEOMETRY_ID;
+    hit.instance = in_top ? from.hit.geomID : from.hit.instID[0];
     hit.distance = from.ray.tfar;
     hit.u = from.hit.u;
     hit.v = from.hit.v;
     hit.triangle = from.hit.primID;
     hit.shell_s = std::numeric_limits<float>::quiet_NaN();
+    hit.time = from.ray.time;
     const Vec3 normal(from.hit.Ng_x, from.hit.Ng_y, from.hit.Ng_z);
     const Instance& of = instances[hit.instance];
-    hit.geometric_normal = levels == Levels::one ? of.front * normal : of.normal_to_world * normal;
+    if (in_top) {
+      hit.geometric_normal = of.front * normal;
+    } else {
+      hit.geometric_normal = (of.moves() ? interpolated(of.steps, hit.time).normal_map() : of.normal_to_world) * normal;
+    }
   }
 };
 
 EmbreeScene::EmbreeScene() : impl_(std::make_unique<Impl>()) {}
 EmbreeScene::~EmbreeScene() = default;
 
-uint32_t EmbreeScene::add_mesh(std::span<const Vec3> positions, std::span<const glm::uvec3> triangles) {
-  return impl_->meshes->add(positions, triangles);
+uint32_t EmbreeScene::add_mesh(std::span<const Vec3> positions, std::span<const glm::uvec3> triangles, unsigned steps) {
+  return impl_->meshes->add(positions, triangles, steps);
 }
 
-void EmbreeScene::set_mesh(uint32_t number, std::span<const Vec3> positions, std::span<const glm::uvec3> triangles) {
-  impl_->meshes->set(number, positions, triangles);
+void EmbreeScene::set_mesh(uint32_t number, std::span<const Vec3> positions, std::span<const glm::uvec3> triangles,
+                           unsigned steps) {
+  impl_->meshes->set(number, positions, triangles, steps);
 }
 
 void EmbreeScene::share_meshes(const EmbreeScene& other) { impl_->meshes = other.impl_->meshes; }
 
-uint32_t EmbreeScene::add_instance(uint32_t mesh, const Affine& object_to_world) {
+uint32_t EmbreeScene::add_instance(uint32_t mesh, const Affine& object_to_world, std::span<const Affine> steps) {
   if (mesh >= impl_->meshes->size()) {
     throw Error(Status::invalid_argument, "The instance has mesh " + std::to_string(mesh) + ", which does not exist.");
   }
   const Vec3 z = glm::cross(object_to_world.column(0), object_to_world.column(1));
   const float front = glm::dot(z, object_to_world.column(2)) < 0.0f ? -1.0f : 1.0f;
-  impl_->instances.push_back({mesh, object_to_world, object_to_world.normal_map(), front});
+  impl_->instances.push_back(
+      {mesh, object_to_world, object_to_world.normal_map(), front, {steps.begin(), steps.end()}});
   return static_cast<uint32_t>(impl_->instances.size() - 1);
 }
 
@@ -151,11 +169,12 @@ void EmbreeScene::commit(int threads, const Progress* progress, Levels levels) {
   s.release_top();
   s.levels = s.repeats_much() ? Levels::two : levels;
   std::vector<uint32_t> built;  // meshes that need hierarchies of their own
-  if (s.levels == Levels::two) {
-    for (const Impl::Instance& instance : s.instances) built.push_back(instance.mesh);
+  for (const Impl::Instance& instance : s.instances) {
+    if (!s.is_placed(instance)) built.push_back(instance.mesh);
   }
   s.meshes->build(built, threads, progress);
-  if (s.levels == Levels::two && s.instances.size() == 1 && s.instances[0].object_to_world == Affine{}) {
+  const bool is_single = s.instances.size() == 1 && !s.instances[0].moves();
+  if (s.levels == Levels::two && is_single && s.instances[0].object_to_world == Affine{}) {
     s.levels = Levels::one;
     s.top = s.meshes->scene(s.instances[0].mesh);
     s.api.rtcRetainScene(s.top);
@@ -212,7 +231,7 @@ void EmbreeScene::intersect(std::span<const Ray> rays, Hit* hits) const {
     const size_t count = std::min(kRayBatch, rays.size() - done);
     for (size_t i = 0; i < count; ++i) {
       to_embree(rays[done + i], query[i].ray);
-      query[i].hit.geomID = RTC_INVALID_GEOMETRY_ID;
+      query[i].hit.geomID = query[i].hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
     }
     impl_->api.intersect(impl_->top, query, static_cast<unsigned>(count));
     for (size_t i = 0; i < count; ++i) impl_->read_hit(query[i], hits[done + i]);

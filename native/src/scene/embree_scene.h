@@ -12,6 +12,7 @@
 #include "base/progress.h"
 #include "math/sphere/affine.h"
 #include "math/sphere/vec.h"
+#include "scene/motion.h"
 
 namespace velour {
 
@@ -20,6 +21,7 @@ struct Ray {
   float near = 0.0f;
   Vec3 direction;  // unit where distances matter
   float far = std::numeric_limits<float>::infinity();
+  float time = kMiddleTime;  // 0..1, while the shutter is open
 };
 
 inline constexpr uint32_t kNoHit = 0xffffffffu;
@@ -34,11 +36,12 @@ struct Hit {
   uint32_t instance = kNoHit;  // kNoHit: the ray hit nothing
   /// Found by VisibleRays behind the crossing of a shell (ShellHit); NaN: not computed.
   float shell_begin = 0, shell_s = std::numeric_limits<float>::quiet_NaN();
+  float time = kMiddleTime;  // of the ray
 };
 
 /// Meshes and instances of them. After commit(), any number of threads may trace. Changes need another commit(). A
 /// scene that changes has two levels, so that its meshes stay built. A static scene has one level with the transformed
-/// triangles of all instances, which takes a fifth less time to render a rotated mesh.
+/// triangles of all instances that do not move, which takes a fifth less time to render a rotated mesh.
 class EmbreeScene {
  public:
   EmbreeScene();
@@ -46,15 +49,18 @@ class EmbreeScene {
   EmbreeScene(const EmbreeScene&) = delete;
   EmbreeScene& operator=(const EmbreeScene&) = delete;
 
-  /// Copies the geometry and returns the mesh's number.
-  uint32_t add_mesh(std::span<const Vec3> positions, std::span<const glm::uvec3> triangles);
+  /// Copies the geometry and returns the mesh's number. A mesh that deforms has the positions of all `steps` in a row,
+  /// at even times from 0 to 1; they are linear in between.
+  uint32_t add_mesh(std::span<const Vec3> positions, std::span<const glm::uvec3> triangles, unsigned steps = 1);
   /// Replaces a mesh. A mesh without triangles takes no memory.
-  void set_mesh(uint32_t number, std::span<const Vec3> positions, std::span<const glm::uvec3> triangles);
+  void set_mesh(uint32_t number, std::span<const Vec3> positions, std::span<const glm::uvec3> triangles,
+                unsigned steps = 1);
   /// Replaces this scene's meshes by those of `other`, which is committed. Copies no geometry and rebuilds no mesh.
   /// Neither scene may add meshes while the other is traced.
   void share_meshes(const EmbreeScene& other);
-  /// Returns the instance's number, counted from 0.
-  uint32_t add_instance(uint32_t mesh, const Affine& object_to_world);
+  /// Returns the instance's number, counted from 0. `steps`: transforms of an instance that moves, at even times from 0
+  /// to 1 and linear in between (motion_steps()); none: it stays at `object_to_world`.
+  uint32_t add_instance(uint32_t mesh, const Affine& object_to_world, std::span<const Affine> steps = {});
   void clear_instances();
   enum class Levels { one, two };
   /// Builds with at most `threads` threads (0: all). A scene whose only instance has the identity transform always has
@@ -64,7 +70,7 @@ class EmbreeScene {
   void commit(int threads, const Progress* progress = nullptr, Levels levels = Levels::two);
   static constexpr double kMaxRepeated = 1.5;
 
-  /// Levels of the committed scene.
+  /// Levels of the committed scene, whatever moves.
   Levels levels() const;
 
   void intersect(const Ray& ray, Hit& hit) const;

@@ -12,6 +12,7 @@
 #include "math/sphere/affine.h"
 #include "math/sphere/vec.h"
 #include "scene/mesh_arrays.h"
+#include "scene/motion.h"
 
 namespace velour {
 
@@ -47,7 +48,13 @@ class Mesh {
   SidePoint on_side(uint32_t triangle, const Vec2& uv) const;
 
   std::span<const Vec3> positions() const { return positions_; }
-  /// Bounds of all triangles in object space.
+  /// Whether its shape changes while the shutter is open. All that is not asked for at a time is of the middle.
+  bool deforms() const { return steps_ > 0; }
+  /// Number of shapes at even times from 0 to 1; they are linear in between. 0 if it does not deform.
+  uint32_t steps() const { return steps_; }
+  /// The positions of all shapes in a row.
+  std::span<const Vec3> moved_positions() const { return moved_positions_; }
+  /// Bounds of all triangles in object space, whatever the time.
   const Bounds& bounds() const { return bounds_; }
   std::span<const glm::uvec3> triangles() const { return triangles_; }
   /// Number of input triangles that were left out.
@@ -62,29 +69,29 @@ class Mesh {
   /// Color at barycentric weights (u, v) of corners 1 and 2; black for a missing set.
   Rgb color(uint32_t triangle, const Vec2& uv, size_t set) const;
 
-  // At barycentric weights (u, v) of corners 1 and 2, in object space:
-  Vec3 position(uint32_t triangle, const Vec2& uv) const;
+  // In object space; at barycentric weights (u, v) of corners 1 and 2:
+  std::array<Vec3, 3> corners(uint32_t triangle, float time = kMiddleTime) const;
+  Vec3 position(uint32_t triangle, const Vec2& uv, float time = kMiddleTime) const;
   /// Like position(), but of absolute coordinates; the rounding error of position() is proportional to it.
-  Vec3 position_magnitude(uint32_t triangle, const Vec2& uv) const;
+  Vec3 position_magnitude(uint32_t triangle, const Vec2& uv, float time = kMiddleTime) const;
   /// Not normalized.
-  Vec3 shading_normal(uint32_t triangle, const Vec2& uv) const;
+  Vec3 shading_normal(uint32_t triangle, const Vec2& uv, float time = kMiddleTime) const;
   /// Unit normals.
-  std::span<const Vec3, 3> corner_normals(uint32_t triangle) const {
-    return std::span<const Vec3, 3>(&normals_[3 * static_cast<size_t>(triangle)], 3);
-  }
+  std::array<Vec3, 3> corner_normals(uint32_t triangle, float time = kMiddleTime) const;
   /// Direction of d position / d (first coordinate of `map` times the texture coordinates), not normalized; zero
   /// without texture coordinates or where they are degenerate.
-  Vec3 tangent(uint32_t triangle, const Mat2& map = Mat2(1.0f)) const;
+  Vec3 tangent(uint32_t triangle, const Mat2& map = Mat2(1.0f), float time = kMiddleTime) const;
   /// Like tangent(), but from MikkTSpace's tangents, which are smooth where triangles share corners. `map` rotates it
   /// on the surface, ignoring the stretch of the texture. Requires has_tangents().
-  Vec3 smooth_tangent(uint32_t triangle, const Vec2& uv, const Mat2& map = Mat2(1.0f)) const;
+  Vec3 smooth_tangent(uint32_t triangle, const Vec2& uv, const Mat2& map = Mat2(1.0f), float time = kMiddleTime) const;
   uint32_t material_slot(uint32_t triangle) const { return slots_.empty() ? 0 : slots_[triangle]; }
   /// Computes the tangents for relief() and smooth_tangent(), unless they exist or there are no texture coordinates.
   void make_tangents();
   bool has_tangents() const { return !tangents_.empty(); }
   /// Columns: tangent, bitangent and normal for a normal map in object space, interpolated and not normalized. All
-  /// three transform like normals. Requires has_tangents().
-  Mat3 relief(uint32_t triangle, const Vec2& uv) const;
+  /// three transform like normals. The tangent keeps its direction while the mesh deforms, as in Cycles. Requires
+  /// has_tangents().
+  Mat3 relief(uint32_t triangle, const Vec2& uv, float time = kMiddleTime) const;
   uint64_t bytes() const;
   /// About the file: what of it was left out or replaced.
   const std::vector<Warning>& warnings() const { return warnings_; }
@@ -96,17 +103,22 @@ class Mesh {
   void copy_uvs(const MeshArrays& arrays, size_t from, size_t to);
   void copy_colors(const MeshArrays& arrays, size_t from, size_t to);
   void find_bounds();
-  /// Replaces missing or unusable normals of triangles [begin, end) and normalizes all.
-  void finish_normals(const MeshArrays& arrays, std::span<const uint32_t> kept, std::span<const Vec3d> sums,
-                      size_t begin, size_t end);
-  std::vector<Vec3d> summed_normals() const;
+  void copy_shapes(const MeshArrays& arrays, std::span<const uint32_t> kept);
+  /// Replaces missing or unusable normals by those of triangles at `positions`, and normalizes all.
+  void finish_normals(const MeshArrays& arrays, std::span<const uint32_t> kept, std::span<const Vec3> positions,
+                      std::span<Vec3> normals) const;
+  std::vector<Vec3d> summed_normals(std::span<const Vec3> positions) const;
   /// `quad`: (bottom a, bottom b, top b) and (bottom a, top b, top a) over the edge from a to b.
   void add_side(const BorderEdge& edge, const std::array<glm::uvec3, 2>& quad);
 
   std::vector<Vec3> positions_;
   Bounds bounds_;
   std::vector<glm::uvec3> triangles_;
-  std::vector<Vec3> normals_;                // 3 per triangle
+  std::vector<Vec3> normals_;  // 3 per triangle
+  uint32_t steps_ = 0;
+  std::vector<Vec3> moved_positions_;        // by step and vertex
+  std::vector<Vec3> moved_normals_;          // by step, 3 per triangle
+  std::vector<bool> flat_;                   // by triangle of a mesh that deforms: shaded with its own normal
   std::vector<Vec2> uvs_;                    // 3 per triangle, or none
   std::vector<std::vector<Vec2>> more_uvs_;  // further sets, without sides
   std::vector<Vec2> relief_uvs_;             // 3 per triangle until tangents exist; none: the first set is used

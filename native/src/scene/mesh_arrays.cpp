@@ -11,6 +11,7 @@
 #include "base/parallel.h"
 #include "math/sphere/frame.h"
 #include "math/sphere/random.h"
+#include "scene/motion.h"
 
 namespace velour {
 
@@ -53,11 +54,16 @@ std::optional<std::string> missing(const MeshArrays& arrays, size_t triangle) {
 
 bool usable(const MeshArrays& arrays, size_t triangle) {
   const glm::uvec3& t = arrays.triangles[triangle];
-  const auto position = [&](int k) {
-    return arrays.positions[arrays.corner_vertices.empty() ? t[k] : arrays.corner_vertices[t[k]]];
+  const auto vertex = [&](int k) { return arrays.corner_vertices.empty() ? t[k] : arrays.corner_vertices[t[k]]; };
+  const auto stays_usable = [&](uint32_t v) {
+    for (size_t i = v; i < arrays.moved_positions.size(); i += arrays.positions.size()) {
+      if (!usable_position(arrays.moved_positions[i])) return false;
+    }
+    return usable_position(arrays.positions[v]);
   };
-  const Vec3 a = position(0), b = position(1), c = position(2);
-  return usable_position(a) && usable_position(b) && usable_position(c) && glm::length(area_normal(a, b, c)) > 0.0;
+  const uint32_t v[3] = {vertex(0), vertex(1), vertex(2)};
+  return std::ranges::all_of(v, stays_usable) &&
+         glm::length(area_normal(arrays.positions[v[0]], arrays.positions[v[1]], arrays.positions[v[2]])) > 0.0;
 }
 
 }  // namespace
@@ -83,6 +89,27 @@ void MeshArrays::check() const {
   check_length(material_slots.size(), n, "material slots");
   check_length(smooth.size(), n, "smooth flags");
   check_length(vertex_normals.size(), positions.size(), "vertex normals");
+  if (steps == 1 || steps > kMaxMotionSteps) {
+    refuse("A mesh deforms in " + std::to_string(steps) + " steps; the number must be 0 or 2 to " +
+           std::to_string(kMaxMotionSteps) + ".");
+  }
+  if (moved_positions.size() != steps * positions.size()) {
+    refuse("A mesh that deforms in " + std::to_string(steps) + " steps has " + std::to_string(moved_positions.size()) +
+           " moved positions, but " + std::to_string(positions.size()) + " vertices.");
+  }
+  check_length(moved_corner_normals.size(), steps * corner_normals.size(), "moved corner normals");
+  check_length(moved_vertex_normals.size(), steps * vertex_normals.size(), "moved vertex normals");
+}
+
+MeshArrays MeshArrays::at(size_t step) const {
+  MeshArrays arrays = *this;
+  const auto part = [step](std::span<const Vec3> all, std::span<const Vec3>& of) {
+    of = all.empty() ? all : all.subspan(step * of.size(), of.size());
+  };
+  part(moved_positions, arrays.positions);
+  part(moved_corner_normals, arrays.corner_normals);
+  part(moved_vertex_normals, arrays.vertex_normals);
+  return arrays;
 }
 
 Vec3 MeshArrays::normal(size_t triangle, int k, uint32_t vertex) const {

@@ -24,7 +24,13 @@ struct MeshArrays {
   std::span<const uint32_t> corner_vertices{};
   /// Used for smooth triangles without corner_normals; none: area-weighted means of the triangles around each vertex.
   std::span<const Vec3> vertex_normals{};
+  /// Shapes of a mesh that deforms: `steps` of them in a row, at even times while the shutter is open, each with as
+  /// many elements as the array of that name. The arrays above are those of the middle. 0: the mesh keeps its shape.
+  uint32_t steps = 0;
+  std::span<const Vec3> moved_positions{}, moved_corner_normals{}, moved_vertex_normals{};
 
+  /// The arrays with the shape of a step.
+  MeshArrays at(size_t step) const;
   /// Throws Error(invalid_argument) if lengths disagree.
   void check() const;
   size_t corners() const { return corner_vertices.empty() ? 3 * triangles.size() : corner_vertices.size(); }
@@ -36,8 +42,8 @@ struct MeshArrays {
   bool is_smooth(size_t triangle) const { return smooth.empty() || smooth[triangle] != 0; }
 };
 
-/// Indices of the triangles that a ray can hit reliably. Throws Error(invalid_argument) if a triangle names a missing
-/// vertex or corner.
+/// Indices of the triangles that a ray can hit reliably in the middle of their motion. Throws Error(invalid_argument)
+/// if a triangle names a missing vertex or corner.
 std::vector<uint32_t> usable_triangles(const MeshArrays& arrays);
 
 /// Whether all coordinates are finite and within the ray tracer's range.

@@ -11,18 +11,27 @@ namespace velour {
 namespace {
 
 /// Bound of the rounding error of a world coordinate computed from terms of `magnitude`: a sum of three products in
-/// object space, then of three products and a translation, takes 8 roundings relative to their absolute values.
-float position_error(const Affine& map, const Vec3& magnitude) {
+/// object space, then of three products and a translation, takes 8 roundings relative to their absolute values; the
+/// interpolation of positions and transforms of what moves takes 6 more, here and in the ray tracer.
+float position_error(const Affine& map, const Vec3& magnitude, bool moves) {
   float largest = 0.0f;
   for (const float* m = map.m; m < map.m + 12; m += 4) {
     const float sum = std::abs(m[0]) * magnitude.x + std::abs(m[1]) * magnitude.y + std::abs(m[2]) * magnitude.z;
     largest = std::max(largest, sum + std::abs(m[3]));
   }
-  return 8.0f * 0x1p-24f * largest;
+  return (moves ? 20.0f : 8.0f) * 0x1p-24f * largest;
 }
 
 void require_finite(const Affine& map, const char* what) {
   if (!map.finite()) refuse(std::string("The transform of ") + what + " contains a number that is not finite.");
+}
+
+void require_steps(std::span<const Affine> steps, const char* what) {
+  if (steps.empty() || steps.size() > kMaxMotionSteps) {
+    refuse(std::string("The motion of ") + what + " has " + std::to_string(steps.size()) +
+           " transforms; it must have 1 to " + std::to_string(kMaxMotionSteps) + ".");
+  }
+  for (const Affine& step : steps) require_finite(step, what);
 }
 
 void require_placements(const std::vector<TextureMap>& placements, size_t materials) {
@@ -47,12 +56,22 @@ bool have_same_tops(const SurfaceMaterial& a, const SurfaceMaterial& b) {
 Bounds bounds_of(const Mesh& mesh, const Affine& to_world) {
   Bounds bounds;
   for (const glm::uvec3& t : mesh.triangles()) {
-    for (int k = 0; k < 3; ++k) bounds.add(to_world.point(mesh.positions()[t[k]]));
+    for (int k = 0; k < 3; ++k) {
+      bounds.add(to_world.point(mesh.positions()[t[k]]));
+      for (size_t v = t[k]; v < mesh.moved_positions().size(); v += mesh.positions().size())
+        bounds.add(to_world.point(mesh.moved_positions()[v]));
+    }
   }
   return bounds;
 }
 
 }  // namespace
+
+Bounds Scene::Instance::box_in_world(const Bounds& box) const {
+  Bounds bounds = box_around(box, object_to_world);
+  for (const Affine& step : steps) bounds.add(box_around(box, step));
+  return bounds;
+}
 
 void Scene::changed() {
   committed_ = false;
@@ -137,22 +156,25 @@ void Scene::set_drawn_to(uint32_t material, bool drawn) {
   materials_[material].drawn_to = drawn;
 }
 
-void Scene::add_instance(uint32_t mesh, const Affine& object_to_world, std::vector<uint32_t> materials,
-                         std::vector<TextureMap> placements, uint8_t hidden_from, float terminator) {
+void Scene::add_moving_instance(uint32_t mesh, std::span<const Affine> object_to_world, std::vector<uint32_t> materials,
+                                std::vector<TextureMap> placements, uint8_t hidden_from, float terminator) {
   if (mesh >= meshes_.size()) refuse("The instance has mesh " + std::to_string(mesh) + ", which does not exist.");
-  require_finite(object_to_world, "an instance");
+  require_steps(object_to_world, "an instance");
   if (materials.empty()) refuse("An instance must have at least one material.");
   for (uint32_t m : materials) {
     if (m >= materials_.size()) refuse("The instance has material " + std::to_string(m) + ", which does not exist.");
   }
   require_placements(placements, materials.size());
   geometry_changed();
-  if (!object_to_world.invertible()) {
+  std::vector<Affine> steps = motion_steps(object_to_world);
+  const Affine middle = steps.empty() ? object_to_world[0] : interpolated(steps, kMiddleTime);
+  if (!middle.invertible()) {
     ++flat_instances_;
     return;
   }
-  instances_.push_back({mesh, object_to_world, object_to_world.normal_map(), std::move(materials),
-                        std::move(placements), hidden_from, std::clamp(terminator, 0.0f, 1.0f)});
+  instances_.push_back({mesh, middle, middle.normal_map(), std::move(materials), std::move(placements), hidden_from,
+                        std::clamp(terminator, 0.0f, 1.0f)});
+  instances_.back().steps = std::move(steps);
 }
 
 uint32_t Scene::add_light(const Light& light) {
@@ -187,6 +209,15 @@ void Scene::set_environment(Environment environment) {
 
 void Scene::set_camera(const Camera& camera) {
   require_finite(camera.camera_to_world, "the camera");
+  for (const Affine& step : camera.steps) require_finite(step, "the camera");
+  if (camera.shutter.has_value() != camera_.shutter.has_value()) {  // which decides whether rays meet what moves
+    geometry_changed();
+    for (uint32_t m = 0; m < meshes_.size(); ++m) {
+      if (!meshes_[m].deforms()) continue;
+      if (m < mesh_rays_.size()) trace(meshes_[m], false, mesh_rays_[m]);
+      drop_tops(m);
+    }
+  }
   committed_ = false;
   camera_ = camera;
 }
@@ -228,7 +259,9 @@ Bounds Scene::bounds_of_instances() const {
   for (const Instance& i : instances_) {
     const Mesh& mesh = geometry_changed_ ? meshes_[i.mesh] : traced_mesh(i);
     // Exact bounds matter only for instances at the border, which are few among a hundred thousand.
-    if (!bounds.holds(box_around(mesh.bounds(), i.object_to_world))) bounds.add(bounds_of(mesh, i.object_to_world));
+    if (bounds.holds(i.box_in_world(mesh.bounds()))) continue;
+    bounds.add(bounds_of(mesh, i.object_to_world));
+    for (const Affine& step : i.steps) bounds.add(bounds_of(mesh, step));
   }
   return bounds;
 }
@@ -240,7 +273,10 @@ SceneInfo Scene::count() const {
   info.lights = lights_.size();
   info.materials = materials_.size();
   info.bytes = environment_.bytes();
-  for (const Instance& i : instances_) info.triangles += meshes_[i.mesh].triangles().size();
+  for (const Instance& i : instances_) {
+    info.triangles += meshes_[i.mesh].triangles().size();
+    info.bytes += 2 * i.steps.size() * sizeof(Affine);  // here and in rays()
+  }
   for (const auto& [key, top] : tops_) info.bytes += top.mesh.bytes();
   for (size_t m = 0; m < meshes_.size(); ++m) {
     info.bytes += meshes_[m].bytes();
@@ -288,12 +324,9 @@ TexturePoint Scene::texture(const Hit& hit, size_t set) const {
 
 bool Scene::find_dual_edges(const Hit& hit, Vec3d& dual1, Vec3d& dual2) const {
   const Instance& instance = instances_[hit.instance];
-  const Mesh& mesh = traced_mesh(instance);
-  const glm::uvec3& corner = mesh.triangles()[hit.triangle];
-  const auto edge = [&](int k) {
-    return Vec3d(instance.object_to_world.vector(mesh.positions()[corner[k]] - mesh.positions()[corner[0]]));
-  };
-  const Vec3d e1 = edge(1), e2 = edge(2), normal = glm::cross(e1, e2);
+  const std::array<Vec3, 3> corner = traced_mesh(instance).corners(hit.triangle, hit.time);
+  const Affine map = instance.place(hit.time);
+  const Vec3d e1(map.vector(corner[1] - corner[0])), e2(map.vector(corner[2] - corner[0])), normal = glm::cross(e1, e2);
   const double square = glm::dot(normal, normal);
   if (!(square > 0.0)) return false;
   dual1 = glm::cross(e2, normal) / square;
@@ -326,7 +359,8 @@ TexturePoint Scene::texture_of_mesh(const Hit& hit, size_t set) const {
 Mat3 Scene::relief(const Hit& hit) const {
   const Instance& instance = instances_[hit.instance];
   const Mesh& mesh = traced_mesh(instance);
-  return mesh.has_tangents() ? instance.normal_to_world * mesh.relief(hit.triangle, {hit.u, hit.v}) : Mat3(0.0f);
+  if (!mesh.has_tangents()) return Mat3(0.0f);
+  return instance.normal_map(hit.time) * mesh.relief(hit.triangle, {hit.u, hit.v}, hit.time);
 }
 
 Vec3 Scene::tangent(const Hit& hit) const {
@@ -334,23 +368,26 @@ Vec3 Scene::tangent(const Hit& hit) const {
   const TextureMap* placed = placement(hit);
   const Mat2 map = placed != nullptr ? placed->map : Mat2(1.0f);
   const bool smooth = mesh.has_tangents() && materials_[material(hit)].brushed;
-  return smooth ? mesh.smooth_tangent(hit.triangle, {hit.u, hit.v}, map) : mesh.tangent(hit.triangle, map);
+  return smooth ? mesh.smooth_tangent(hit.triangle, {hit.u, hit.v}, map, hit.time)
+                : mesh.tangent(hit.triangle, map, hit.time);
 }
 
 SurfacePoint Scene::surface(const Hit& hit) const {
   const Instance& instance = instances_[hit.instance];
   const Mesh& mesh = traced_mesh(instance);
   const Vec2 uv(hit.u, hit.v);
-  const Vec3 local = mesh.position(hit.triangle, uv);
-  const Affine& map = instance.object_to_world;
+  const Vec3 local = mesh.position(hit.triangle, uv, hit.time);
+  const Affine map = instance.place(hit.time);
   SurfacePoint point;
   point.position = map.point(local);
   const Vec3& front = hit.geometric_normal;
   point.geometric_normal =
       glm::normalize(front / std::max({std::abs(front.x), std::abs(front.y), std::abs(front.z), 1e-37f}));
-  point.shading_normal = glm::normalize(instance.normal_to_world * mesh.shading_normal(hit.triangle, uv));
+  const Vec3 normal = mesh.shading_normal(hit.triangle, uv, hit.time);
+  point.shading_normal = glm::normalize((instance.moves() ? map.normal_map() : instance.normal_to_world) * normal);
   point.tangent = map.vector(tangent(hit));
-  point.error = position_error(map, mesh.position_magnitude(hit.triangle, uv));
+  const bool moves = instance.moves() || mesh.deforms();
+  point.error = position_error(map, mesh.position_magnitude(hit.triangle, uv, hit.time), moves);
   point.material = material(hit);
   if (instance.terminator > 0.0f) {
     point.rounding = rounding(instance, hit);
@@ -363,12 +400,11 @@ SurfacePoint Scene::surface(const Hit& hit) const {
 /// Hanika 2021, "Hacking the Shadow Terminator"). Zero where the surface is concave: rays must not begin below it.
 Vec3 Scene::rounding(const Instance& instance, const Hit& hit) const {
   const Mesh& mesh = traced_mesh(instance);
-  const glm::uvec3 corners = mesh.triangles()[hit.triangle];
-  Vec3 p[3], n[3];
-  for (int k = 0; k < 3; ++k) {
-    p[k] = instance.object_to_world.point(mesh.positions()[corners[k]]);
-    n[k] = glm::normalize(instance.normal_to_world * mesh.corner_normals(hit.triangle)[static_cast<size_t>(k)]);
-  }
+  const Affine map = instance.place(hit.time);
+  const Mat3 normal_map = instance.normal_map(hit.time);
+  std::array<Vec3, 3> p = mesh.corners(hit.triangle, hit.time), n = mesh.corner_normals(hit.triangle, hit.time);
+  for (Vec3& corner : p) corner = map.point(corner);
+  for (Vec3& normal : n) normal = glm::normalize(normal_map * normal);
   const float u = 1.0f - hit.u - hit.v, v = hit.u;  // weights of corners 0 and 1
   const float a = glm::dot(n[2] - n[0], p[0] - p[2]), b = glm::dot(n[2] - n[1], p[1] - p[2]);
   const float c = glm::dot(n[1] - n[0], p[1] - p[0]);

@@ -5,8 +5,10 @@
 #include <memory>
 #include <mutex>
 #include <optional>
+#include <span>
 #include <string>
 #include <typeinfo>
+#include <utility>
 #include <vector>
 #include "base/progress.h"
 #include "base/warning.h"
@@ -16,6 +18,7 @@
 #include "scene/camera.h"
 #include "scene/embree_scene.h"
 #include "scene/mesh.h"
+#include "scene/motion.h"
 #include "scene/scene_shells.h"
 #include "votf/eval/shell_field.h"
 
@@ -165,7 +168,14 @@ class Scene {
   /// `terminator`: cosine, 0 to 1, below which shadow rays begin on the smooth surface that the mesh approximates
   /// (Vertex::shadow_ray); 0: always on the mesh.
   void add_instance(uint32_t mesh, const Affine& object_to_world, std::vector<uint32_t> materials,
-                    std::vector<TextureMap> placements = {}, uint8_t hidden_from = 0, float terminator = 0);
+                    std::vector<TextureMap> placements = {}, uint8_t hidden_from = 0, float terminator = 0) {
+    add_moving_instance(mesh, {&object_to_world, 1}, std::move(materials), std::move(placements), hidden_from,
+                        terminator);
+  }
+  /// An instance with its transforms at even times while the shutter is open, from 0 to 1 (motion_steps()); one: it
+  /// stays. Whatever does not depend on time, such as the heights of shells, is that of the middle.
+  void add_moving_instance(uint32_t mesh, std::span<const Affine> object_to_world, std::vector<uint32_t> materials,
+                           std::vector<TextureMap> placements = {}, uint8_t hidden_from = 0, float terminator = 0);
   void clear_instances();
   uint32_t add_light(const Light& light);
   void clear_lights();
@@ -194,7 +204,7 @@ class Scene {
 
   struct Instance {
     uint32_t mesh;
-    Affine object_to_world;
+    Affine object_to_world;  // in the middle, as the next
     Mat3 normal_to_world;
     std::vector<uint32_t> materials;
     std::vector<TextureMap> placements;  // one per material, or none
@@ -205,7 +215,14 @@ class Scene {
     const ShellTop* top = nullptr;
     uint32_t traced = kNoHit;
     std::vector<float> tile_width = {};
-    uint32_t sides = kNoHit;  // number of the instance of the shell's sides alone; kNoHit: none
+    uint32_t sides = kNoHit;         // number of the instance of the shell's sides alone; kNoHit: none
+    std::vector<Affine> steps = {};  // if it moves: motion_steps()
+
+    bool moves() const { return !steps.empty(); }
+    Affine place(float time) const { return moves() ? interpolated(steps, time) : object_to_world; }
+    Mat3 normal_map(float time) const { return moves() ? interpolated(steps, time).normal_map() : normal_to_world; }
+    /// Encloses everything in `box` at all times.
+    Bounds box_in_world(const Bounds& box) const;
   };
   const std::vector<Mesh>& meshes() const { return meshes_; }
   /// Indexed by Hit::instance.
@@ -215,6 +232,11 @@ class Scene {
   const Mesh& traced_mesh(const Instance& i) const { return i.top != nullptr ? i.top->mesh : meshes_[i.mesh]; }
 
   const EmbreeScene& rays() const { return *rays_; }
+  /// Steps that rays() has of an instance: none unless the shutter is open for a time, so that a scene of which only
+  /// the pass "Vector" shows the motion has the same hits as one without motion.
+  std::span<const Affine> traced_steps(const Instance& i) const {
+    return camera_.shutter ? std::span<const Affine>(i.steps) : std::span<const Affine>();
+  }
   SurfacePoint surface(const Hit& hit) const;
   /// Number of the material at a hit.
   uint32_t material(const Hit& hit) const;
@@ -227,7 +249,12 @@ class Scene {
   }
   /// Position of a hit in object space.
   Vec3 object_position(const Hit& hit) const {
-    return traced_mesh(instances_[hit.instance]).position(hit.triangle, {hit.u, hit.v});
+    return traced_mesh(instances_[hit.instance]).position(hit.triangle, {hit.u, hit.v}, hit.time);
+  }
+  /// World-space position that the point of the surface has at another time.
+  Vec3 position(const Hit& hit, float time) const {
+    const Instance& i = instances_[hit.instance];
+    return i.place(time).point(traced_mesh(i).position(hit.triangle, {hit.u, hit.v}, time));
   }
   /// Derivatives of Hit::u and Hit::v along world-space `offset`, projected onto the triangle; 0 on one without an
   /// area.

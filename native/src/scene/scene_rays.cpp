@@ -32,7 +32,7 @@ void Scene::build_rays(int threads, const Progress* progress) {
   rays_->clear_instances();
   for (Instance& i : instances_) {
     i.traced = i.top != nullptr ? i.top->number : mesh_rays_[i.mesh];
-    rays_->add_instance(i.traced, i.object_to_world);
+    rays_->add_instance(i.traced, i.object_to_world, traced_steps(i));
   }
   rays_->commit(threads, progress, stays_ ? EmbreeScene::Levels::one : EmbreeScene::Levels::two);
   stays_ = false;
@@ -46,10 +46,15 @@ void Scene::trace(const Mesh& mesh, bool is_traced, uint32_t& number) {
   if (!is_traced) {
     rays_->set_mesh(number, {}, {});
     free_rays_.push_back(std::exchange(number, kNoHit));
-  } else if (free_rays_.empty()) {
-    number = rays_->add_mesh(mesh.positions(), mesh.triangles());
+    return;
+  }
+  const bool deforms = mesh.deforms() && camera_.shutter;
+  const std::span<const Vec3> positions = deforms ? mesh.moved_positions() : mesh.positions();
+  const unsigned steps = deforms ? mesh.steps() : 1;
+  if (free_rays_.empty()) {
+    number = rays_->add_mesh(positions, mesh.triangles(), steps);
   } else {
-    rays_->set_mesh(free_rays_.back(), mesh.positions(), mesh.triangles());
+    rays_->set_mesh(free_rays_.back(), positions, mesh.triangles(), steps);
     number = free_rays_.back();
     free_rays_.pop_back();
   }
@@ -68,21 +73,26 @@ namespace {
 constexpr int kMaxAgainst = 64;
 constexpr float kStep = 0x1p-20f;  // relative to the distance: the ray tracer's own error
 
-uint32_t add_sides(const Mesh& mesh, EmbreeScene& to) {
-  std::vector<Vec3> positions;
+uint32_t add_sides(const Mesh& mesh, bool deforms, EmbreeScene& to) {
+  std::vector<uint32_t> vertices;
   std::vector<glm::uvec3> triangles;
   std::unordered_map<uint32_t, uint32_t> numbers;
   for (size_t t = mesh.first_side(); t < mesh.triangles().size(); ++t) {
     glm::uvec3 corner;
     for (int k = 0; k < 3; ++k) {
       const uint32_t vertex = mesh.triangles()[t][k];
-      const auto [entry, is_new] = numbers.emplace(vertex, static_cast<uint32_t>(positions.size()));
-      if (is_new) positions.push_back(mesh.positions()[vertex]);
+      const auto [entry, is_new] = numbers.emplace(vertex, static_cast<uint32_t>(vertices.size()));
+      if (is_new) vertices.push_back(vertex);
       corner[k] = entry->second;
     }
     triangles.push_back(corner);
   }
-  return to.add_mesh(positions, triangles);
+  std::vector<Vec3> positions;
+  const std::span<const Vec3> from = deforms ? mesh.moved_positions() : mesh.positions();
+  for (size_t step = 0; step < from.size(); step += mesh.positions().size()) {
+    for (const uint32_t vertex : vertices) positions.push_back(from[step + vertex]);
+  }
+  return to.add_mesh(positions, triangles, deforms ? mesh.steps() : 1);
 }
 
 }  // namespace
@@ -96,8 +106,9 @@ void Scene::build_sides(int threads) {
     if (!mesh.has_sides()) continue;
     if (!sides_) sides_ = std::make_unique<EmbreeScene>();
     auto known = numbers.find(instance.traced);
-    if (known == numbers.end()) known = numbers.emplace(instance.traced, add_sides(mesh, *sides_)).first;
-    instance.sides = sides_->add_instance(known->second, instance.object_to_world);
+    const bool deforms = mesh.deforms() && camera_.shutter;
+    if (known == numbers.end()) known = numbers.emplace(instance.traced, add_sides(mesh, deforms, *sides_)).first;
+    instance.sides = sides_->add_instance(known->second, instance.object_to_world, traced_steps(instance));
   }
   if (sides_) sides_->commit(threads, nullptr, rays_->levels());
 }
@@ -107,13 +118,12 @@ Scene::ShellFoot Scene::shell_foot(const Hit& hit) const {
   const Mesh& mesh = traced_mesh(instance);
   if (hit.triangle < mesh.first_side()) return {hit};
   const Mesh::SidePoint point = mesh.on_side(hit.triangle, {hit.u, hit.v});
-  const glm::uvec3& corner = mesh.triangles()[point.triangle];
-  const auto edge = [&](int k) { return mesh.positions()[corner[k]] - mesh.positions()[corner[0]]; };
+  const std::array<Vec3, 3> corner = mesh.corners(point.triangle, hit.time);
   ShellFoot foot{hit, true, 1 - point.height};
   foot.top.triangle = point.triangle;
   foot.top.u = point.uv.x;
   foot.top.v = point.uv.y;
-  foot.top.geometric_normal = instance.normal_to_world * glm::cross(edge(1), edge(2));
+  foot.top.geometric_normal = instance.normal_map(hit.time) * glm::cross(corner[1] - corner[0], corner[2] - corner[0]);
   return foot;
 }
 

@@ -116,7 +116,7 @@ ShellFolds Scene::folds(const Instance& instance, uint32_t slot, const ShellHeig
   const auto last = static_cast<uint32_t>(instance.materials.size() - 1);
   for (uint32_t t = 0; t < mesh.triangles().size(); ++t) {
     if (std::min(mesh.material_slot(t), last) != slot) continue;
-    const std::span<const Vec3, 3> local = mesh.corner_normals(t);
+    const std::array<Vec3, 3> local = mesh.corner_normals(t);
     Vec3 corner[3], normal[3];
     for (int k = 0; k < 3; ++k) {
       corner[k] = instance.object_to_world.point(mesh.positions()[mesh.triangles()[t][k]]);
@@ -167,13 +167,12 @@ float Scene::tile_width(const Instance& instance, uint32_t slot) const {
 ShellFrame Scene::shell(const Hit& hit, const Vec3& direction) const {
   const Instance& instance = instances_[hit.instance];
   const Mesh& mesh = traced_mesh(instance);
-  const glm::uvec3& corner = mesh.triangles()[hit.triangle];
-  const std::span<const Vec3, 3> local = mesh.corner_normals(hit.triangle);
-  Vec3 normal[3];
-  for (size_t k = 0; k < 3; ++k) normal[k] = glm::normalize(instance.normal_to_world * local[k]);
-  const auto edge = [&](int k) {
-    return Vec3d(instance.object_to_world.vector(mesh.positions()[corner[k]] - mesh.positions()[corner[0]]));
-  };
+  const Affine map = instance.place(hit.time);
+  const Mat3 normal_map = instance.normal_map(hit.time);
+  const std::array<Vec3, 3> corner = mesh.corners(hit.triangle, hit.time);
+  std::array<Vec3, 3> normal = mesh.corner_normals(hit.triangle, hit.time);
+  for (Vec3& n : normal) n = glm::normalize(normal_map * n);
+  const auto edge = [&](size_t k) { return Vec3d(map.vector(corner[k] - corner[0])); };
   ShellFrame frame;
   const SurfaceMaterial& surface = materials_[material(hit)];
   frame.field = surface.shell.get();

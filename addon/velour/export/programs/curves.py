@@ -17,6 +17,12 @@ def curve_range(mapping, count):
     )
 
 
+def curve_values(mapping, count):
+    """Values of a single curve at even places from 0 to 1."""
+    mapping.initialize()
+    return [mapping.evaluate(mapping.curves[0], i / (count - 1)) for i in range(count)]
+
+
 def curve_table(mapping, low, high, combined=None):
     """Flat rows of three curves; of one, if there are fewer. `combined`: number of a curve before them."""
     mapping.initialize()

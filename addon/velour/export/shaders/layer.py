@@ -113,7 +113,12 @@ def unlike_reflection(layers):
     clear = [layer for layer in layers if layer.kind == "transparent"]
     if any(layer.pictures or min(layer.values["base_color"]) < 1.0 for layer in clear):
         kinds.append("colored transparency")
-    return kinds
+    return kinds + (["transmitted light"] if any(map(_transmits, layers)) else [])
+
+
+def _transmits(layer):
+    """Whether light passes through the layer other than straight."""
+    return layer.kind in ("glass", "refraction", "translucent") or layer.values.get("transmission", 0.0) > 0.0
 
 
 def split(layer):

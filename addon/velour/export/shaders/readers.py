@@ -2,6 +2,7 @@
 
 import bpy
 
+from ..color import luminance_weights
 from ..plugs import fed_by
 from .layer import Factor, Layer, diffuse
 from .relief import read_relief
@@ -20,14 +21,13 @@ _IGNORED = (
     "Subsurface",
     "Subsurface Weight",
     "Anisotropic",
-    "Sheen",
-    "Sheen Weight",
-    "Clearcoat",
-    "Transmission",
-    "Transmission Weight",
     "Diffuse Roughness",
     "Thin Film Thickness",
+    "Thin Wall",
 )
+# No property reveals it: whether facets or the surface divide light between reflection and refraction.
+_GLASS_FRESNEL = "facets" if bpy.app.version >= (3, 6) else "surface"
+_REFRACTION_FRESNEL = "facets" if bpy.app.version >= (4, 0) else "surface"
 # No property reveals the masking-shadowing function.
 SEPARABLE_SHADOWS = bpy.app.version < (3, 5)
 # No property reveals it: since 4.5, coats conserve energy and attenuate the base accordingly.
@@ -49,11 +49,25 @@ def _read_principled(plug, reader):
     values["specular"] = _specular(plug, reader)
     values["lobe"] = _lobe(plug, reader)
     values |= _layered(plug, reader) if _is_layered(plug) else _disney(plug, reader, values, pictures)
+    values |= _transmission(plug, reader)
     glow = _glow(plug.input("Emission Color", "Emission"), plug.input("Emission Strength"), reader)
     if glow and "coat" in values:
         reader.note(plug, "its coat does not dim its emission.")
     _note_ignored(plug, reader)
     return [Layer("principled", values, pictures, relief=read_relief(plug, reader), glow=glow)]
+
+
+def _transmission(plug, reader):
+    """Glass of a Principled BSDF, and whether its index is below 1, if they have an effect."""
+    share = min(max(reader.value(plug.input("Transmission Weight", "Transmission")), 0.0), 1.0)
+    if share <= 0.0 and not _is_layered(plug):
+        return {}
+    index = max(reader.value(plug.input("IOR")), 1e-5)
+    if share <= 0.0:
+        return {"index": index} if index < 1.0 else {}
+    added = plug.input("Transmission Roughness")
+    values = {"transmission_roughness": reader.value(added)} if added else {}
+    return {"transmission": share, "index": index, **values}
 
 
 def _is_layered(plug):
@@ -62,17 +76,29 @@ def _is_layered(plug):
 
 
 def _disney(plug, reader, values, pictures):
-    """Parameters specific to Principled before 4.0, whose tint is the share of the base color's hue in the
-    dielectric reflection [Bur12]."""
-    share = min(max(reader.value(plug.input("Specular Tint")), 0.0), 1.0)
-    gray = sum(w * c for w, c in zip(_GRAY, values["base_color"], strict=True))
+    """Parameters specific to Principled before 4.0, if they have an effect. Its tints are the shares of the
+    base color's hue in the dielectric reflection and in sheen [Bur12]."""
+    found = {"formula": "disney"}
+    coat = min(reader.value(plug.input("Clearcoat")), 1.0)
+    if coat > 0.0:
+        found |= {"coat": coat, "coat_roughness": reader.value(plug.input("Clearcoat Roughness"))}
+    sheen = reader.value(plug.input("Sheen"))
+    if sheen > 0.0:
+        found |= {"sheen": sheen}
+        found |= _hue(plug, reader, "Sheen Tint", "sheen_tint", values, pictures, luminance_weights())
+    return found | _hue(plug, reader, "Specular Tint", "specular_tint", values, pictures, _GRAY)
+
+
+def _hue(plug, reader, name, key, values, pictures, weights):
+    """A tint that has a share of the base color's hue, by the parameter's name; nothing if it is white."""
+    share = min(max(reader.value(plug.input(name)), 0.0), 1.0)
+    gray = sum(float(w) * c for w, c in zip(weights, values["base_color"], strict=True))
     if share == 0.0 or gray <= 0.0:
-        return {"formula": "disney"}
+        return {}
     if "base_color" in pictures:
-        reader.note(plug, "'Specular Tint' is not supported with a varying base color; ignored.")
-        return {"formula": "disney"}
-    tint = tuple(1.0 - share + share * c / gray for c in values["base_color"])
-    return {"formula": "disney", "specular_tint": tint}
+        reader.note(plug, f"'{name}' is not supported with a varying base color; ignored.")
+        return {}
+    return {key: tuple(1.0 - share + share * c / gray for c in values["base_color"])}
 
 
 def _layered(plug, reader):
@@ -89,6 +115,11 @@ def _layered(plug, reader):
         values["coat_tint"] = reader.value(plug.input("Coat Tint"))
         values["coat_lobe"] = _COAT_LOBE
         note_linked(plug, reader, "Coat Normal")
+    sheen = reader.value(plug.input("Sheen Weight"))
+    if sheen > 0.0:
+        values["sheen"] = sheen
+        values["sheen_roughness"] = reader.value(plug.input("Sheen Roughness"))
+        values["sheen_tint"] = reader.value(plug.input("Sheen Tint"))
     return values
 
 
@@ -112,9 +143,7 @@ def _specular(plug, reader):
     level = reader.value(plug.input("Specular IOR Level", "Specular"))
     if not plug.input("Specular IOR Level"):
         return level
-    index = max(reader.value(plug.input("IOR")), 1e-3)
-    if index < 1.0:
-        reader.note(plug, f"'IOR' below 1 is not supported; rendered with IOR {1 / index:.3g}.")
+    index = max(reader.value(plug.input("IOR")), 1e-5)
     return level * ((index - 1.0) / (index + 1.0)) ** 2 / _USUAL_F0
 
 
@@ -141,6 +170,37 @@ def _read_glossy(plug, reader):
     values = {"base_color": color, "roughness": roughness, "lobe": _lobe(plug, reader)}
     pictures = {name: p for name, p in found.items() if p}
     return [Layer("glossy", values, pictures, relief=read_relief(plug, reader))]
+
+
+def _read_glass(plug, reader):
+    return _glass("glass", _GLASS_FRESNEL, plug, reader)
+
+
+def _read_refraction(plug, reader):
+    return _glass("refraction", _REFRACTION_FRESNEL, plug, reader)
+
+
+def _glass(kind, fresnel, plug, reader):
+    color, picture = reader.number(plug.input("Color"))
+    roughness, rough = reader.number(plug.input("Roughness"))
+    if plug.node.distribution == "SHARP":
+        roughness, rough = 0.0, None
+    index = max(reader.value(plug.input("IOR")), 1e-5)
+    values = {"base_color": color, "roughness": roughness, "index": index, "glass_fresnel": fresnel}
+    if rough is not None or roughness > 0.0:
+        values["lobe"] = _lobe(plug, reader)
+        # Light between facets is closest to what conserves energy, whose facets have their own angles.
+        values |= {"glass_fresnel": "facets"} if values["lobe"] == "whole" else {}
+    _note_unused(plug, reader, "Thin Film Thickness")
+    found = {"base_color": picture, "roughness": rough}
+    pictures = {name: p for name, p in found.items() if p}
+    return [Layer(kind, values, pictures, relief=read_relief(plug, reader))]
+
+
+def _read_translucent(plug, reader):
+    color, picture = reader.number(plug.input("Color"))
+    pictures = {"base_color": picture} if picture else {}
+    return [Layer("translucent", {"base_color": color}, pictures, relief=read_relief(plug, reader))]
 
 
 def _label(node, name):
@@ -180,6 +240,9 @@ READERS = {
     "ShaderNodeBsdfDiffuse": _read_diffuse,
     "ShaderNodeBsdfGlossy": _read_glossy,
     "ShaderNodeBsdfAnisotropic": _read_glossy,  # from 4.0 on, Glossy BSDF in the Add menu
+    "ShaderNodeBsdfGlass": _read_glass,
+    "ShaderNodeBsdfRefraction": _read_refraction,
+    "ShaderNodeBsdfTranslucent": _read_translucent,
     "ShaderNodeEmission": _read_emission,
     "ShaderNodeBsdfTransparent": _read_transparent,
 }
@@ -193,8 +256,13 @@ def note_linked(plug, reader, name):
 
 def _note_ignored(plug, reader):
     for name in _IGNORED:
-        socket = plug.input(name)
-        if socket and (abs(socket.socket.default_value) > 1e-6 or fed_by(socket)):
-            reader.note(plug, f"'{name}' is not supported; ignored.")
+        _note_unused(plug, reader, name)
     for name in _LINK_ONLY:
         note_linked(plug, reader, name)
+
+
+def _note_unused(plug, reader, name):
+    """Notes an unsupported input that has an effect."""
+    socket = plug.input(name)
+    if socket and (abs(socket.socket.default_value) > 1e-6 or fed_by(socket)):
+        reader.note(plug, f"'{name}' is not supported; ignored.")

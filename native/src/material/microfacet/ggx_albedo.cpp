@@ -112,6 +112,63 @@ const Rises& rises(size_t entry) {
   return tables[entry];
 }
 
+constexpr size_t kGlassRadii = 64, kGlassTurns = 64;  // total reflection by facets has an edge in the quadrature
+
+/// Quadrature over visible normals, which lie symmetrically about the plane of incidence.
+float glass_albedo(float roughness, float cosine, float eta) {
+  static const Quadrature radii = gauss_legendre(kGlassRadii, 0, 1);
+  const float alpha = roughness * roughness;
+  const Vec3 wv = view_of(std::min(cosine, 0.999999f));  // its azimuth must be that of the plane
+  const auto stretch = [alpha](float c) { return std::sqrt(1 + alpha * alpha * std::max(1 / (c * c) - 1, 0.0f)); };
+  const float of_view = stretch(wv.z);
+  const auto kept = [&](float c) { return (1 + of_view) / (of_view + stretch(std::max(c, 1e-6f))); };  // G2 / G1
+  double sum = 0;
+  for (size_t i = 0; i < kGlassRadii; ++i) {
+    const auto radius = static_cast<float>(radii.node[i]);
+    double ring = 0;
+    for (size_t k = 0; k < kGlassTurns; ++k) {
+      const float turn = 0.5f * (static_cast<float>(k) + 0.5f) / kGlassTurns - 0.25f;
+      const Vec3 h = sample_ggx_visible_normal(wv, Vec2(alpha), {radius * radius, turn});
+      const float facet = std::clamp(glm::dot(wv, h), 0.0f, 1.0f), reflected = dielectric_fresnel(facet, eta);
+      const float inside_sq = eta * eta - 1 + facet * facet, up = 2 * facet * h.z - wv.z;
+      if (up > 0) ring += static_cast<double>(reflected * kept(up));
+      if (inside_sq <= 0) continue;
+      const float down = std::abs(wv.z - (facet - std::sqrt(inside_sq)) * h.z) / eta;
+      ring += static_cast<double>((1 - reflected) * kept(std::min(down, 1.0f)));
+    }
+    sum += 2 * radii.node[i] * radii.weight[i] * ring / kGlassTurns;
+  }
+  return std::clamp(static_cast<float>(sum), 0.01f, 1.0f);
+}
+
+/// Indexed by roughness, for one index of refraction.
+struct Glass {
+  Table<kRiseEntries> albedo;
+  std::array<float, kRiseEntries> mean;
+
+  void fill(float eta) {
+    const Quadrature cosines = gauss_legendre(16, 0, 1);
+    parallel_fill(kRiseEntries, [&](size_t i) {
+      const float roughness = at(i, kRiseEntries);
+      for (size_t k = 0; k < kRiseEntries; ++k) albedo[k][i] = glass_albedo(roughness, at(k, kRiseEntries), eta);
+      double sum = 0;
+      for (size_t k = 0; k < cosines.node.size(); ++k) {
+        const double mu = cosines.node[k];
+        sum += 2 * mu * cosines.weight[k] * static_cast<double>(glass_albedo(roughness, static_cast<float>(mu), eta));
+      }
+      mean[i] = static_cast<float>(sum);
+    });
+  }
+};
+
+const Glass& glass_tables(size_t entry, bool inside) {
+  static std::array<std::once_flag, 2 * kRiseEntries> made;
+  static std::array<Glass, 2 * kRiseEntries> tables;
+  const size_t place = entry + (inside ? kRiseEntries : 0);
+  std::call_once(made[place], [&] { tables[place].fill(inside ? 1 / index_at(entry) : index_at(entry)); });
+  return tables[place];
+}
+
 }  // namespace
 
 float ggx_albedo::of_white(float roughness, float cosine) {
@@ -126,6 +183,21 @@ float ggx_albedo::mean_of_white(float roughness) {
 float ggx_albedo::mean_rise(float roughness, float cosine, float eta) {
   const Place<kRiseEntries> x(roughness), y(cosine), z(place_of_index(eta));
   return z.between(read(rises(z.low), x, y), read(rises(z.high), x, y));
+}
+
+float ggx_albedo::of_glass(float roughness, float cosine, float eta) {
+  const Place<kRiseEntries> x(roughness), y(cosine), z(place_of_index(eta));
+  const auto entry = [&](size_t i) { return read(glass_tables(i, eta < 1).albedo, x, y); };
+  return z.between(entry(z.low), entry(z.high));
+}
+
+float ggx_albedo::mean_of_glass(float roughness, float eta) {
+  const Place<kRiseEntries> x(roughness), z(place_of_index(eta));
+  const auto entry = [&](size_t i) {
+    const Glass& table = glass_tables(i, eta < 1);
+    return x.between(table.mean[x.low], table.mean[x.high]);
+  };
+  return z.between(entry(z.low), entry(z.high));
 }
 
 namespace {

@@ -18,8 +18,15 @@ float of_white(float roughness, float cosine);
 float mean_of_white(float roughness);
 
 /// Mean over visible facets of (F - F0) / (1 - F0) of a dielectric: how far its reflectance rises from the value at
-/// normal incidence towards 1. `eta` >= 1.
+/// normal incidence towards 1. `eta` and 1 / `eta` are the same.
 float mean_rise(float roughness, float cosine, float eta);
+
+/// Light that the facets of a lossless dielectric reflect and refract without meeting other facets, in (0, 1]. `eta` >
+/// 0: relative index. As in Blender's tables, light that is refracted out of the surface again counts; only an `eta`
+/// below 1 refracts so, at grazing angles.
+float of_glass(float roughness, float cosine, float eta);
+/// Cosine-weighted mean of of_glass() over the hemisphere.
+float mean_of_glass(float roughness, float eta);
 
 }  // namespace ggx_albedo
 
@@ -56,6 +63,15 @@ class Interreflection {
     if (lobe != GgxLobe::whole) return;
     albedo_ = ggx_albedo::of_white(roughness, cosine);
     mean_ = ggx_albedo::mean_of_white(roughness);
+  }
+
+  /// The same for glass, whose mean_fresnel below is its tint.
+  static Interreflection of_glass(GgxLobe lobe, float roughness, float cosine, float eta) {
+    Interreflection glass(GgxLobe::single, roughness, cosine);
+    if (lobe != GgxLobe::whole) return glass;
+    glass.albedo_ = ggx_albedo::of_glass(roughness, cosine, eta);
+    glass.mean_ = ggx_albedo::mean_of_glass(roughness, eta);
+    return glass;
   }
 
   /// Makes the albedo that of one or more bounces [KC17, appendix]. `mean_fresnel`: mean reflectance of the facets over

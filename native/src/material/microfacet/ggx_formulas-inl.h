@@ -59,14 +59,25 @@ inline auto pdf_ggx_reflection(const Vec3& wv, const W& h, const Vec2& alpha) {
   return select(h.z > 0.0f, pdf_ggx_reflection_scale(wv, alpha) / (spread * spread), 0.0f);
 }
 
-/// Unpolarized reflectance of a smooth dielectric of relative index `eta` >= 1 from outside, `cosine` in [0, 1].
+/// Unpolarized reflectance of a smooth dielectric, `cosine` in [0, 1]. `eta` > 0: its index relative to the medium that
+/// the light comes from; below 1, light is reflected totally beyond the critical angle.
 template <class T>
 inline T dielectric_fresnel(T cosine, float eta) {
-  if (eta <= 1) return 0.0f;
-  const T inside = square_root(eta * eta - 1 + cosine * cosine);  // eta times the cosine of the refracted ray
+  if (eta == 1) return 0.0f;
+  const T inside_sq = eta * eta - 1 + cosine * cosine;
+  const T inside = square_root(larger(inside_sq, 0.0f));  // eta times the cosine of the refracted ray
   const T parallel = (eta * eta * cosine - inside) / (eta * eta * cosine + inside);
   const T perpendicular = (cosine - inside) / (cosine + inside);
-  return 0.5f * (parallel * parallel + perpendicular * perpendicular);
+  const T partly = 0.5f * (parallel * parallel + perpendicular * perpendicular);
+  return eta > 1 ? partly : select(inside_sq > 0.0f, partly, T(1.0f));
+}
+
+/// Density D of the normals of a clear coat before Blender 4.0 ("GTR1" of [Bur12, App. B]), so that the integral of D
+/// h.z is 1. `alpha` < 1.
+template <class W = Vec3>
+inline auto gtr1_distribution(const W& h, float alpha) {
+  const float alpha_sq = alpha * alpha, scale = (alpha_sq - 1) / (kPi * std::log(alpha_sq));
+  return scale / (h.x * h.x + h.y * h.y + alpha_sq * (h.z * h.z));
 }
 
 /// (1 - cosine)^5: weight of the grazing reflectance in Schlick's formula.

@@ -29,20 +29,52 @@ inline T principled_reflectance(const PrincipledPoint& point, T cosine, T rise, 
 /// Terms of f shared by all channels.
 template <class T>
 struct PrincipledParts {
-  T base, lobe, rise, coat, cosine;
+  T base, lobe, rise, coat, sheen, cosine;
 };
+
+/// Lobe of the coat: of Disney's clear coat, GTR1 with the masking of an alpha of 0.25.
+template <class W>
+inline auto principled_coat(const PrincipledPoint& point, const Vec3& wv, const W& wl, const W& h) {
+  if (point.formula != PrincipledFormula::disney) return ggx_brdf_without_fresnel(wv, wl, h, point.coat_alpha);
+  const Vec2 masked(0.25f);
+  return gtr1_distribution(h, point.coat_alpha.x) /
+         ((wv.z + ggx_projected_length(wv, masked)) * (wl.z + ggx_projected_length(wl, masked)));
+}
+
+/// Density of sampling the coat.
+template <class W>
+inline auto principled_coat_pdf(const PrincipledPoint& point, const Vec3& wv, const W& h) {
+  if (point.formula != PrincipledFormula::disney) return pdf_ggx_reflection(wv, h, point.coat_alpha);
+  // A normal that faces away from the view mirrors it below the horizon, where the half vector is its opposite.
+  const auto cosine = dot(wv, h);
+  const auto density = gtr1_distribution(h, point.coat_alpha.x) * larger(h.z, -1.0f * h.z);
+  return select(cosine > 0.0f, density / (4.0f * larger(cosine, 1e-6f)), 0.0f);
+}
+
+/// Value of a sheen lobe at a direction above the horizon, which times the cosine is also its density.
+template <class W>
+inline auto sheen_value(const PrincipledPoint& point, const W& wl) {
+  const auto along = point.azimuth.x * wl.x + point.azimuth.y * wl.y;
+  const auto across = point.azimuth.x * wl.y - point.azimuth.y * wl.x;
+  const float a = point.sheen_lobe.a, b = point.sheen_lobe.b;
+  const auto x = a * along + b * wl.z, y = a * across;
+  const auto ratio = a / (x * x + y * y + wl.z * wl.z);
+  return 1 / kPi * ratio * ratio;
+}
 
 template <class W>
 inline auto principled_parts(const PrincipledPoint& point, const Vec3& wv, const W& wl, const W& h) {
   using T = decltype(dot(wv, h));
-  PrincipledParts<T> parts{principled_base(point, wv, wl), T(0.0f), T(0.0f), T(0.0f),
+  PrincipledParts<T> parts{principled_base(point, wv, wl),         T(0.0f), T(0.0f), T(0.0f), T(0.0f),
                            smaller(larger(dot(wv, h), 0.0f), 1.0f)};
   parts.lobe = point.lobe == GgxLobe::separable ? ggx_brdf_of_independent_shadows(wv, wl, h, point.alpha)
                                                 : ggx_brdf_without_fresnel(wv, wl, h, point.alpha);
   parts.rise = principled_rise(point, parts.cosine);
   if (point.coat > 0) {
-    parts.coat = point.coat * ggx_brdf_without_fresnel(wv, wl, h, point.coat_alpha) *
-                 dielectric_fresnel(parts.cosine, point.coat_eta);
+    parts.coat = point.coat * principled_coat(point, wv, wl, h) * dielectric_fresnel(parts.cosine, point.coat_eta);
+  }
+  if (point.sheen != Rgb(0.0f)) {
+    parts.sheen = point.formula == PrincipledFormula::disney ? schlick_share(parts.cosine) : sheen_value(point, wl);
   }
   return parts;
 }
@@ -51,5 +83,5 @@ inline auto principled_parts(const PrincipledPoint& point, const Vec3& wv, const
 template <class T>
 inline T principled_value(const PrincipledPoint& point, const PrincipledParts<T>& parts, int c) {
   return point.diffuse[c] * parts.base + parts.lobe * principled_reflectance(point, parts.cosine, parts.rise, c) +
-         parts.coat;
+         parts.coat + point.sheen[c] * parts.sheen;
 }

@@ -17,7 +17,7 @@ struct PrincipledTextures {
   bool any() const { return varies() || alpha.given(); }
 };
 
-/// Samples the cosine or the visible normals of the lobe or the coat, in proportion to their albedos. Isotropic.
+/// Samples the cosine, the normals of the lobe or the coat, sheen or glass, in proportion to their albedos. Isotropic.
 class PrincipledMaterial final : public Material {
  public:
   /// Each parameter is averaged over the footprint separately. This is exact for the base color of distant surfaces,
@@ -29,6 +29,7 @@ class PrincipledMaterial final : public Material {
                               ScratchArena& arena) const override;
 
   bool isotropic() const override { return true; }
+  bool transmits() const override;
   bool varies() const override { return textures_.any(); }
   bool opaque() const override { return !textures_.alpha.given() && alpha_ >= 1; }
   float alpha(const SurfaceSite& site) const override;

@@ -17,12 +17,13 @@ namespace HWY_NAMESPACE {
 #include "material/microfacet/ggx_formulas-inl.h"
 #include "material/principled/principled_formulas-inl.h"
 
-/// The density of PrincipledMaterial::sample. `wl` may lie below the horizon.
+/// The density of PrincipledMaterial::sample, without that of glass. `wl` may lie below the horizon.
 HWY_INLINE Lanes density(const PrincipledPoint& point, const Vec3& wv, const LanesVec3& wl, const LanesVec3& h) {
-  const float coat = 1 - point.specular_end;
+  const float coat = point.coat_end - point.specular_end, sheen = point.sheen_end - point.coat_end;
   Lanes sum = point.diffuse_end / kPi * larger(wl.z, 0.0f) +
               (point.specular_end - point.diffuse_end) * pdf_ggx_reflection(wv, h, point.alpha);
-  if (coat > 0) sum = sum + coat * pdf_ggx_reflection(wv, h, point.coat_alpha);
+  if (coat > 0) sum = sum + coat * principled_coat_pdf(point, wv, h);
+  if (sheen > 0) sum = sum + sheen * (sheen_value(point, wl) * larger(wl.z, 0.0f));
   return sum;
 }
 

@@ -50,6 +50,10 @@ struct SurfaceSample {
   Rgb albedo{0.0f};
   Rgb shine{0.0f};  // emission of the surface, or of the environment where nothing was hit
   float object_id = 0, material_id = 0, asset_id = 0;
+  /// Motion in the image, pixels: place in the previous frame minus this place; this place minus that in the next
+  /// frame.
+  Vec2 from_previous{0.0f}, to_next{0.0f};
+  float surfaces = 0;  // 1 where something was hit
 };
 
 }  // namespace velour

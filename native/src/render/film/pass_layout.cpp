@@ -173,6 +173,16 @@ constexpr ValuePass kValues[] = {
        for (int c = 0; c < 3; ++c) out[c] = v[c] * sum.weight();
      }},
     {pass::kHalves, "Halves", 18, kFloatsOfHalves, add_halves, join_halves, write_halves},
+    {pass::kVector, "Vector", 4, 5,
+     [](const CameraRay& ray, float* v) {
+       const SurfaceSample& s = ray.surface;
+       const float more[] = {s.from_previous.x, s.from_previous.y, s.to_next.x, s.to_next.y, s.surfaces};
+       for (int c = 0; c < 5; ++c) v[c] += more[c];
+     },
+     join_sums<5>,
+     [](const float* v, const PixelSum& /*sum*/, float* out) {
+       for (int c = 0; c < 4; ++c) out[c] = v[4] > 0.0f ? v[c] / v[4] : 0.0f;
+     }},
 };
 
 struct IdPass {

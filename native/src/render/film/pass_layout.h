@@ -15,8 +15,8 @@ namespace velour {
 namespace pass {
 inline constexpr uint32_t kPosition = 1, kUv = 2, kObjectIndex = 4, kMaterialIndex = 8, kMist = 16, kAlbedo = 32,
                           kError = 64, kCryptoObject = 128, kCryptoMaterial = 256, kCryptoAsset = 512,
-                          kDenoisingAlbedo = 1024, kHalves = 2048;
-inline constexpr uint32_t kAll = 4095;
+                          kDenoisingAlbedo = 1024, kHalves = 2048, kVector = 4096;
+inline constexpr uint32_t kAll = 8191;
 /// Passes that depend on what a camera ray hits.
 inline constexpr uint32_t kOfSurfaces = kAll & ~kError;
 }  // namespace pass
@@ -66,7 +66,8 @@ class PassLayout {
   /// Channels of a pass, requested or not; 0: there is none of that name. "Position" 3 (world, of the first camera
   /// ray), "UV" 3 (mean; the last: share with texture coordinates), "IndexOB" 1, "IndexMA" 1 (of the first camera ray),
   /// "Mist" 1, "Albedo" 3, "Error" 3, "Denoising Albedo" 3, "Halves" 18 (color, denoising albedo and normal of the even
-  /// camera rays, 3 each; then of the odd ones); "CryptoObject00", "CryptoObject01", ..., "CryptoMaterial..",
+  /// camera rays, 3 each; then of the odd ones), "Vector" 4 (SurfaceSample::from_previous and to_next, mean over the
+  /// camera rays that hit something); "CryptoObject00", "CryptoObject01", ..., "CryptoMaterial..",
   /// "CryptoAsset.." 4: two ids, each followed by its coverage.
   static int channels(std::string_view pass);
   bool has(std::string_view pass) const;

@@ -33,7 +33,19 @@ SurfaceSample SurfaceRecorder::record(const PassOptions& options, const Vertex& 
   if (options.has(pass::kAlbedo | pass::kDenoisingAlbedo | pass::kHalves))
     s.albedo = throughput * albedo_.estimate(vertex, numbers);
   if (options.has(pass::kDenoisingAlbedo | pass::kHalves)) s.shine = throughput * vertex.emission();
+  if (options.has(pass::kVector)) find_motion(hit, s);
   return s;
+}
+
+void SurfaceRecorder::find_motion(const Hit& hit, SurfaceSample& sample) const {
+  const Hit at = scene_.has_shell(hit) ? scene_.shell_foot(hit).top : hit;
+  const Vec2 here = current_.picture(scene_.position(at, kMiddleTime));
+  const Vec2 before = size_ * (previous_.picture(scene_.position(at, 0.0f)) - here);
+  const Vec2 after = size_ * (here - next_.picture(scene_.position(at, 1.0f)));
+  if (!std::isfinite(before.x + before.y + after.x + after.y)) return;  // behind the camera
+  sample.from_previous = before;
+  sample.to_next = after;
+  sample.surfaces = 1;
 }
 
 Vec3 SurfaceRecorder::uv(const Hit& hit, int set) const {

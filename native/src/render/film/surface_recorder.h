@@ -33,7 +33,14 @@ class SurfaceAlbedo {
 /// Holds scratch memory; one per thread.
 class SurfaceRecorder {
  public:
-  explicit SurfaceRecorder(const Scene& scene) : scene_(scene), albedo_(scene.rec709_to_working()) {}
+  /// `width`, `height`: of the image in pixels.
+  SurfaceRecorder(const Scene& scene, int width, int height)
+      : scene_(scene),
+        albedo_(scene.rec709_to_working()),
+        size_(static_cast<float>(width), static_cast<float>(height)),
+        previous_(scene.camera(), 0.0f),
+        current_(scene.camera(), kMiddleTime),
+        next_(scene.camera(), 1.0f) {}
 
   /// `vertex`: at `hit`, which a ray reached with throughput `throughput`. `numbers`: of its path.
   SurfaceSample record(const PassOptions& options, const Vertex& vertex, const Hit& hit, const Rgb& throughput,
@@ -43,9 +50,12 @@ class SurfaceRecorder {
   /// Texture coordinates of a set of the mesh, not placed by any material.
   Vec3 uv(const Hit& hit, int set) const;
   float distance(const Vec3& world) const;
+  void find_motion(const Hit& hit, SurfaceSample& sample) const;
 
   const Scene& scene_;
   SurfaceAlbedo albedo_;
+  Vec2 size_;
+  CameraProjection previous_, current_, next_;
 };
 
 }  // namespace velour

@@ -86,12 +86,9 @@ float mean_emission(const SurfaceMaterial& m, const Scene& scene, const Scene::I
   return sum / static_cast<float>(std::size(kPlaces));
 }
 
-Vec3 double_area(const Mesh& mesh, uint32_t triangle, const Affine& object_to_world) {
-  const glm::uvec3& corner = mesh.triangles()[triangle];
-  const auto edge = [&](int k) {
-    return object_to_world.vector(mesh.positions()[corner[k]] - mesh.positions()[corner[0]]);
-  };
-  return glm::cross(edge(1), edge(2));
+Vec3 double_area(const Mesh& mesh, uint32_t triangle, const Affine& object_to_world, float time) {
+  const std::array<Vec3, 3> corner = mesh.corners(triangle, time);
+  return glm::cross(object_to_world.vector(corner[1] - corner[0]), object_to_world.vector(corner[2] - corner[0]));
 }
 
 EmissiveGroup::EmissiveGroup(const Scene& scene, const Scene::Instance& instance, const Progress& progress) {
@@ -108,7 +105,12 @@ EmissiveGroup::EmissiveGroup(const Scene& scene, const Scene::Instance& instance
         0.5f * glm::length(double_area(mesh, t, {})) * mean_emission(material, scene, instance, t, placed);
     if (!(power > 0.0f) || !std::isfinite(power)) continue;
     LightTree::Light& light = lights.emplace_back(LightTree::Light{Bounds{}, power});
-    for (int k = 0; k < 3; ++k) light.box.add(mesh.positions()[mesh.triangles()[t][k]]);
+    for (int k = 0; k < 3; ++k) {
+      const uint32_t v = mesh.triangles()[t][k];
+      light.box.add(mesh.positions()[v]);
+      for (size_t moved = v; moved < mesh.moved_positions().size(); moved += mesh.positions().size())
+        light.box.add(mesh.moved_positions()[moved]);
+    }
     light_[t] = static_cast<uint32_t>(triangle_.size());
     triangle_.push_back(t);
   }

@@ -37,6 +37,6 @@ class EmissiveGroup {
 };
 
 /// Vector of twice the area, along the normal of the mesh's front.
-Vec3 double_area(const Mesh& mesh, uint32_t triangle, const Affine& object_to_world);
+Vec3 double_area(const Mesh& mesh, uint32_t triangle, const Affine& object_to_world, float time = kMiddleTime);
 
 }  // namespace velour

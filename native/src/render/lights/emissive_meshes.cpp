@@ -47,7 +47,7 @@ EmissiveMeshes::EmissiveMeshes(const Scene& scene, const Progress& progress) : s
   rays_->share_meshes(scene.rays());
   for (const Place& place : places_) {
     const Scene::Instance& i = scene.instances()[place.instance];
-    rays_->add_instance(i.traced, i.object_to_world);
+    rays_->add_instance(i.traced, i.object_to_world, scene.traced_steps(i));
   }
   rays_->commit(1, nullptr, scene.rays().levels());
 }
@@ -76,7 +76,7 @@ void EmissiveMeshes::find_lights(const Progress& progress) {
     if (!(power > 0.0f) || !std::isfinite(power)) continue;
     place.light = static_cast<uint32_t>(lights_.size());
     lit_.push_back(p);
-    lights_.push_back({box_around(group(place).tree().bounds(), i.object_to_world), kMeanCosine * power});
+    lights_.push_back({i.box_in_world(group(place).tree().bounds()), kMeanCosine * power});
   }
 }
 
@@ -90,18 +90,22 @@ bool EmissiveMeshes::draws(const Hit& hit) const {
   return at.light != kNone && group(at).light(hit.triangle) != kNone;
 }
 
-Hit EmissiveMeshes::sample(uint32_t light, const Vec3& position, double x, float y, Vec3& direction) const {
+Hit EmissiveMeshes::sample(uint32_t light, const LightPlace& place, double x, float y, Vec3& direction) const {
   const Place& chosen = places_[lit_[light]];
   const Scene::Instance& instance = scene_.instances()[chosen.instance];
   const Mesh& mesh = scene_.traced_mesh(instance);
   const EmissiveGroup& of = group(chosen);
-  const uint32_t triangle = of.triangle(of.tree().choose({chosen.to_object.point(position)}, x));
+  const uint32_t triangle = of.triangle(of.tree().choose({chosen.to_object.point(place.position)}, x));
   const Vec2 weights = in_triangle(static_cast<float>(x), y);
-  const Vec3 to_point = instance.object_to_world.point(mesh.position(triangle, weights)) - position;
+  const float time = place.time;
+  const Vec3 to_point = instance.place(time).point(mesh.position(triangle, weights, time)) - place.position;
   const float distance = glm::length(to_point);
   direction = distance > 0.0f ? to_point / distance : Vec3(0.0f);
-  return {distance,       instance.normal_to_world * double_area(mesh, triangle, {}), weights.x, weights.y, triangle,
-          chosen.instance};
+  Hit hit{distance,  instance.normal_map(time) * double_area(mesh, triangle, {}, time),
+          weights.x, weights.y,
+          triangle,  chosen.instance};
+  hit.time = time;
+  return hit;
 }
 
 double EmissiveMeshes::pdf(const Vec3& position, const Vec3& direction, const Hit& hit, uint32_t& light) const {
@@ -109,7 +113,7 @@ double EmissiveMeshes::pdf(const Vec3& position, const Vec3& direction, const Hi
   const Place& at = *place(hit.instance);
   const Scene::Instance& instance = scene_.instances()[hit.instance];
   const EmissiveGroup& of = group(at);
-  const Vec3 twice = double_area(scene_.traced_mesh(instance), hit.triangle, instance.object_to_world);
+  const Vec3 twice = double_area(scene_.traced_mesh(instance), hit.triangle, instance.place(hit.time), hit.time);
   const auto facing = static_cast<double>(0.5f * std::abs(glm::dot(direction, twice)));
   const double distance = static_cast<double>(hit.distance);
   const double chosen = of.tree().probability({at.to_object.point(position)}, of.light(hit.triangle));

@@ -32,9 +32,10 @@ class EmissiveMeshes {
   /// Whether that surface is light-sampled.
   bool draws(const Hit& hit) const;
 
-  /// Samples a point of a light: a triangle by its importance to `position`, then uniformly in its area [Hei19].
-  /// `direction`: unit, from `position` to the point, or zero if they coincide. `x` and `y` are uniform in [0, 1).
-  Hit sample(uint32_t light, const Vec3& position, double x, float y, Vec3& direction) const;
+  /// Samples a point of a light at the time of `place`: a triangle by its importance to that position, then uniformly
+  /// in its area [Hei19]. `direction`: unit, from the position to the point, or zero if they coincide. `x` and `y` are
+  /// uniform in [0, 1).
+  Hit sample(uint32_t light, const LightPlace& place, double x, float y, Vec3& direction) const;
   /// Density of sample() per solid angle, for the hit of a ray from `position` along `direction`; `light` receives the
   /// light it belongs to. 0 if the hit is not light-sampled.
   double pdf(const Vec3& position, const Vec3& direction, const Hit& hit, uint32_t& light) const;
@@ -53,8 +54,8 @@ class EmissiveMeshes {
   struct Place {
     uint32_t instance;  // index in the scene
     uint32_t group;
-    Affine to_object;
-    uint32_t light;  // index in lights_, or EmissiveGroup::kNone
+    Affine to_object;  // in the middle of its motion
+    uint32_t light;    // index in lights_, or EmissiveGroup::kNone
   };
   bool stops(const Hit& hit) const;
   const EmissiveGroup& group(const Place& place) const { return groups_[place.group]; }

@@ -8,6 +8,7 @@
 
 #include "base/progress.h"
 #include "math/sphere/affine.h"
+#include "scene/motion.h"
 
 namespace velour {
 
@@ -18,6 +19,7 @@ struct LightPlace {
   Vec3 position{0.0f};
   Vec3 normal{0.0f};        // unit: light counts by its cosine; zero: light from all sides counts equally
   bool both_sides = false;  // light from below counts as well
+  float time = kMiddleTime;
 };
 
 /// Directions of emission: full intensity within `cos_normals` of the axis, beyond that reduced by the cosine of the

@@ -114,7 +114,7 @@ Vec3 Lighting::sample_near(const LightView& view, const Vec2& u, Hit* aim) const
   }
   Vec3 direction;
   const auto of_emissive = light - static_cast<uint32_t>(lamps_.size());
-  const Hit hit = emissive_.sample(of_emissive, view.place.position, x, u.y, direction);
+  const Hit hit = emissive_.sample(of_emissive, view.place, x, u.y, direction);
   if (aim != nullptr) *aim = hit;
   return direction;
 }

@@ -21,7 +21,7 @@ constexpr const char* kNames[] = {"Position",       "UV",
                                   "Error",          "CryptoObject00",
                                   "CryptoObject01", "CryptoMaterial00",
                                   "CryptoAsset02",  "Denoising Albedo",
-                                  "Halves"};
+                                  "Halves",         "Vector"};
 
 /// Everything, with labels for two instances and two materials.
 PassOptions all_passes() {
