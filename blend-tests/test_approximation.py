@@ -1,6 +1,5 @@
 """The nodes in a measured material's group that show it where there is no Velour."""
 
-import importlib
 import json
 from unittest import mock
 from urllib.parse import unquote
@@ -53,11 +52,11 @@ bpy.ops.render.render(write_still=True)
 
 
 def group_module():
-    return importlib.import_module(f"{inputs.ADDON}.operators.approximation_group")
+    return inputs.module("operators.approximation_group")
 
 
 def group_of(material):
-    return importlib.import_module(f"{inputs.ADDON}.export.nodes").approximation_node(material)
+    return inputs.module("export.nodes").approximation_node(material)
 
 
 class Approximation(BlenderTest):
@@ -115,7 +114,7 @@ class Uniform(WithoutVelour):
         self.assertGreater(self._error("gray"), 0.3, "gray is no approximation")
 
     def _give_model(self, data):
-        measured = importlib.import_module(f"{inputs.ADDON}.operators.measured")
+        measured = inputs.module("operators.measured")
         scenes.velour_node(self.material).image = measured.packed_model(data, "Paint")
 
     def test_a_brushed_metal_lies_as_it_does(self):
@@ -175,7 +174,7 @@ class Tiles(WithoutVelour):
         bpy.ops.velour.add_material()
         pixels = np.ones((4, 4, 4), np.float32) * 0.5
         pixels[:, :2, 3], pixels[:, 2:, 3] = 0, 1  # the left half is open
-        core = importlib.import_module(f"{inputs.ADDON}.core.approximation")
+        core = inputs.module("core.approximation")
         found = core.UNFITTED._replace(color_map=pixels)
         group_module().put(scenes.velour_node(self.material), self.material, found, {"texels": (4, 4)})
         left, right = np.split(self._cycles("holes")[2:-2], 2, axis=1)
@@ -264,7 +263,7 @@ class Relief(WithoutVelour):
         _subdivide(self.obj, 6)
         bpy.context.scene.camera.rotation_euler = np.pi / 2, 0, 0
         bpy.context.scene.camera.location = 0, -5, 0
-        look = importlib.import_module(f"{inputs.ADDON}.operators.approximation_look")
+        look = inputs.module("operators.approximation_look")
         wanted = look.fitted(group_of(self.material).node_tree)["height"]
         bpy.context.scene.camera.data.ortho_scale = 4 * wanted
         scenes.set_world(strength=0.0)
@@ -324,8 +323,8 @@ class Group(Approximation):
 
     def test_the_panel_says_when_it_is_of_another_model(self):
         """Also of one whose content nobody has vouched for, as of images that were opened by hand."""
-        module = importlib.import_module(f"{inputs.ADDON}.ui.approximation_panel")
-        files = importlib.import_module(f"{inputs.ADDON}.export.files")
+        module = inputs.module("ui.approximation_panel")
+        files = inputs.module("export.files")
         old = "The approximation is of another model. Press Refresh."
 
         def read(image):
@@ -381,7 +380,7 @@ class Group(Approximation):
         color, kinds = tuple(self.material.diffuse_color), _kinds(group_of(self.material).node_tree)
         bpy.ops.ed.undo_push(message="before")
         name = self.material.name
-        measured = importlib.import_module(f"{inputs.ADDON}.operators.measured")
+        measured = inputs.module("operators.measured")
         other = inputs.model_bytes(inputs.plastic_measurement())
         scenes.velour_node(self.material).image = measured.packed_model(other, "Other")
         bpy.ops.velour.approximate()
@@ -405,7 +404,7 @@ class Exported(Approximation):
     def test_gltf_files_carry_it(self):
         self._import(self._model_file(inputs.model_bytes(inputs.plastic_measurement())))
         scenes.set_look(self.material, tint=(0.5, 0.9, 1.0))
-        shown = importlib.import_module(f"{inputs.ADDON}.operators.approximation_look").shown(self.material)
+        shown = inputs.module("operators.approximation_look").shown(self.material)
         (written,) = self._gltf()["materials"]
         pbr = written["pbrMetallicRoughness"]
         np.testing.assert_allclose(pbr["baseColorFactor"][:3], shown.principled["base_color"], 1e-5)
@@ -470,7 +469,7 @@ def _node(group, idname):
 
 def _images(group):
     """The TileImages of a group."""
-    return importlib.import_module(f"{inputs.ADDON}.operators.approximation_image").images_of(group)
+    return inputs.module("operators.approximation_image").images_of(group)
 
 
 def _subdivide(obj, times):

@@ -1,7 +1,6 @@
 """The pictures of a folder of measurements, made without a window."""
 
 import contextlib
-import importlib
 import io
 import os
 import shutil
@@ -42,7 +41,7 @@ class MakeThumbnails(BlenderTest):
         self.assertEqual(len(list((self.folder / "cache").rglob("*.npz"))), 2)
 
     def test_the_folder_of_the_preferences(self):
-        browse = importlib.import_module(f"{inputs.ADDON}.operators.browse")
+        browse = inputs.module("operators.browse")
         preferences = browse.addon_preferences(bpy.context)
         self.addCleanup(setattr, preferences, "measurements", "")
         preferences.measurements = str(self._filled())

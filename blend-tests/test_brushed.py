@@ -1,12 +1,11 @@
 """Anisotropic measurements: which way they lie on objects, by pictures under a sun from one side."""
 
-import importlib
-
 import bpy
 import numpy as np
 
 from support import inputs, scenes
 from support.blender import BlenderTest
+from support.notes import export_notes
 
 SIZE = 32
 
@@ -49,13 +48,6 @@ class Brushed(BlenderTest):
 
     def _assert_unlike(self, a, b):
         self.assertGreater(np.abs(a - b).mean(), 0.1 * b.mean())
-
-    def _notes(self):
-        export = importlib.import_module(f"{inputs.ADDON}.export")
-        camera = importlib.import_module(f"{inputs.ADDON}.export.camera")
-        notes, depsgraph = export.Notes(), bpy.context.evaluated_depsgraph_get()
-        export.export_scene(depsgraph, camera.final_view(depsgraph), notes)[0].close()
-        return list(notes)
 
 
 class Rotation(Brushed):
@@ -109,7 +101,7 @@ class Rotation(Brushed):
         while obj.data.uv_layers:
             obj.data.uv_layers.remove(obj.data.uv_layers[0])
         np.testing.assert_array_equal(self._picture(), plain)
-        self.assertEqual(self._notes(), [])
+        self.assertEqual(export_notes(), [])
 
 
 class UvMaps(Brushed):
@@ -128,19 +120,19 @@ class UvMaps(Brushed):
         plain = self._picture()
         self._placement().uv_map = "Coarse"
         np.testing.assert_array_equal(self._picture(), plain)
-        self.assertTrue(any("no UV map 'Coarse'" in note for note in self._notes()))
+        self.assertTrue(any("no UV map 'Coarse'" in note for note in export_notes()))
 
     def test_without_any_the_mesh_is_projected(self):
         obj = self._wave()
         plain = self._picture()
-        self.assertEqual(self._notes(), [])
+        self.assertEqual(export_notes(), [])
         while obj.data.uv_layers:
             obj.data.uv_layers.remove(obj.data.uv_layers[0])
         obj.data.update_tag()  # Blender 5.2 does not see it by itself
         self._assert_alike(self._picture(), plain)  # from above u is x
         scenes.set_look(self.material, rotation=np.pi / 2)
         self._assert_unlike(self._picture(), plain)
-        (note,) = self._notes()
+        (note,) = export_notes()
         self.assertIn(f"Object '{obj.name}': it has no UV map", note)
         self.assertIn("material 'Metal' is projected", note)
 
@@ -150,7 +142,7 @@ class UvMaps(Brushed):
         settings = scenes.velour_node(self.material).velour
         settings.use_reference = True
         settings.measurement = bpy.data.images.load(str(inputs.anisotropic_measurement()))
-        self.assertIn("is projected onto it", self._notes()[0])
+        self.assertIn("is projected onto it", export_notes()[0])
         settings.measurement = bpy.data.images.load(str(inputs.lambert_measurement()))
         settings.id_data.update_tag()
-        self.assertEqual(self._notes(), [])
+        self.assertEqual(export_notes(), [])

@@ -1,7 +1,6 @@
 """Tiles of Blender captured as BTFs."""
 
 import contextlib
-import importlib
 import io
 import json
 
@@ -67,7 +66,7 @@ class CaptureBtf(BlenderTest):
 
     def test_the_panel_tells_how_many_bytes_it_takes(self):
         self._plane(size=2)
-        panel = importlib.import_module(f"{inputs.ADDON}.ui.tile_panel")
+        panel = inputs.module("ui.tile_panel")
         for samples, texels in ((1, 32), (4, 48)):  # smaller ones are heads of files for the most part
             self._capture(f"tile-{samples}", texels=texels, views=8, lights=16, samples=samples)
             written = sum(file.stat().st_size for file in (self.folder / f"tile-{samples}.btf").iterdir())
@@ -87,7 +86,7 @@ class CaptureBtf(BlenderTest):
             said.getvalue(), r"'Plane': About \d+ seconds, \d+ kB on disk, [\d.]+ kB of additional memory"
         )
         self.assertIn(state.estimate, said.getvalue())
-        tiles = importlib.import_module(f"{inputs.ADDON}.operators.tiles")
+        tiles = inputs.module("operators.tiles")
         self.assertEqual(state.estimated, tiles.captured_as(obj))
         settings.texels = 17
         self.assertNotEqual(state.estimated, tiles.captured_as(obj))
@@ -104,7 +103,7 @@ class CaptureBtf(BlenderTest):
             self.assertEqual(self._files(json.loads((folder / "btf.json").read_text())), self._files(first))
         with self.assertRaisesRegex(RuntimeError, "resume the capture, or choose another folder"):
             bpy.ops.velour.capture_btf()
-        panel = importlib.import_module(f"{inputs.ADDON}.ui.tile_panel").VELOUR_OBJECT_PT_tile
+        panel = inputs.module("ui.tile_panel").VELOUR_OBJECT_PT_tile
         layout = Layout(panel)
         panel.draw(layout, bpy.context)
         buttons = [button for button in layout.operators if button.name == "velour.capture_btf"]
@@ -113,7 +112,7 @@ class CaptureBtf(BlenderTest):
     def test_an_estimate_is_of_the_tile_as_it_was(self):
         self._plane(size=2)
         obj = bpy.context.object
-        tiles = importlib.import_module(f"{inputs.ADDON}.operators.tiles")
+        tiles = inputs.module("operators.tiles")
         told = {tiles.captured_as(obj)}
         for name, value in (("held_out", 64), ("period", (3, 3)), ("use_approximate", True)):
             setattr(obj.velour, name, value)
@@ -131,7 +130,7 @@ class CaptureBtf(BlenderTest):
         self._plane(size=2)
         settings, state = bpy.context.object.velour, bpy.context.window_manager.velour
         settings.texels, settings.views, settings.lights = 16, 8, 20
-        panel, told = importlib.import_module(f"{inputs.ADDON}.ui.tile_panel"), []
+        panel, told = inputs.module("ui.tile_panel"), []
         for settings.held_out in (0, 4000):
             self._said(bpy.ops.velour.estimate_capture)
             told.append((state.estimate.split(", ")[1], panel._size(settings)))

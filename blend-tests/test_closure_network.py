@@ -1,6 +1,5 @@
 """A network of Blender's own nodes that stands in for a measured material, rendered by Cycles."""
 
-import importlib
 import sys
 from unittest import mock
 
@@ -62,7 +61,7 @@ class Network(BlenderTest):
     def setUp(self):
         super().setUp()
         addon_utils.enable("cycles")
-        self.module = importlib.import_module(f"{inputs.ADDON}.operators.closure_network")
+        self.module = inputs.module("operators.closure_network")
         self.scene = scene = bpy.context.scene
         scene.render.engine = "CYCLES"
         scene.render.resolution_x = scene.render.resolution_y = SIZE
@@ -280,7 +279,7 @@ class File(Network):
     def setUp(self):
         super().setUp()
         self.path = self.folder / "curves.blend"
-        self.blend_file = importlib.import_module(f"{inputs.ADDON}.core.blend_file")
+        self.blend_file = inputs.module("core.blend_file")
 
     def _write(self, curves, blender="blender"):
         self.blend_file.write_closures(self.path, "Satin", curves, "Off by 3 %.", blender)

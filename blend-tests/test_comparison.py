@@ -2,7 +2,6 @@
 
 import contextlib
 import gc
-import importlib
 import io
 import threading
 from unittest import mock
@@ -86,7 +85,7 @@ class Compare(BallTest):
         material = self._material(inputs.glossy_measurement())
         plain = np.array(self._tiles(self._compared(material)))
         wide = np.array(((0.6274, 0.3293, 0.0433), (0.0691, 0.9195, 0.0114), (0.0164, 0.0880, 0.8956)))
-        with mock.patch.object(_module("export.color"), "rec709_to_working", return_value=wide):
+        with mock.patch.object(inputs.module("export.color"), "rec709_to_working", return_value=wide):
             shown = np.array(self._tiles(self._compared(material)))
         np.testing.assert_allclose(shown, plain @ wide.T, atol=1e-4)
         self.assertGreater(np.abs(shown - plain).max(), 0.01)  # the control
@@ -219,17 +218,13 @@ class Cancelled(BallTest):
 
     def test_a_picture_of_an_asset(self):
         node = scenes.velour_node(self._material(inputs.glossy_measurement()))
-        stored = _module("export.files").StoredFile.of(node.image, "Paint")
-        picture = _module("operators.mark_asset")._Picture
+        stored = inputs.module("export.files").StoredFile.of(node.image, "Paint")
+        picture = inputs.module("operators.mark_asset")._Picture
         self.assertTrue(self._cancelled_while_a_scene_is_made(picture(stored, 1), before=1))
 
     def test_a_comparison(self):
         node = scenes.velour_node(self._material(inputs.glossy_measurement()))
-        comparison = _module("operators.comparison").Comparison
+        comparison = inputs.module("operators.comparison").Comparison
         self.assertTrue(
             self._cancelled_while_a_scene_is_made(comparison(node, "Paint", _SIDE, 4, 1), before=3)
         )
-
-
-def _module(name):
-    return importlib.import_module(f"{inputs.ADDON}.{name}")

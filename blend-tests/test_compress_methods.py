@@ -1,7 +1,5 @@
 """Materials made from BTFs, by every method."""
 
-import importlib
-
 import bpy
 
 from support import inputs, scenes
@@ -36,7 +34,7 @@ class CompressMethods(BlenderTest):
     def test_clustered_tensors_have_the_clusters_that_were_asked_for(self):
         tile = bpy.context.object
         tile.velour.members = 2
-        panel = importlib.import_module(f"{inputs.ADDON}.ui.model_panel")
+        panel = inputs.module("ui.model_panel")
         for method, members in (("TUCKER", 1), ("CTA", 1), ("KCTA", 2)):
             with self.subTest(method=method):
                 bpy.ops.velour.compress_btf(method=method, clusters=3, megabytes=0.03)

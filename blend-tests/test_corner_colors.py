@@ -12,7 +12,7 @@ LUMINANCE = (0.2126, 0.7152, 0.0722)
 
 
 def _export(name):
-    return __import__(f"{inputs.ADDON}.export.{name}", fromlist=[name])
+    return inputs.module(f"export.{name}")
 
 
 class CornerColors(BlenderTest):

@@ -1,10 +1,7 @@
 """The demo's Blender scripts, from an empty scene to their reports, small."""
 
-import importlib
 import json
-import sys
 import unittest.mock
-from pathlib import Path
 
 from support import blender, inputs
 from support.blender import BlenderTest
@@ -24,13 +21,8 @@ SMALL_BTF = {
 
 
 class Demo(BlenderTest):
-    def _script(self, name):
-        scripts = str(Path(__file__).resolve().parents[1] / "scripts/lib")
-        with unittest.mock.patch.object(sys, "path", [scripts, *sys.path]):
-            return importlib.import_module(name)
-
     def test_a_btf(self):
-        scene, folder = self._script("bench.inside.demo"), self.folder
+        scene, folder = inputs.script("bench.inside.demo"), self.folder
         with unittest.mock.patch.multiple(scene, **SMALL_BTF):
             report = scene.main({"folder": str(folder)})
         self.assertGreater(report["btf_bytes"], report["model_bytes"])
@@ -39,7 +31,7 @@ class Demo(BlenderTest):
         self.assertGreater(report["reference_seconds"], 0)
 
     def test_pictures_and_curves(self):
-        scene, folder = self._script("bench.inside.demo"), blender.folder()
+        scene, folder = inputs.script("bench.inside.demo"), blender.folder()
         model = folder / "demo.velour"
         model.write_bytes(inputs.model_bytes(inputs.glossy_measurement()))
         task = {"model": str(model), "measurement": str(inputs.glossy_measurement()), "folder": str(folder)}

@@ -1,6 +1,5 @@
 """Denoised renders: the picture, its passes and stamps, and what is said where nothing can denoise."""
 
-import importlib
 import re
 from unittest import mock
 
@@ -10,7 +9,7 @@ import numpy as np
 from support import inputs, scenes
 from support.blender import BlenderTest
 
-denoising = importlib.import_module(f"{inputs.ADDON}.engine.denoising")
+denoising = inputs.module("engine.denoising")
 
 
 class Denoising(BlenderTest):

@@ -1,6 +1,5 @@
 """A render that fails exits non-zero and leaves no picture: every cause, format and way to render."""
 
-import importlib
 import os
 import unittest
 from pathlib import Path
@@ -88,7 +87,7 @@ class ExitCodes(BlenderTest):
     def test_corrupt_packed_model(self):
         data = inputs.model_bytes(inputs.lambert_measurement())
         self._scene(material := scenes.measured_material(data))
-        measured = importlib.import_module(f"{inputs.ADDON}.operators.measured")
+        measured = inputs.module("operators.measured")
         scenes.velour_node(material).image = measured.packed_model(data[: len(data) // 2], "Paint")
         self._all_fail(["Material 'Paint'"], **_FEW)
 

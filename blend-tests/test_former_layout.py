@@ -98,7 +98,7 @@ class FormerLayout(BlenderTest):
 
     def test_a_fit_converts(self):
         material = self._former()
-        measured = __import__(f"{inputs.ADDON}.operators.measured", fromlist=["measured"])
+        measured = inputs.module("operators.measured")
         scenes.velour_node(material).velour.measurement = measured.file_image(
             str(inputs.lambert_measurement())
         )

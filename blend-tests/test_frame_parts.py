@@ -1,6 +1,5 @@
 """Final renders that several runs share out, or that are ended and gone on with; what a frame takes."""
 
-import importlib
 import re
 import resource
 import signal
@@ -116,7 +115,7 @@ class FrameParts(BlenderTest):
 
     def test_parts_are_denoised_once_they_are_together(self):
         """A part shows its noise; the frame is denoised as one that was rendered at once."""
-        denoising = importlib.import_module(f"{inputs.ADDON}.engine.denoising")
+        denoising = inputs.module("engine.denoising")
         if reason := denoising.missing():
             self.skipTest(reason)
         blend = self._save()

@@ -10,7 +10,7 @@ from support.blender import BlenderTest
 
 
 def _lights():
-    return __import__(f"{inputs.ADDON}.export.lights", fromlist=["lights"])
+    return inputs.module("export.lights")
 
 
 def _lamp(**newer):

@@ -37,7 +37,7 @@ class Objects(NotesTest):
 
     def test_grease_pencil_of_a_tile(self):
         """In pictures Blender itself draws it (test_drawn_by_blender.py); of a capture nobody does."""
-        tiles = __import__(f"{inputs.ADDON}.export.tiles", fromlist=["tiles"])
+        tiles = inputs.module("export.tiles")
         # Blender 4.3 keeps the old kind beside the new one, which 5.0 has alone.
         pencils = _first_of("grease_pencils_v3", "grease_pencils")
         scenes.add_plane(scenes.diffuse_material())
@@ -60,7 +60,7 @@ class Objects(NotesTest):
         if not hasattr(lamp, "cycles"):
             self.skipTest("Cycles is not enabled")
         _link("Portal", lamp)
-        lights = __import__(f"{inputs.ADDON}.export.lights", fromlist=["lights"])
+        lights = inputs.module("export.lights")
         for is_portal in (False, True):
             lamp.cycles.is_portal = is_portal
             lamp.update_tag()  # which a property of an add-on does not do by itself
@@ -122,7 +122,7 @@ class Worlds(NotesTest):
         return node
 
     def _refused(self, words):
-        export = __import__(f"{inputs.ADDON}.export", fromlist=["export"])
+        export = inputs.module("export")
         with self.assertRaisesRegex(export.ExportError, words):
             self.notes()
 
@@ -190,7 +190,7 @@ class Cameras(NotesTest):
         self.assertAlmostEqual(self._focus(), 12, places=4)
 
     def _focus(self):
-        aperture = __import__(f"{inputs.ADDON}.export.aperture", fromlist=["aperture"])
+        aperture = inputs.module("export.aperture")
         depsgraph = bpy.context.evaluated_depsgraph_get()
         camera = bpy.context.scene.camera.evaluated_get(depsgraph)
         return aperture.aperture(camera, depsgraph)["focus"]

@@ -179,4 +179,4 @@ class MaterialLife(BlenderTest):
 
     @staticmethod
     def _files():
-        return __import__(f"{inputs.ADDON}.export.files", fromlist=["files"])
+        return inputs.module("export.files")

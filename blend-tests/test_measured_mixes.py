@@ -149,8 +149,8 @@ class Mixes(MixTest):
     def test_what_is_left_out_is_said(self):
         toon = self.add("BsdfToon")
         self.show(self.mix("MixShader", self.node, toon, 0.5))
-        notes = __import__(f"{inputs.ADDON}.export.notes", fromlist=["notes"]).Notes()
-        shaders = __import__(f"{inputs.ADDON}.export.shaders", fromlist=["shaders"])
+        notes = inputs.module("export.notes").Notes()
+        shaders = inputs.module("export.shaders")
         shaders.surface_layers(self.material, notes)
         self.assertTrue(any("'Paint'" in note and "Toon" in note for note in notes), list(notes))
 

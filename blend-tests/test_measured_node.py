@@ -11,10 +11,6 @@ from support import inputs, scenes
 from support.blender import BlenderTest
 
 
-def _module(name):
-    return __import__(f"{inputs.ADDON}.{name}", fromlist=["any"])
-
-
 class NodeTest(BlenderTest):
     def _stage(self, material, samples=8):
         scenes.use_engine(samples=samples, size=16)
@@ -47,8 +43,8 @@ class NodeTest(BlenderTest):
         self.assertGreater(np.abs(changed - plain).max(), 0.01)
 
     def _notes(self, material):
-        notes = _module("export.notes").Notes()
-        _module("export.shaders").surface_layers(material, notes)
+        notes = inputs.module("export.notes").Notes()
+        inputs.module("export.shaders").surface_layers(material, notes)
         return " ".join(notes)
 
 
@@ -260,7 +256,7 @@ class Mixed(NodeTest):
         calls = mock.Mock()
         shader = calls.__enter__ = mock.MagicMock()
         shader.__enter__.return_value = calls
-        notes, materials = _module("export.notes").Notes(), _module("export.materials")
+        notes, materials = inputs.module("export.notes").Notes(), inputs.module("export.materials")
         with inputs.native().Scene() as scene:
             table = materials.MaterialTable(scene, notes)
             with (
@@ -333,7 +329,7 @@ class Shared(NodeTest):
         self.first = scenes.measured_material(inputs.model_bytes(inputs.plastic_measurement()))
         self.second = self.first.copy()
         self.second.name = "Copy"
-        measured = _module("operators.measured")
+        measured = inputs.module("operators.measured")
         for material in (self.first, self.second):
             scenes.velour_node(material).velour.measurement = measured.file_image(
                 str(inputs.lambert_measurement())
@@ -384,7 +380,7 @@ class Shared(NodeTest):
         local = bpy.data.materials["Paint"].make_local() or bpy.data.materials["Paint"]
         node = scenes.velour_node(local)
         self.assertIsNotNone(node.group.node_tree.library)
-        measured = _module("operators.measured")
+        measured = inputs.module("operators.measured")
         node.velour.measurement = measured.file_image(str(inputs.lambert_measurement()))
         image = node.image
         for call in (bpy.ops.velour.fit, bpy.ops.velour.approximate):
@@ -395,11 +391,7 @@ class Shared(NodeTest):
 
 def _wrap(tree, node):
     """Moves a node into a group of its own, which takes its place."""
-    outer = bpy.data.node_groups.new("Wrapped", "ShaderNodeTree")
-    if hasattr(outer, "interface"):  # 4.0 and newer
-        outer.interface.new_socket(name="Shader", in_out="OUTPUT", socket_type="NodeSocketShader")
-    else:
-        outer.outputs.new("NodeSocketShader", "Shader")
+    outer = scenes.new_group("Wrapped", "Shader")
     inner, sink = outer.nodes.new("ShaderNodeGroup"), outer.nodes.new("NodeGroupOutput")
     inner.node_tree = node.node_tree
     for socket in node.inputs:

@@ -12,7 +12,7 @@ def _export(name):
 
 
 def _module(layer, name):
-    return __import__(f"{inputs.ADDON}.{layer}.{name}", fromlist=[name])
+    return inputs.module(f"{layer}.{name}")
 
 
 def _blenders_normals(mesh):
@@ -134,7 +134,7 @@ class MeshQueue(BlenderTest):
         return [flat, soft, nothing, bpy.context.object.data, flat_again], grid
 
     def test_as_added_one_by_one(self):
-        native = __import__(f"{inputs.ADDON}.native", fromlist=["Scene"])
+        native = inputs.module("native")
         meshes, read = self._meshes()
         notes = _export("notes").Notes()
         with native.Scene() as together, native.Scene() as single:

@@ -1,6 +1,5 @@
 """What a newer Blender has stored: every enumeration reads as '', and properties that will go are gone."""
 
-import importlib
 import types
 
 import bpy
@@ -10,7 +9,7 @@ from support.blender import BlenderTest
 
 
 def _module(name):
-    return importlib.import_module(f"{inputs.ADDON}.export.{name}")
+    return inputs.module(f"export.{name}")
 
 
 class _Newer:

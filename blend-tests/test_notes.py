@@ -3,7 +3,7 @@
 import bpy
 
 from support import inputs, scenes
-from support.notes import NotesTest
+from support.notes import NotesTest, export_notes
 
 
 class Notes(NotesTest):
@@ -247,14 +247,8 @@ class Notes(NotesTest):
 
     def test_missing_model_in_a_preview(self):
         """Previews render the approximation and say why."""
-        export = __import__(f"{inputs.ADDON}.export", fromlist=["export"])
-        camera = __import__(f"{inputs.ADDON}.export.camera", fromlist=["camera"])
         scenes.add_sphere()
         bpy.ops.velour.add_material()
-        notes = export.Notes()
-        depsgraph = bpy.context.evaluated_depsgraph_get()
-        view = camera.final_view(depsgraph)
-        export.export_scene(depsgraph, view, notes, strict=False)[0].close()
-        self.assertIn("has no model", "".join(notes))
-        with self.assertRaisesRegex(export.ExportError, "has no model"):
-            export.export_scene(depsgraph, view, notes)
+        self.assertIn("has no model", "".join(export_notes(strict=False)))
+        with self.assertRaisesRegex(inputs.module("export").ExportError, "has no model"):
+            export_notes()

@@ -1,7 +1,6 @@
 """Persistent Data: frames that go on from the one before are those that are exported whole."""
 
 import contextlib
-import importlib
 import io
 import shutil
 from pathlib import Path
@@ -12,10 +11,6 @@ import numpy as np
 
 from support import inputs, scenes
 from support.blender import BlenderTest
-
-
-def _module(name):
-    return importlib.import_module(f"{inputs.ADDON}.{name}")
 
 
 def _insert_key(tree, path, value, frame):
@@ -80,13 +75,13 @@ class PersistentData(BlenderTest):
         self.scene.render.image_settings.file_format = "OPEN_EXR"
         self.scene.render.image_settings.color_depth = "32"
         pictures, added = [], []
-        add = _module("core.mesh_queue").MeshQueue.add
+        add = inputs.module("core.mesh_queue").MeshQueue.add
 
         def watched(queue, arrays, owner):
             added[-1].append(owner)
             return add(queue, arrays, owner)
 
-        with mock.patch.object(_module("core.mesh_queue").MeshQueue, "add", watched):
+        with mock.patch.object(inputs.module("core.mesh_queue").MeshQueue, "add", watched):
             for frame in range(self.scene.frame_start, self.scene.frame_end + 1):
                 added.append([])
                 self.scene.frame_set(frame)
@@ -115,14 +110,14 @@ class PersistentData(BlenderTest):
     def test_nothing_is_left_of_geometry_that_changes(self):
         self._animate()
         sizes = []
-        take = _module("export.scene").SceneExport.take
+        take = inputs.module("export.scene").SceneExport.take
 
         def counted(*given):
             exported = take(*given)
             sizes.append(exported.scene.info()["bytes"])
             return exported
 
-        with mock.patch.object(_module("export.scene").SceneExport, "take", counted):
+        with mock.patch.object(inputs.module("export.scene").SceneExport, "take", counted):
             self._assert_same()
         np.testing.assert_allclose(sizes[:3], sizes[3:], rtol=0.05)
 
@@ -187,7 +182,7 @@ class PersistentData(BlenderTest):
 
     def _assert_read(self, times):
         """That a kept scene's frames are right, and read their sky so often."""
-        kind, read = _module("native").Scene, []
+        kind, read = inputs.module("native").Scene, []
 
         def watched(name):
             method = getattr(kind, name)
@@ -262,7 +257,7 @@ class PersistentData(BlenderTest):
 
     def test_a_model_is_read_once(self):
         """A tint, and how a tile lies, say nothing of the files."""
-        files, reads = _module("export.files"), []
+        files, reads = inputs.module("export.files"), []
         weave = scenes.measured_material((Path(__file__).parent / "scenes/data/weave.velour").read_bytes())
         self.still.material_slots[0].material = weave
         node = scenes.velour_node(weave)
@@ -360,7 +355,7 @@ class PersistentData(BlenderTest):
     def test_a_frame_that_fails_leaves_nothing_behind(self):
         self.scene.frame_end = 1
         self._pictures(True)
-        fails = mock.patch.object(_module("engine.final"), "final_view", side_effect=ZeroDivisionError)
+        fails = mock.patch.object(inputs.module("engine.final"), "final_view", side_effect=ZeroDivisionError)
         with fails, self.assertRaises(RuntimeError):
             bpy.ops.render.render()
         self.assertEqual(len(self._pictures(True)[1][0]), 3)

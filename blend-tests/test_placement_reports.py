@@ -1,6 +1,5 @@
 """Where tiles of BTFs lie on objects: what is measured, and what is said."""
 
-import importlib
 import types
 
 import bpy
@@ -8,7 +7,8 @@ import numpy as np
 from mathutils import Matrix
 
 from support import inputs, scenes
-from support.placement import SIZE, Placed, export_module
+from support.notes import export_notes
+from support.placement import SIZE, Placed
 
 _OF_PANELS = ("summaries", "placement_summary")
 
@@ -24,7 +24,7 @@ class Panel(Placed):
             target.materials = ["Quarters"]
         (material,) = target.materials
         obj = scenes.add_plane(material)
-        ui = {name: importlib.import_module(f"{inputs.ADDON}.ui.{name}") for name in _OF_PANELS}
+        ui = {name: inputs.module(f"ui.{name}") for name in _OF_PANELS}
         context = types.SimpleNamespace(object=obj, scene=bpy.context.scene)
         while ui["summaries"].model_summary(scenes.velour_node(material).image) is None:
             ui["summaries"]._turn()
@@ -212,11 +212,7 @@ class Warnings(Placed):
 
     def test_a_preview_without_a_size_is_not_refused(self):
         scenes.add_plane(self._material(metres=0, mode="REAL_SIZE"))
-        export = importlib.import_module(f"{inputs.ADDON}.export")
-        notes, depsgraph = export.Notes(), bpy.context.evaluated_depsgraph_get()
-        view = export_module("camera").final_view(depsgraph)
-        export.export_scene(depsgraph, view, notes, strict=False)[0].close()
-        self.assertIn("enter Tile Size", " ".join(notes))
+        self.assertIn("enter Tile Size", " ".join(export_notes(strict=False)))
 
     def test_repeats_of_unknown_size_are_fine_and_said(self):
         scenes.add_plane(self._material(metres=0))

@@ -2,7 +2,6 @@
 
 import importlib
 import shutil
-import sys
 import unittest
 import unittest.mock
 from pathlib import Path
@@ -34,12 +33,6 @@ print("ASSET READ")
 """
 
 
-def _script(name):
-    scripts = str(Path(__file__).resolve().parents[1] / "scripts/lib")
-    with unittest.mock.patch.object(sys, "path", [scripts, *sys.path]):
-        return importlib.import_module(name)
-
-
 class Presets(BlenderTest):
     def setUp(self):
         super().setUp()
@@ -69,7 +62,7 @@ class Presets(BlenderTest):
         )
         (folder / presets.INDEX_FILE).write_text(presets.index_text([preset]))
         path = folder / presets.LIBRARY_FILE
-        _script("bench.inside.presets").write(
+        inputs.script("bench.inside.presets").write(
             {"path": str(path), "folder": str(folder), "catalogs": {"Paints": CATALOG}}
         )
         return path

@@ -1,13 +1,8 @@
 """A tile captured in Blender, its BTF and its model on a plane and a cylinder, beside its geometry."""
 
-import importlib
-import sys
-import unittest.mock
-from pathlib import Path
-
 import numpy as np
 
-from support import blender, scenes
+from support import blender, inputs, scenes
 from support.blender import BlenderTest
 from support.geometry_error import geometry_error
 
@@ -29,9 +24,7 @@ class RealGeometry(BlenderTest):
         if self.taken is None:
             folder = blender.folder() / "shots"
             folder.mkdir()
-            scripts = str(Path(__file__).resolve().parents[1] / "scripts/lib")
-            with unittest.mock.patch.object(sys, "path", [scripts, *sys.path]):
-                scene = importlib.import_module("support.real_geometry")  # uses bench
+            scene = inputs.script("support.real_geometry")  # uses bench
             report = scene.main({**TASK, "samples": 64, "shots": SHOTS, "folder": str(folder)})
             type(self).taken = folder, geometry_error, report
         return self.taken

@@ -65,8 +65,8 @@ class Roughness(BlenderTest):
         plain = scenes.render(self.folder, "plain")
         scenes.set_look(material, roughness=0.6)
         np.testing.assert_array_equal(scenes.render(self.folder, "left-out"), plain)
-        notes = __import__(f"{inputs.ADDON}.export.notes", fromlist=["notes"]).Notes()
-        materials = __import__(f"{inputs.ADDON}.export.materials", fromlist=["materials"])
+        notes = inputs.module("export.notes").Notes()
+        materials = inputs.module("export.materials")
         with inputs.native().Scene() as scene:
             materials.MaterialTable(scene, notes).number(bpy.context.object.active_material)
         self.assertTrue(any(words in note for note in notes), list(notes))

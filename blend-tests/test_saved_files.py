@@ -2,7 +2,6 @@
 
 import contextlib
 import copy
-import importlib
 import io
 from pathlib import Path
 from unittest import mock
@@ -16,12 +15,8 @@ SCRIPT = Path(saved_settings.__file__)
 _SAVE_AGAIN = "import bpy; bpy.ops.wm.open_mainfile(filepath={0!r}); bpy.ops.wm.save_mainfile()"
 
 
-def _module(name):
-    return importlib.import_module(f"{inputs.ADDON}.{name}")
-
-
 def _number(release):
-    return _module("native.version").packed(tuple(map(int, release.split("."))))
+    return inputs.module("native.version").packed(tuple(map(int, release.split("."))))
 
 
 class SavedFilesTest(BlenderTest):
@@ -50,11 +45,11 @@ class SavedFilesTest(BlenderTest):
 
     @property
     def this(self):
-        return _number(_module("native.version").version_text())
+        return _number(inputs.module("native.version").version_text())
 
     @property
     def table(self):
-        path = saved_settings.RELEASES / f"{_module('native.version').version_text()}.json"
+        path = saved_settings.RELEASES / f"{inputs.module('native.version').version_text()}.json"
         self.assertTrue(path.is_file(), "run scripts/saved_settings")
         return saved_settings.read(path)
 
@@ -145,8 +140,8 @@ class Migrations(SavedFilesTest):
     def setUp(self):
         super().setUp()
         self.calls = []
-        migrations = _module("handlers.migrations")
-        step = migrations.Step(_module("native.version").VERSION, bpy.types.Scene, self._from_zero)
+        migrations = inputs.module("handlers.migrations")
+        step = migrations.Step(inputs.module("native.version").VERSION, bpy.types.Scene, self._from_zero)
         patch = mock.patch.object(migrations, "STEPS", [step])
         patch.start()
         self.addCleanup(patch.stop)
@@ -190,7 +185,7 @@ class Migrations(SavedFilesTest):
         said = self.stored(
             {"Scene": {"seed": {"type": "INT", "saved": 8}, "later": {"type": "INT", "saved": 3}}}, later
         )
-        self.assertIn(f"Saved by Velour {_module('native.version').version_text(later)}", said)
+        self.assertIn(f"Saved by Velour {inputs.module('native.version').version_text(later)}", said)
         self.assertIn("Update Velour", said)
         self.assertEqual((self.calls, bpy.context.scene.velour.seed), ([], 8))
         self.save()

@@ -41,7 +41,7 @@ class PaintedPlane(SceneModelTest):
 
     def _full_model(self):
         """A model of the default tolerance, fitted once and kept."""
-        measured = __import__(f"{inputs.ADDON}.operators.measured", fromlist=["measured"])
+        measured = inputs.module("operators.measured")
         data = inputs.full_model_bytes(inputs.glossy_measurement())
         return measured.packed_model(data, "Paint")
 
@@ -312,8 +312,8 @@ class Frames(PaintedPlane):
 
     def test_previews_take_the_full_model(self):
         """The sphere of a preview is seen at every angle."""
-        export = __import__(f"{inputs.ADDON}.export", fromlist=["export"])
-        camera = __import__(f"{inputs.ADDON}.export.camera", fromlist=["camera"])
+        export = inputs.module("export")
+        camera = inputs.module("export.camera")
         depsgraph, notes = bpy.context.evaluated_depsgraph_get(), export.Notes()
         view = camera.final_view(depsgraph)
         scene, materials, *_ = export.export_scene(depsgraph, view, notes, strict=False)

@@ -32,7 +32,7 @@ class SceneModelsOfBtfs(SceneModelTest):
     def _make_material(self, folder):
         """As *Make Material from BTF* does, by the method that takes no time."""
         native = inputs.native()
-        measured = __import__(f"{inputs.ADDON}.operators.measured", fromlist=["measured"])
+        measured = inputs.module("operators.measured")
         path = measured.btf_file(str(folder))
         with native.Btf.load(path) as btf, native.compress_job(btf, method="svd", bytes=100000) as job:
             digest = btf.info()["sha256"]

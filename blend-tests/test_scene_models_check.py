@@ -24,7 +24,7 @@ class Checked(SceneModelTest):
         scenes.add_plane()
         bpy.ops.velour.load_material(filepath=str(inputs.glossy_measurement()), fit=False)
         bpy.context.object.active_material.name = "Paint"
-        measured = __import__(f"{inputs.ADDON}.operators.measured", fromlist=["measured"])
+        measured = inputs.module("operators.measured")
         data = inputs.full_model_bytes(inputs.glossy_measurement())
         self.node.image = measured.packed_model(data, "Paint")
         bpy.ops.velour.fit_for_scene(material="Paint")

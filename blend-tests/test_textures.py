@@ -7,6 +7,7 @@ import numpy as np
 
 from support import inputs, scenes
 from support.blender import BlenderTest
+from support.notes import export_notes
 
 SIDE = 8  # texels and pixels of a side
 
@@ -66,17 +67,9 @@ class Textures(BlenderTest):
     def _rendered(self):
         return scenes.render(self.folder)[..., :3]
 
-    def _notes(self):
-        export = __import__(f"{inputs.ADDON}.export", fromlist=["export"])
-        camera = __import__(f"{inputs.ADDON}.export.camera", fromlist=["camera"])
-        notes = export.Notes()
-        depsgraph = bpy.context.evaluated_depsgraph_get()
-        export.export_scene(depsgraph, camera.final_view(depsgraph), notes)[0].close()
-        return list(notes)
-
     def test_a_plane_shows_its_picture(self):
         self._plane(_image("float", _colors()))
-        self.assertEqual(self._notes(), [])
+        self.assertEqual(export_notes(), [])
         np.testing.assert_allclose(self._rendered(), _colors()[..., :3], atol=2e-3)
 
     def test_byte_images_are_decoded(self):
@@ -92,7 +85,7 @@ class Textures(BlenderTest):
         np.testing.assert_allclose(self._rendered(), 0.5, atol=3e-3)
 
     def test_packed_and_file_images(self):
-        native = __import__(f"{inputs.ADDON}.native", fromlist=["native"])
+        native = inputs.module("native")
         path = self.folder / "stored.exr"
         native.images.write(path, _colors())
         for packed in (False, True):
@@ -121,7 +114,7 @@ class Textures(BlenderTest):
         for path, notes in ((small, 0), (more, 1)):
             with self.subTest(path.name):
                 self._plane(bpy.data.images.load(str(path)))
-                found = self._notes()
+                found = export_notes()
                 self.assertEqual(len(found), notes, found)
                 self.assertTrue(all("channel004" in note and "more.exr" in note for note in found), found)
                 np.testing.assert_allclose(self._rendered(), colors[..., :3], atol=3e-3)
@@ -136,7 +129,7 @@ class Textures(BlenderTest):
             + bytes((32, 64, 128, 128)) * SIDE * (SIDE // 2)
         )
         self._plane(bpy.data.images.load(str(path)))
-        found = self._notes()
+        found = export_notes()
         self.assertEqual(len(found), 2, found)
         self.assertTrue("flipped vertically" in found[0] and "exposure" in found[1], found)
         np.testing.assert_allclose(self._rendered()[-1, 0], (0.5, 0.25, 0.125), atol=3e-3)
@@ -190,23 +183,23 @@ class Textures(BlenderTest):
     def test_other_nodes_are_named(self):
         self._plane(_image("named", _colors()))
         self.texture.projection = "BOX"
-        self.assertIn("is not projected with Flat", "".join(self._notes()))
+        self.assertIn("is not projected with Flat", "".join(export_notes()))
         self.texture.projection = "FLAT"
         camera = self.tree.nodes.new("ShaderNodeTexCoord")
         self.tree.links.new(camera.outputs["Camera"], self.texture.inputs["Vector"])
-        self.assertIn("output 'Camera'", "".join(self._notes()))
+        self.assertIn("output 'Camera'", "".join(export_notes()))
         self.tree.links.clear()
-        self.assertNotIn("Camera", "".join(self._notes()))
+        self.assertNotIn("Camera", "".join(export_notes()))
 
     def test_an_empty_node_is_named(self):
         self._plane(None)
-        self.assertIn("has no image", "".join(self._notes()))
+        self.assertIn("has no image", "".join(export_notes()))
 
     def test_another_uv_map_is_named(self):
         self._plane(_image("mapped", _colors()))
         node = self.tree.nodes.new("ShaderNodeUVMap")
         self.tree.links.new(node.outputs[0], self.texture.inputs["Vector"])
         node.uv_map = "UVMap"
-        self.assertEqual(self._notes(), [])
+        self.assertEqual(export_notes(), [])
         node.uv_map = "Other"
-        self.assertIn("UV map 'Other'", "".join(self._notes()))
+        self.assertIn("UV map 'Other'", "".join(export_notes()))

@@ -1,6 +1,5 @@
 """From a tile to its material on an object: the steps of the panel, each in its turn."""
 
-import importlib
 import os
 
 import bpy
@@ -11,10 +10,6 @@ from support.panels import Layout
 
 _SMALL = {"texels": 8, "views": 12, "lights": 12, "samples": 4, "bounces": 0, "sides": "ONE"}
 _TILE = {"type": "CORDUROY", "count": 2, "resolution": 8}
-
-
-def _module(name):
-    return importlib.import_module(f"{inputs.ADDON}.{name}")
 
 
 class TileSteps(BlenderTest):
@@ -30,7 +25,7 @@ class TileSteps(BlenderTest):
         return cube
 
     def _steps(self):
-        return _module("ui.tile_steps").steps(bpy.context, bpy.context.object)
+        return inputs.module("ui.tile_steps").steps(bpy.context, bpy.context.object)
 
     def _waiting(self):
         """Names of the steps whose buttons are gray."""
@@ -77,7 +72,7 @@ class TileSteps(BlenderTest):
     def test_the_panel_has_a_button_for_each_step(self):
         self._worn_by_a_cube()
         bpy.context.object.velour.directory = str(self.folder / "ribs.btf")
-        panel = _module("ui.tile_panel").VELOUR_OBJECT_PT_tile
+        panel = inputs.module("ui.tile_panel").VELOUR_OBJECT_PT_tile
         layout = Layout(panel)
         panel.draw(layout, bpy.context)
         names = [button.name.partition(".")[2] for button in layout.operators]
@@ -88,21 +83,23 @@ class TileSteps(BlenderTest):
     def test_a_capture_of_an_unsaved_file_is_temporary(self):
         self._worn_by_a_cube()
         obj = bpy.context.object
-        self.assertTrue(_module("operators.tiles").is_temporary(obj))
+        self.assertTrue(inputs.module("operators.tiles").is_temporary(obj))
         bpy.ops.velour.capture_btf(**_SMALL)
         captured = os.path.join(bpy.app.tempdir, "Corduroy.btf", "btf.json")
         self.assertTrue(os.path.isfile(captured))
         self.assertEqual(obj.velour.directory, "")
         self.assertEqual(bpy.ops.velour.estimate_fit(), {"FINISHED"})  # it finds the capture
         bpy.ops.wm.save_as_mainfile(filepath=str(self.folder / "saved.blend"))
-        self.assertFalse(_module("operators.tiles").is_temporary(obj))
-        self.assertEqual(_module("operators.tiles").capture_folder(obj), str(self.folder / "Corduroy.btf"))
+        self.assertFalse(inputs.module("operators.tiles").is_temporary(obj))
+        self.assertEqual(
+            inputs.module("operators.tiles").capture_folder(obj), str(self.folder / "Corduroy.btf")
+        )
         bpy.ops.wm.read_homefile(use_factory_startup=True)
         self.assertFalse(os.path.isfile(captured), "a tile of the same name in the new file would take it")
 
     def test_no_silhouette_is_taken_for_the_tile_of_a_collection(self):
         button = Layout().operator("velour.add_votf")
-        _module("ui.tile_panel")._draw_outline(button, self._worn_by_a_cube(), "Bricks")
+        inputs.module("ui.tile_panel")._draw_outline(button, self._worn_by_a_cube(), "Bricks")
         self.assertEqual((button.collection, button.structure), ("Bricks", ""))
 
 

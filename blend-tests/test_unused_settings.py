@@ -96,8 +96,8 @@ class Settings(NotesTest):
         self._said("View layer 'ViewLayer'", "surfaces", self.layer, use_solid=False)
 
     def _missing(self):
-        passes = __import__(f"{inputs.ADDON}.export.layer_passes", fromlist=["layer_passes"])
-        export = __import__(f"{inputs.ADDON}.export", fromlist=["export"])
+        passes = inputs.module("export.layer_passes")
+        export = inputs.module("export")
         notes = export.Notes()
         self.scene.update_tag()
         passes.note_missing_passes(bpy.context.evaluated_depsgraph_get().view_layer_eval, notes)

@@ -1,6 +1,5 @@
 """The approximation of measured materials in USD files, which no Blender of Debian writes."""
 
-import importlib
 import unittest
 
 import bpy
@@ -41,7 +40,7 @@ def has_usd():
 
 
 def module(name):
-    return importlib.import_module(f"{inputs.ADDON}.operators.{name}")
+    return inputs.module(f"operators.{name}")
 
 
 @unittest.skipUnless(has_usd(), "this Blender cannot write USD")
@@ -57,7 +56,7 @@ class Usd(WithoutVelour):
     def _approximation(self, **changed):
         """A material of such values, as a fit makes them of a plastic; its group."""
         bpy.ops.velour.add_material()
-        core = importlib.import_module(f"{inputs.ADDON}.core.approximation")
+        core = inputs.module("core.approximation")
         values = {"principled": {**core.UNFITTED.principled, **_PLASTIC}, **changed}
         info = {"texels": (4, 4)} if "color_map" in changed else {"isotropic": "anisotropic" not in changed}
         found = core.UNFITTED._replace(**values)
@@ -109,7 +108,7 @@ class Values(Usd):
             module("usd_hook").attach()
 
     def test_of_a_metal_over_a_diffuse_base(self):
-        core = importlib.import_module(f"{inputs.ADDON}.core.approximation")
+        core = inputs.module("core.approximation")
         metal = {**core.UNFITTED.principled, "base_color": (0.1, 0.2, 0.3), "metallic": 1.0}
         self._approximation(principled=metal, anisotropic=0.5, diffuse=(0.4, 0.3, 0.2))
         _material, values, _stage = self._exported()
@@ -287,8 +286,8 @@ class MaterialX(Usd):
         self.assertEqual(self._known(material), ["Velour_OpenPBR"])
         surface = self._surface(material)
         self.assertEqual(surface.GetIdAttr().Get(), "ND_open_pbr_surface_surfaceshader")
-        fits = importlib.import_module(f"{inputs.ADDON}.core.analytic.open_pbr_fit")
-        look = importlib.import_module(f"{inputs.ADDON}.operators.approximation_look")
+        fits = inputs.module("core.analytic.open_pbr_fit")
+        look = inputs.module("operators.approximation_look")
         start = look.fitted(group_of(self.material).node_tree)["principled"]
         with inputs.native().Model.from_bytes(data, "plastic") as model:
             found = fits.fitted_open_pbr(model, start)

@@ -1,6 +1,5 @@
 """Materials with the outline and the holes of a tile."""
 
-import importlib
 import unittest.mock
 
 import bpy
@@ -107,7 +106,7 @@ class Outline(BlenderTest):
 
         def report(width):
             depsgraph = bpy.context.evaluated_depsgraph_get()
-            outline = __import__(f"{inputs.ADDON}.export.outline_report", fromlist=["outline_report"])
+            outline = inputs.module("export.outline_report")
             return outline.outline_report_on(depsgraph, cylinder, self.material, shell, None, width)
 
         low, _high = shell["heights"]
@@ -121,7 +120,7 @@ class Outline(BlenderTest):
     def test_an_estimate_before_it_begins(self):
         """By small outlines, which change nothing; it is of this structure and these texels alone."""
         node, state = scenes.velour_node(self.material), bpy.context.window_manager.velour
-        asked = importlib.import_module(f"{inputs.ADDON}.operators.asked_outline").outlined_as
+        asked = inputs.module("operators.asked_outline").outlined_as
         before, images = node.image, len(bpy.data.images)
         with self.assertRaisesRegex(RuntimeError, "choose the object"):
             bpy.ops.velour.estimate_votf()
@@ -157,7 +156,7 @@ class Outline(BlenderTest):
     def _panel(self):
         """As it is once the model is read."""
         material = self.material
-        panel = importlib.import_module(f"{inputs.ADDON}.ui.outline_panel")
+        panel = inputs.module("ui.outline_panel")
         with unittest.mock.patch.object(panel, "model_summary", return_value=self._info()):
             return drawn(panel.VELOUR_MATERIAL_PT_outline, material=material, object=bpy.context.object)
 

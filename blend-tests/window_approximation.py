@@ -1,7 +1,5 @@
 """EEVEE without Velour, which wants a screen: a file of measured materials shows their approximation."""
 
-import importlib
-
 import bpy
 import numpy as np
 
@@ -70,8 +68,8 @@ def measured(folder):
 
 def outlined(folder):
     """One sees through the holes: the left half is open."""
-    group = importlib.import_module(f"{inputs.ADDON}.operators.approximation_group")
-    core = importlib.import_module(f"{inputs.ADDON}.core.approximation")
+    group = inputs.module("operators.approximation_group")
+    core = inputs.module("core.approximation")
     material = scenes.measured_material(inputs.model_bytes(inputs.lambert_measurement()))
     _scene(material)
     pixels = np.full((4, 4, 4), 0.5, np.float32)
@@ -97,6 +95,6 @@ def _is_cut_out(material):
 
 
 def _diffuse(material):
-    nodes = importlib.import_module(f"{inputs.ADDON}.export.nodes")
+    nodes = inputs.module("export.nodes")
     tree = nodes.approximation_node(material).node_tree
     return next(node for node in tree.nodes if node.bl_idname == "ShaderNodeBsdfDiffuse")

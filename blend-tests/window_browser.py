@@ -1,6 +1,5 @@
 """The library of measurements in a window: a folder of a thousand files beside a window that stays usable."""
 
-import importlib
 import os
 import time
 from pathlib import Path
@@ -18,14 +17,10 @@ _HELD_SECONDS = 0.05  # of the processor that a draw or a turn may take from the
 def start(folder):
     """Called by the harness once the window is there."""
     os.environ["XDG_CACHE_HOME"] = str(folder / "cache")
-    _module("core.thumbnails")._SAMPLES = 8  # a pixel: how many there are is tested, not what they look like
+    inputs.module("core.thumbnails")._SAMPLES = 8  # per pixel: their number is tested, not their look
     window.open_panels("browser")
     tests = (thousand_files, search, use, broken, refreshed, another_folder, nothing)
     window.run(folder, (*tests, loaded_file, switched_off, waits_for_renders))
-
-
-def _module(name):
-    return importlib.import_module(f"{inputs.ADDON}.{name}")
 
 
 def _folder(folder, name, count):
@@ -40,8 +35,8 @@ def _folder(folder, name, count):
 
 def _show(path):
     """The panel, at the end of a large editor."""
-    _module("ui.browser").forget()
-    _module("operators.browse").addon_preferences(bpy.context).measurements = str(path)
+    inputs.module("ui.browser").forget()
+    inputs.module("operators.browse").addon_preferences(bpy.context).measurements = str(path)
     settings = bpy.context.window_manager.velour.browser
     settings.search, settings.page, settings.chosen = "", 1, ""
     cube = bpy.context.view_layer.objects.active = bpy.data.objects["Cube"]
@@ -61,7 +56,7 @@ def _redraw():
 
 def _rest():
     """The turns until all pictures that were asked for are there."""
-    browser = _module("ui.browser")
+    browser = inputs.module("ui.browser")
     for _ in range(1500):
         yield 0.1
         if browser.is_at_rest() and browser._pictures:
@@ -74,7 +69,7 @@ def _rest():
 def thousand_files(folder):
     """Listed at once; pictures only of those on this page and the next, and nothing holds the window up."""
     path = _folder(folder, "thousand", _FILES)
-    browser, panel = _module("ui.browser"), _module("ui.browser_panel")
+    browser, panel = inputs.module("ui.browser"), inputs.module("ui.browser_panel")
     turns, draws = [], []
     begun = time.monotonic()
     with (
@@ -150,7 +145,7 @@ def broken(folder):
         bpy.ops.velour.choose_measurement(filepath=str(path / "damaged.binary"))
     yield from _rest()
     window.screenshot(folder, "broken")
-    pictures = {file.name: picture for file, picture in _module("ui.browser")._pictures.items()}
+    pictures = {file.name: picture for file, picture in inputs.module("ui.browser")._pictures.items()}
     assert pictures["damaged"].icon == 0
     assert "damaged.binary" in pictures["damaged"].sentence
     assert pictures["paint 0"].icon
@@ -168,7 +163,7 @@ def refreshed(folder):
         bpy.ops.velour.refresh_browser()
     yield from _redraw()
     yield from _rest()
-    pictures = _module("ui.browser")._pictures
+    pictures = inputs.module("ui.browser")._pictures
     new = [picture for file, picture in pictures.items() if file.bytes == len(b"damaged")]
     assert new
     assert new[0].sentence
@@ -177,7 +172,7 @@ def refreshed(folder):
 
 def another_folder(folder):
     """Chosen while the one before is still looked through."""
-    browser, go_on = _module("ui.browser"), []
+    browser, go_on = inputs.module("ui.browser"), []
     first, second = _folder(folder, "first", 2), _folder(folder, "second", 3)
     find = browser.find_measurements
 
@@ -203,7 +198,7 @@ def nothing(folder):
         yield from _show(path)
         yield 1.0
         window.screenshot(folder, f"folder-{name}")
-    browser = _module("ui.browser")
+    browser = inputs.module("ui.browser")
     assert browser.is_at_rest()
     assert not browser._pictures
 
@@ -226,7 +221,7 @@ def switched_off(folder):
     for area in window.first().screen.areas:
         if area.type == "PROPERTIES":  # none shows the panel, which would ask again
             area.type = "TEXT_EDITOR"
-    browser = _module("ui.browser")
+    browser = inputs.module("ui.browser")
     browser.forget()
     assert browser.is_at_rest()
     assert not bpy.app.timers.is_registered(browser._turn)
@@ -236,12 +231,12 @@ def switched_off(folder):
 
 def waits_for_renders(folder):
     """The processor is a render's as long as there is one."""
-    browser, path = _module("ui.browser"), _folder(folder, "waits", 4)
+    browser, path = inputs.module("ui.browser"), _folder(folder, "waits", 4)
     yield from _show("")
     scenes.use_engine(samples=1 << 13, size=128)
     with window.override():
         bpy.ops.render.render("INVOKE_DEFAULT")
-    _module("operators.browse").addon_preferences(bpy.context).measurements = str(path)
+    inputs.module("operators.browse").addon_preferences(bpy.context).measurements = str(path)
     waited = 0
     while bpy.app.is_job_running("RENDER"):
         for area in window.first().screen.areas:

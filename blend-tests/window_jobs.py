@@ -7,7 +7,6 @@ import bpy
 from support import inputs, scenes, window
 from support.reading import module
 
-_TURNS = 600  # of 0.1 s that a fit may take
 _QUICK = {"tolerance": 0.2, "max_lobes": 2}
 
 
@@ -38,16 +37,6 @@ def _cube_with_fit(**settings):
     return material, before
 
 
-def _end():
-    """Turns until nothing runs, nor waits."""
-    state = bpy.context.window_manager.velour
-    for _ in range(_TURNS):
-        yield 0.1
-        if not state.running and not state.waiting:
-            return
-    raise AssertionError("the fit goes on")
-
-
 def _model(name):
     return scenes.velour_node(bpy.data.materials[name]).image.name
 
@@ -56,7 +45,7 @@ def renamed(folder):
     material, before = _cube_with_fit()
     material.name = "Another"
     bpy.data.materials.new("Paint")  # takes the old name
-    yield from _end()
+    yield from window.at_rest()
     assert _model("Another") != before, "the model is lost"
     assert scenes.velour_node(bpy.data.materials["Another"]).image.name.startswith("Another")
 
@@ -65,7 +54,7 @@ def copied(folder):
     """The original gets the model, the copy keeps the one before."""
     material, before = _cube_with_fit()
     material.copy().name = "A copy"  # comes first by name
-    yield from _end()
+    yield from window.at_rest()
     assert _model("Paint") != before
     assert _model("A copy") == before
 
@@ -74,7 +63,7 @@ def deleted(folder):
     """The model is kept among the images."""
     material, before = _cube_with_fit()
     bpy.data.materials.remove(material)
-    yield from _end()
+    yield from window.at_rest()
     kept = [image for image in bpy.data.images if image.name.startswith("Paint") and image.name != before]
     assert len(kept) == 1, [image.name for image in bpy.data.images]
     assert kept[0].use_fake_user
@@ -90,7 +79,7 @@ def undone(folder):
         bpy.ops.ed.undo()
         bpy.ops.ed.redo()
         bpy.ops.ed.undo()
-    yield from _end()
+    yield from window.at_rest()
     assert _model("Paint") != before, "the model is lost"
     with window.override():
         bpy.ops.ed.undo()
@@ -105,7 +94,7 @@ def _cancelled():
     assert not state.running, "a fit of a file that is gone"
     assert state.waiting == 0
     _cube_with_fit(tolerance=0.2, max_lobes=2)
-    yield from _end()
+    yield from window.at_rest()
 
 
 def new_file(folder):
@@ -132,7 +121,7 @@ def scene_removed(folder):
     bpy.context.window_manager.windows[0].scene = bpy.data.scenes.new("Other")
     yield 0.3  # the window's own work with the old one
     bpy.data.scenes.remove(scene)
-    yield from _end()
+    yield from window.at_rest()
     assert _model("Paint") != before
 
 
@@ -145,7 +134,7 @@ def measurement_cleared(folder):
     fit, ended = module("operators.fit").VELOUR_OT_fit, []
     put = fit._put
     with mock.patch.object(fit, "_put", lambda operator: ended.append(put(operator)) or ended[-1]):
-        yield from _end()
+        yield from window.at_rest()
     assert len(ended) == 1, "it has ended in an error"
     assert _model("Paint") != before, "the model is lost"
     with window.override():
@@ -159,7 +148,7 @@ def measurement_replaced(folder):
     other = bpy.data.images.new("lambert.binary", 1, 1)
     other.source, other.filepath_raw = "FILE", str(inputs.lambert_measurement())
     scenes.velour_node(material).velour.measurement = other
-    yield from _end()
+    yield from window.at_rest()
     assert _model("Paint") != before
     assert bpy.data.images["lambert.binary"].velour.sha256 == ""
     with window.override():
@@ -188,7 +177,7 @@ def outline_after_a_fit(folder):
     had = _info(material)
     _invoke(bpy.ops.velour.add_votf, material="Paint", structure=name, texels=8)
     assert bpy.context.window_manager.velour.waiting == 1
-    yield from _end()
+    yield from window.at_rest()
     has = _info(bpy.data.materials["Paint"])
     assert "shell" in has
     assert (has["model"], has["lobes"]) != (had["model"], had["lobes"]), "it is of the model before"
@@ -197,7 +186,7 @@ def outline_after_a_fit(folder):
 def approximation_after_a_fit(folder):
     _material, before = _cube_with_fit(**_QUICK)
     _invoke(bpy.ops.velour.approximate, material="Paint")
-    yield from _end()
+    yield from window.at_rest()
     material = bpy.data.materials["Paint"]
     assert _model("Paint") != before
     group = module("export.nodes").approximation_node(material).node_tree
@@ -209,7 +198,7 @@ def scene_fit_after_a_fit(folder):
     _material, before = _cube_with_fit(model="PARAMETRIC", tolerance=0.05, max_lobes=4)
     scenes.use_engine()
     _invoke(bpy.ops.velour.fit_for_scene, material="Paint", current_frame=True)
-    yield from _end()
+    yield from window.at_rest()
     assert _model("Paint") != before
     assert scenes.velour_node(bpy.data.materials["Paint"]).velour.scene_model is not None
 
@@ -230,7 +219,7 @@ def waiting_given_up(folder):
         if not state.waiting:
             break
     assert (state.running, state.subject, state.waiting) == (True, "Paint", 0)
-    yield from _end()
+    yield from window.at_rest()
     assert _model("Paint") != before, "the first one was cancelled"
     assert (_model("Second"), _model("Third")) == (before, before), "one that waited was made"
     assert scenes.velour_node(bpy.data.materials["Paint"]).velour.scene_model is None
@@ -239,14 +228,14 @@ def waiting_given_up(folder):
 def scene_fit_renamed(folder):
     """A fit for the scene finds the material and the scene, too, whatever they are called."""
     material, _before = _cube_with_fit(model="PARAMETRIC", tolerance=0.05, max_lobes=4)
-    yield from _end()
+    yield from window.at_rest()
     scenes.use_engine()
     with window.override():
         assert bpy.ops.velour.fit_for_scene("INVOKE_DEFAULT", material="Paint", current_frame=True) == {
             "RUNNING_MODAL"
         }
     material.name, bpy.context.scene.name = "Another", "Shot"
-    yield from _end()
+    yield from window.at_rest()
     assert scenes.velour_node(bpy.data.materials["Another"]).velour.scene_model is not None, (
         "the model is lost"
     )

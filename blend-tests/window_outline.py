@@ -1,7 +1,5 @@
 """The window: the panel of a material's outline, and the numbers in it."""
 
-import importlib
-
 import bpy
 
 from support import inputs, scenes, window
@@ -15,7 +13,7 @@ def start(folder):
 
 
 def _ui(name):
-    return importlib.import_module(f"{inputs.ADDON}.ui.{name}")
+    return inputs.module(f"ui.{name}")
 
 
 def _measured():

@@ -1,6 +1,5 @@
 """The window: panels of a material made from a BTF, and the numbers in them."""
 
-import importlib
 from types import SimpleNamespace
 
 import bpy
@@ -20,7 +19,7 @@ def start(folder):
 
 
 def _ui(name):
-    return importlib.import_module(f"{inputs.ADDON}.ui.{name}")
+    return inputs.module(f"ui.{name}")
 
 
 def _plane(metres=0.5):

@@ -132,16 +132,6 @@ def _held_import():
     return Held(module("operators.load_material"), "found_file")
 
 
-def _end():
-    """Turns until nothing runs, nor waits."""
-    state = bpy.context.window_manager.velour
-    for _ in range(600):
-        yield 0.1
-        if not state.running and not state.waiting:
-            return
-    raise AssertionError("the import goes on")
-
-
 def _names():
     return {material.name for material in bpy.data.materials}
 
@@ -162,7 +152,7 @@ def import_beside_the_window(folder):
         window.screenshot(folder, "importing")
         assert "large" not in _names()
         held.release()
-        yield from _end()
+        yield from window.at_rest()
     material = bpy.data.materials["large"]
     assert scenes.velour_node(material).image.velour.sha256
     assert bpy.context.view_layer.objects.active.active_material == material
@@ -177,7 +167,7 @@ def import_from_browser(folder):
         assert bpy.ops.velour.load_material("INVOKE_DEFAULT", fit=False) == {"RUNNING_MODAL"}
     yield 0.5
     yield from window.choose_file(path)
-    yield from _end()
+    yield from window.at_rest()
     assert "chosen" in _names(), _names()
     assert bpy.data.objects["Cube"].active_material.name == "chosen"
     with window.override():
@@ -199,7 +189,7 @@ def import_undone(folder):
         bpy.ops.ed.undo_push(message="moved")
         bpy.ops.ed.undo()
     held.release()
-    yield from _end()
+    yield from window.at_rest()
     assert bpy.data.objects["Cube"].active_material.name == "undone"
 
 
@@ -214,7 +204,7 @@ def import_loaded_file(folder):
     assert not bpy.context.window_manager.velour.running
     assert "lost" not in _names()
     _import(large_file(folder, "next.velour", 50_000))
-    yield from _end()
+    yield from window.at_rest()
     assert "next" in _names()
 
 
@@ -225,7 +215,7 @@ def import_gone(folder):
     _import(path)
     path.unlink()
     held.release()
-    yield from _end()
+    yield from window.at_rest()
     assert _names() == before
 
 
@@ -234,7 +224,7 @@ def import_cancelled(folder):
     _import(large_file(folder, "cancelled.velour", 50_000))
     yield 0.2
     bpy.ops.velour.cancel_fit()
-    yield from _end()
+    yield from window.at_rest()
     held.release()
     yield 0.2
     assert _names() == before
@@ -247,7 +237,7 @@ def several(folder):
     with window.override():
         started = bpy.ops.velour.load_material("INVOKE_DEFAULT", **settings)
     assert started == {"RUNNING_MODAL"}, started
-    yield from _end()
+    yield from window.at_rest()
     group = module("export.nodes").approximation_node
     states = [group(bpy.data.materials[name]).node_tree.velour for name in ("one", "two")]
     assert all(state.fitted for state in states)

@@ -63,15 +63,6 @@ def _invoke(operator, **arguments):
         assert operator("INVOKE_DEFAULT", **arguments) == {"RUNNING_MODAL"}
 
 
-def _rest():
-    """Turns until nothing is read, runs or waits."""
-    for _ in range(600):
-        yield 0.1
-        if not (_state().reading or _state().running or _state().waiting):
-            return
-    raise AssertionError("it goes on")
-
-
 def _reading():
     """Turns until panels say that a file is read."""
     yield from window.until(lambda: _state().running and _state().stage == "reading", "a file is read")
@@ -94,7 +85,7 @@ def accept_beside_the_window(folder):
         window.screenshot(folder, "accepting")
         assert image.velour.sha256 != digest
         held.release()
-        yield from _rest()
+        yield from window.at_rest()
     assert image.velour.sha256 == digest
     files = module("export.files")
     check_turns("accepting", timed.seconds, lambda: files.sha256(files.content(image, "Control")))
@@ -113,7 +104,7 @@ def accept_undone(folder):
         bpy.ops.ed.undo_push(message="moved")
         bpy.ops.ed.undo()
     held.release()
-    yield from _rest()
+    yield from window.at_rest()
     assert bpy.data.images[name].velour.sha256 == digest
     with window.override():
         bpy.ops.ed.undo()
@@ -126,7 +117,7 @@ def accept_deleted(folder):
     _invoke(bpy.ops.velour.accept_file)
     bpy.data.materials.remove(bpy.data.materials["Paint"])
     held.release()
-    yield from _rest()
+    yield from window.at_rest()
     assert image.velour.sha256 != digest
 
 
@@ -138,7 +129,7 @@ def accept_another(folder):
     other = module("operators.measured").linked_model(str(large_file(folder, "two.velour", 60_000)), "old")
     scenes.velour_node(bpy.data.materials["Paint"]).image = other
     held.release()
-    yield from _rest()
+    yield from window.at_rest()
     assert other.velour.sha256 == "old", digest
 
 
@@ -154,7 +145,7 @@ def accept_loaded_file(folder):
     assert not _state().reading
     image, digest = _changed(folder, "next.velour", 50_000)
     _invoke(bpy.ops.velour.accept_file)
-    yield from _rest()
+    yield from window.at_rest()
     assert image.velour.sha256 == digest
 
 
@@ -171,7 +162,7 @@ def accept_while_another_works(folder):
     assert image.velour.sha256 == digest
     assert _state().running, "the import has not waited"
     held.release()
-    yield from _rest()
+    yield from window.at_rest()
 
 
 def _tiles(folder, name, size):
@@ -191,7 +182,7 @@ def density_beside_the_window(folder):
         yield 0.3
         assert tuple(placement.uv_density) == (0.0, 0.0)
         held.release()
-        yield from _rest()
+        yield from window.at_rest()
     assert min(placement.uv_density) > 0.0
     image = scenes.velour_node(bpy.data.materials["Paint"]).image
     check_turns(
@@ -211,7 +202,7 @@ def density_of_what_is_gone(folder):
         _invoke(bpy.ops.velour.keep_uv_density)
         remove.remove(remove[name])
         held.release()
-        yield from _rest()
+        yield from window.at_rest()
         if name == "Cube":
             assert tuple(placement.uv_density) == (0.0, 0.0)
             bpy.ops.mesh.primitive_cube_add()
@@ -238,7 +229,7 @@ def outline_beside_the_window(folder):
         image, held = _begin_outline(folder, "outlined.velour", LARGE)
         yield from _reading()
         held.release()
-        yield from _rest()
+        yield from window.at_rest()
     node = scenes.velour_node(bpy.data.materials["Paint"])
     with module("export.files").read_model(node.image, "Test") as model:
         assert "shell" in model.info()
@@ -258,7 +249,7 @@ def outline_deleted(folder):
         images = set(bpy.data.images.keys())
         remove.remove(remove["Plane" if number == 0 else "Paint"])
         held.release()
-        yield from _rest()
+        yield from window.at_rest()
         (kept,) = [image for image in bpy.data.images if image.name not in images and _is_model(image)]
         if number == 0:
             assert scenes.velour_node(bpy.data.materials["Paint"]).image == kept
@@ -302,7 +293,7 @@ def scene_beside_the_window(folder):
         yield from _reading()
         window.screenshot(folder, "scene-reading")
         held.release()
-        yield from _rest()
+        yield from window.at_rest()
     assert _scene_model() is not None
     timed.seconds += begun.seconds
     check_turns("the fit", timed.seconds, lambda: module("export.files").read_model(image, "Control").close())
@@ -313,7 +304,7 @@ def scene_cancelled(folder):
     _image, held = _begin_scene_fit(folder, "cancelled.velour", 50_000)
     yield 0.3
     bpy.ops.velour.cancel_fit()
-    yield from _rest()
+    yield from window.at_rest()
     held.release()
     yield 0.3
     assert _scene_model() is None
@@ -325,7 +316,7 @@ def scene_of_another_model(folder):
     node = scenes.velour_node(bpy.data.materials["Paint"])
     node.image = module("operators.measured").packed_model(_full_model(), "Other")
     held.release()
-    yield from _rest()
+    yield from window.at_rest()
     assert _scene_model() is None
 
 
@@ -336,7 +327,7 @@ def scene_undone(folder):
         bpy.ops.ed.undo_push(message="turned")
         bpy.ops.ed.undo()
     held.release()
-    yield from _rest()
+    yield from window.at_rest()
     assert _scene_model() is not None
 
 
@@ -350,5 +341,5 @@ def scene_loaded_file(folder):
     assert not _state().running
     _image, held = _begin_scene_fit(folder, "next.velour", 50_000)
     held.release()
-    yield from _rest()
+    yield from window.at_rest()
     assert _scene_model() is not None

@@ -97,7 +97,7 @@ def no_texture(folder):
         _set_up()
         yield from _refused(folder, "no-texture", "cannot create a texture of", "choose Real Time again")
         assert made.count == len(log.records) == 1, (made.count, log.records)
-    yield from _chosen_again()
+    yield from viewport.choose_real_time_again()
 
 
 def no_pictures_to_draw_into(folder):
@@ -105,7 +105,7 @@ def no_pictures_to_draw_into(folder):
         _set_up()
         yield from _refused(folder, "no-pictures", "images of", "choose Real Time again")
         assert made.count == len(log.records) == 1, (made.count, log.records)
-    yield from _chosen_again()
+    yield from viewport.choose_real_time_again()
 
 
 def lost_while_drawing(folder):
@@ -125,15 +125,7 @@ def lost_while_drawing(folder):
             assert len(asked) == len(log.records) == 1, (asked, log.records)
     finally:
         drawing.full_screen = sky
-    yield from _chosen_again()
-
-
-def _chosen_again():
-    bpy.context.scene.velour.viewport_mode = "RAY_TRACED"
-    yield from viewport.finished()
-    bpy.context.scene.velour.viewport_mode = "REAL_TIME"
-    yield from viewport.real_time_finished()
-    assert not viewport.the_one()._refusal
+    yield from viewport.choose_real_time_again()
 
 
 def broken_shader(folder):
@@ -165,4 +157,4 @@ def broken_shader(folder):
     finally:
         shaders._source = read
         shaders._compiled.clear()
-    yield from _chosen_again()
+    yield from viewport.choose_real_time_again()

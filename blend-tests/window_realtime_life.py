@@ -135,11 +135,7 @@ def refusals(folder):
         window.screenshot(folder, "refused")
     finally:
         scene._MOST_DRAWS = most
-    bpy.context.scene.velour.viewport_mode = "RAY_TRACED"
-    yield from viewport.finished()
-    bpy.context.scene.velour.viewport_mode = "REAL_TIME"
-    yield from viewport.real_time_finished()
-    assert not viewport.the_one()._refusal
+    yield from viewport.choose_real_time_again()
 
 
 def cures(folder):

@@ -20,9 +20,7 @@ def start(folder):
 
 def _plane_of_its_btf(folder, structure):
     """A plane of a mesostructure's own BTF, with its outline; the hem, which has no sides, is far off."""
-    for obj in list(bpy.data.objects):
-        if obj.type != "CAMERA":
-            bpy.data.objects.remove(obj)
+    scenes.remove_all_but_camera()
     with window.override():
         bpy.ops.velour.add_mesostructure(type=structure, count=2, resolution=8)
         tile = bpy.context.object

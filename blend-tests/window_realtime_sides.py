@@ -22,8 +22,7 @@ def both_sides(folder):
     realtime.sky(folder)
     material = _two_sided(folder)
     for smooth, turn, scale in _PLANES:
-        for obj in [obj for obj in bpy.data.objects if obj.type != "CAMERA"]:
-            bpy.data.objects.remove(obj)
+        scenes.remove_all_but_camera()
         with window.override():
             plane = scenes.add_plane(material, size=9.0)
         plane.data.polygons[0].use_smooth = smooth

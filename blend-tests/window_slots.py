@@ -11,16 +11,6 @@ def start(folder):
     window.run(folder, (import_of_a_model, import_of_a_btf, undone))
 
 
-def _end():
-    """Turns until nothing runs, nor waits."""
-    state = bpy.context.window_manager.velour
-    for _ in range(600):
-        yield 0.1
-        if not state.running and not state.waiting:
-            return
-    raise AssertionError("it goes on")
-
-
 def _begin(path, owner, name):
     """An import into the cube's slot, which is active; reading is held up by `name` of `owner`."""
     cube = bpy.context.view_layer.objects.active = bpy.data.objects["Cube"]
@@ -53,7 +43,7 @@ def import_of_a_model(folder):
     yield 0.3
     _swap(cube, plane)
     held.release()
-    yield from _end()
+    yield from window.at_rest()
     _check(cube, plane, "paint")
 
 
@@ -65,7 +55,7 @@ def import_of_a_btf(folder):
     yield 1.0
     _swap(cube, plane)
     held.release()
-    yield from _end()
+    yield from window.at_rest()
     _check(cube, plane, path.stem)
     with window.override():
         bpy.ops.ed.undo()
@@ -85,5 +75,5 @@ def undone(folder):
     cube, plane = bpy.data.objects["Cube"], bpy.data.objects["Plane"]
     bpy.context.view_layer.objects.active = plane
     held.release()
-    yield from _end()
+    yield from window.at_rest()
     _check(cube, plane, "undone")

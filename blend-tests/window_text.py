@@ -1,6 +1,5 @@
 """The window: sentences in panels fill the lines and are cut nowhere, whatever the scale of the interface."""
 
-import importlib
 from unittest import mock
 
 import bpy
@@ -52,7 +51,7 @@ def start(folder):
 
 
 def _text():
-    return importlib.import_module(f"{inputs.ADDON}.ui.text")
+    return inputs.module("ui.text")
 
 
 def plain(folder):
@@ -92,8 +91,8 @@ def labels(folder):
     scenes.velour_node(material).velour.model = "SCATTERED"
     scenes.use_engine()
     yield from window.show_properties("MATERIAL")
-    panels = importlib.import_module(f"{inputs.ADDON}.ui.advanced_panel")
-    tab = importlib.import_module(f"{inputs.ADDON}.ui.material_panel")
+    panels = inputs.module("ui.advanced_panel")
+    tab = inputs.module("ui.material_panel")
     area = max(window.first().screen.areas, key=lambda a: a.width * a.height)
     region = next(region for region in area.regions if region.type == "WINDOW")
     found = {}
@@ -135,7 +134,7 @@ def _points():
 
 
 def _unit():
-    return importlib.import_module(f"{inputs.ADDON}.ui.units").button_height(bpy.context.preferences.system)
+    return inputs.module("ui.units").button_height(bpy.context.preferences.system)
 
 
 def _drawn(folder, name, area, icon):

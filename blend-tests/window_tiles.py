@@ -142,15 +142,6 @@ def capture_and_cancel(folder):
     assert (path / "btf.json").is_file(), "nothing to resume"
 
 
-def _rest():
-    """Turns until nothing runs."""
-    for _ in range(_TURNS):
-        yield 0.1
-        if not bpy.context.window_manager.velour.running:
-            return
-    raise AssertionError("the capture goes on")
-
-
 def _is_whole(path):
     return json.loads((path / "btf.json").read_text())["content"] is not None
 
@@ -165,11 +156,11 @@ def capture_again(folder):
         if len(done) >= 2:
             break
     bpy.ops.velour.cancel_fit()
-    yield from _rest()
+    yield from window.at_rest()
     assert not _is_whole(path), "it was not cancelled"
     with window.override():
         assert bpy.ops.velour.capture_btf("INVOKE_DEFAULT") == {"RUNNING_MODAL"}
-    yield from _rest()
+    yield from window.at_rest()
     assert _is_whole(path), "it was not resumed"
     assert all(file.stat().st_mtime_ns == time for file, time in done.items())
     assert tile.velour.directory == str(path)
@@ -263,7 +254,7 @@ def fitted_anew(folder):
         assert bpy.ops.velour.compress_btf("INVOKE_DEFAULT", material="anew") == {"RUNNING_MODAL"}
     yield 0.3
     window.screenshot(folder, "anew-running")
-    yield from _rest()
+    yield from window.at_rest()
     yield 0.5
     window.screenshot(folder, "anew-fitted")
     node = scenes.velour_node(bpy.data.materials["anew"])

@@ -1,6 +1,5 @@
 """The window: after Blender's race between a drawing panel and a render thread add-ons can write."""
 
-import importlib
 import threading
 from unittest import mock
 
@@ -53,7 +52,7 @@ def start(folder):
 
 
 def _write_lock():
-    return importlib.import_module(f"{inputs.ADDON}.engine.write_lock")
+    return inputs.module("engine.write_lock")
 
 
 def _can_write():

@@ -14,7 +14,7 @@ import inputs
 import numpy as np
 import pytest
 from bench import __main__ as bench
-from bench import data_files, progress, velour_cli
+from bench import progress, project
 from command_line import environment, velour
 from conftest import ADDONS, ROOT
 
@@ -50,8 +50,8 @@ class Campaign:
     def __init__(self, work: Path, output: Path, data: Path, monkeypatch: pytest.MonkeyPatch):
         self.work, self.output, self.patch = work, output, monkeypatch
         monkeypatch.setenv("VELOUR_DATA", str(data))
-        monkeypatch.setattr(data_files, "_EXPANDED", work / "merl")
-        monkeypatch.setattr(velour_cli, "_run", run_in_this_process)
+        monkeypatch.setattr(project, "_EXPANDED", work / "merl")
+        monkeypatch.setattr(project, "_run", run_in_this_process)
         # A line of progress from another thread would stand in the report of a slow call.
         monkeypatch.setattr(progress, "_LINE_SECONDS", 1e6)
 

@@ -6,6 +6,7 @@ import subprocess
 import sys
 
 import pytest
+from bench import page
 from bench.pages import test_times
 from checks import campaign, cases, groups, measured_pages, running
 from checks.cases import FAILED, PASSED, SKIPPED, Case
@@ -118,15 +119,15 @@ def test_the_table_of_times_has_groups_their_sum_and_the_slowest():
             "slowest": [("Lobe.Integrates", 30.0)],
         },
     }
-    page = test_times.text(
-        groups, {"date": "d", "commit": "c", "machine": "m", "threads": 2, "seed": 0, "shown": 10}
-    )
+    conditions = {"date": "d", "commit": "c", "machine": "m", "threads": 2, "seed": 0, "shown": 10}
+    found = {"conditions": conditions, "groups": groups}
+    text = page.text("test_times", conditions | test_times.values(found))
     for line in (
         "| style | 5 | 12 | 20 |",
         "| all | 105 | 312 | 610 |",
         "| native | Lobe.Integrates | 30.0 |",
     ):
-        assert line in page
+        assert line in text
 
 
 def _commit(root, name, text):

@@ -142,16 +142,8 @@ def test_hostile_files_end_in_a_sentence_with_the_name(content, verb, tmp_path, 
 def test_hostile_scene_files(option, tmp_path, mesh_file, world_file, model_file):
     path = tmp_path / "hostile.dat"
     path.write_bytes(b"v nan nan\nf 1 2 99999999999\n" + NOISE)
-    arguments = [
-        "--mesh",
-        mesh_file,
-        "--world",
-        world_file,
-        "--material",
-        model_file,
-        "-o",
-        tmp_path / "o.exr",
-    ]
+    scene = ["--mesh", mesh_file, "--world", world_file]
+    arguments = [*scene, "--material", model_file, "-o", tmp_path / "o.exr"]
     assert "hostile.dat" in refused("render", *arguments, option, path)
 
 
@@ -164,16 +156,8 @@ def test_a_model_that_was_cut_off(model_file, tmp_path):
 
 
 def test_reference_of_another_size(tmp_path, mesh_file, world_file, model_file):
-    arguments = [
-        "--mesh",
-        mesh_file,
-        "--world",
-        world_file,
-        "--material",
-        model_file,
-        "-o",
-        tmp_path / "o.exr",
-    ]
+    scene = ["--mesh", mesh_file, "--world", world_file]
+    arguments = [*scene, "--material", model_file, "-o", tmp_path / "o.exr"]
     assert "32x16" in refused("render", *arguments, "--reference", world_file)
 
 

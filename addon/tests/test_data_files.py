@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import threading
 
-from bench import data_files
+from bench import project
 
 _EXPAND = """
 import pathlib, sys, time
@@ -22,11 +22,11 @@ def test_all_who_ask_at_once_find_it_whole(tmp_path, monkeypatch):
     data = tmp_path / "data"
     (data / "brdf").mkdir(parents=True)
     (data / "brdf/expand_merl.py").write_text(_EXPAND)
-    monkeypatch.setattr(data_files, "_EXPANDED", tmp_path / "build/merl")
+    monkeypatch.setattr(project, "_EXPANDED", tmp_path / "build/merl")
     found = []
 
     def ask():
-        found.append(data_files.merl(data, "nickel").read_text())
+        found.append(project.merl(data, "nickel").read_text())
 
     threads = [threading.Thread(target=ask) for _ in range(4)]
     for thread in threads:

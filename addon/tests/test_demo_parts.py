@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
-import pytest
-from bench import parts
-from bench.parts import Part, Parts
-from bench.progress import Progress
+from types import SimpleNamespace
 
-PART = Part("it", "the thing", {"first": 1, "second": 2}, ("file", "folder"))
+import demo
+import pytest
+from bench.run import Run
+from demo import Part
+
+PART = Part("it", "the thing", 3, ("file", "folder"))
 
 
 class Maker:
@@ -15,21 +17,17 @@ class Maker:
 
     def __init__(self, folder):
         self.folder, self.input, self.count = folder / "out", folder / "input", 0
-        self.folder.mkdir()
         self.input.write_text("input")
 
     def make(self, part: Part = PART, fresh: bool = False) -> dict:
-        progress = Progress()
-        part.announce(progress)
-        return Parts(progress, fresh).make(part, self.folder, {"input": self.input}, self._run)
+        run = Run("demo", self.folder, self.folder, SimpleNamespace(), fresh=fresh)
+        run.progress.expect(part.seconds)
+        return demo.keep(run, part, {"input": self.input}, self._make)
 
-    def _run(self, steps) -> dict:
+    def _make(self) -> dict:
         self.count += 1
-        steps.begin("first")
         (self.folder / "file").write_text("made")
-        steps.hear("step: second\n")
         (self.folder / "folder").mkdir(exist_ok=True)
-        (self.folder / "folder/inner").write_text("made")
         return {"count": self.count}
 
 
@@ -43,20 +41,15 @@ def maker(tmp_path):
 def test_is_kept(maker, capsys):
     capsys.readouterr()
     assert maker.make() == {"count": 1, "kept": True}
-    assert capsys.readouterr().out == "[  2/2] the thing, with the times of the run that made it: kept\n"
+    assert capsys.readouterr().out == "[  1/1] the thing: kept\n"
 
 
-def test_tells_its_steps(tmp_path, capsys):
-    Maker(tmp_path).make()
-    lines = capsys.readouterr().out.splitlines()
-    assert [line.rpartition(":")[0] for line in lines] == ["[  1/2] first", "[  2/2] second"]
-
-
-@pytest.mark.parametrize("name", ["input", "out/file", "out/folder/inner"])
-def test_a_file_that_has_changed(maker, tmp_path, name):
-    (tmp_path / name).write_text("other")
+def test_another_input_replaces_the_files(maker):
+    maker.input.write_text("other")
     assert maker.make() == {"count": 2, "kept": False}
     assert maker.make() == {"count": 2, "kept": True}
+    maker.input.write_text("input")
+    assert maker.make() == {"count": 3, "kept": False}
 
 
 def test_a_file_that_is_gone(maker):
@@ -65,25 +58,23 @@ def test_a_file_that_is_gone(maker):
 
 
 def test_other_code(maker, monkeypatch):
-    monkeypatch.setattr(parts, "_code", lambda: "other")
+    monkeypatch.setattr(demo, "_code", lambda: "other")
     assert maker.make()["count"] == 2
 
 
 def test_another_version_of_the_part(maker):
-    assert maker.make(Part("it", PART.title, {"first": 1, "second": 3}, PART.files))["count"] == 2
+    assert maker.make(PART._replace(seconds=4))["count"] == 2
 
 
 def test_fresh(maker):
     assert maker.make(fresh=True)["count"] == 2
 
 
-def test_a_failure_leaves_nothing_that_is_kept(maker):
+def test_a_failure_leaves_nothing_that_is_kept(maker, monkeypatch):
     maker.input.write_text("other")
-
-    def fail(steps):
-        raise RuntimeError
-
-    with pytest.raises(RuntimeError):
-        Parts(Progress(), False).make(PART, maker.folder, {"input": maker.input}, fail)
+    with monkeypatch.context() as patch:
+        patch.setattr(maker, "_make", lambda: 1 / 0)
+        with pytest.raises(ZeroDivisionError):
+            maker.make()
     maker.input.write_text("input")
     assert maker.make() == {"count": 2, "kept": False}

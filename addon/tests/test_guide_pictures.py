@@ -4,16 +4,16 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from guide import pages, pictures
+from guide import pages
 from PIL import Image
 
 
 def _keep(pixels: np.ndarray, folder) -> np.ndarray:
     """What a page shows of it."""
     Image.fromarray(pixels).save(folder / "taken.png")
-    kept = pictures.keep(folder / "taken.png", folder / "images")
+    kept = pages.keep(folder / "taken.png", folder / "images")
     assert [*(folder / "images").iterdir()] == [kept]
-    assert kept.stat().st_size <= pictures.MOST_BYTES
+    assert kept.stat().st_size <= pages.MOST_BYTES
     with Image.open(kept) as shown:
         return np.asarray(shown.convert("RGB")).astype(int)
 
@@ -41,7 +41,7 @@ def test_pages_follow_a_picture_that_becomes_a_render(tmp_path, monkeypatch):
     rng = np.random.default_rng(1)
     for pixels in (np.zeros((60, 80, 3), np.uint8), rng.integers(0, 256, (60, 80, 3), np.uint8)):
         Image.fromarray(pixels).save(tmp_path / "taken.png")
-        pages.link(pictures.keep(tmp_path / "taken.png", tmp_path / "images"))
+        pages.link(pages.keep(tmp_path / "taken.png", tmp_path / "images"))
     assert [path.name for path in (tmp_path / "images").iterdir()] == ["taken.jpg"]
     assert (tmp_path / "page.md").read_text() == "![a](images/taken.jpg) ![b](images/taken_too.png)\n"
 

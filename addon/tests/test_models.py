@@ -2,17 +2,11 @@
 
 from __future__ import annotations
 
-import re
-from types import SimpleNamespace
-
 import pytest
 from bench import page
 from bench.page import replaced
 from bench.pages import models
 from bench.pages.models import ANGLES, meets, met, target
-from bench.run import Run
-from campaigns import only_kept, run_script
-from command_line import undated
 
 PAGE = "above\n<!-- fit: written by scripts/models -->\nold\n<!-- end of fit -->\nbelow\n"
 
@@ -78,10 +72,9 @@ def shown(tmp_path):
     conditions = {"machine": "m", "date": "d", "commit": "c", "seed": 1, "threads": 2, "load": 1.25}
     page.write_rows(tmp_path / models.CSV, rows, conditions)
     conditions, rows = page.read_rows(tmp_path / models.CSV)
-    run = Run("models", tmp_path / "work", tmp_path, SimpleNamespace())
-    principled = {"nickel": values, "paper": values}
-    models.write(run, {"conditions": conditions, "rows": rows, "principled": principled})
-    return (tmp_path / "models.md").read_text(encoding="utf-8")
+    found = {"conditions": conditions, "rows": rows, "principled": {"nickel": values, "paper": values}}
+    models.draw(tmp_path, found)
+    return page.text("models", conditions | models.values(found))
 
 
 def test_tables_name_every_material_and_model(shown):
@@ -93,23 +86,4 @@ def test_tables_name_every_material_and_model(shown):
         assert f"\n{line}\n" in shown
     assert shown.count("\n| paper | ") == 2
     assert "commit c" in shown
-    assert "other programs kept 1.2 processors busy" in shown
-
-
-def _page(folder) -> str:
-    """Without the load of other programs, which is that of the moment."""
-    page = (folder / "out/models.md").read_text(encoding="utf-8")
-    return re.sub(
-        r"; \*\*other programs kept .*? processors busy\*\*, so they are too many", "", page, flags=re.S
-    )
-
-
-@pytest.mark.long
-def test_a_small_run_is_whole_and_is_not_repeated(data_folder, tmp_path):
-    assert run_script("models", tmp_path, data=data_folder).returncode == 0
-    page = _page(tmp_path)
-    assert "\n| blue-metallic-paint | " in page
-    for picture in ("error_by_lobes", "error_by_bytes"):
-        assert (tmp_path / f"out/models/{picture}.png").stat().st_size > 5000
-    assert only_kept(run_script("models", tmp_path, data=data_folder).stdout)
-    assert undated(_page(tmp_path)) == undated(page)
+    assert "Other programs kept 1.2 processors busy" in shown

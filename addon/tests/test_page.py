@@ -11,10 +11,19 @@ from bench import page
 
 def test_cells_are_templates():
     rows = [{"a": 0.125, "b": 2500, "c": {"d": "x"}}, {"a": None, "b": None, "c": {"d": 1}}]
-    found = page.table(rows, "share | kilo | inner", "{a:p} | {b:k.1f} | {c[d]}")
-    assert found == "| share | kilo | inner |\n|---|---|---|\n| 12.50 % | 2.5 | x |\n| - | - | 1 |\n"
+    template = "| share | kilo | inner |\n*rows* | {a:p} | {b:k.1f} | {c[d]} |\n"
+    table = "| share | kilo | inner |\n|---|---|---|\n| 12.50 % | 2.5 | x |\n| - | - | 1 |\n"
+    assert page.filled(template, {"rows": rows}) == table
     assert page.filled("{b}/{b:M.4f}", rows[0]) == "2500/0.0025"
     assert page.filled("{a}/{a:.1f}", rows[1]) == "/-"
+
+
+def test_sections_repeat_and_may_hold_others():
+    inner = "*each parts*\n{part} of {name}\n*end parts*\n"
+    template = f"{{title}}\n*each sections*\n## {{name}}\n{inner}*end sections*\nafter\n"
+    sections = [{"name": "a", "parts": [{"part": 1}, {"part": 2}]}, {"name": "b", "parts": []}]
+    found = page.filled(template, {"title": "All", "sections": sections})
+    assert found == "All\n## a\n1 of a\n2 of a\n## b\nafter\n"
 
 
 def test_numbers_come_back_as_they_were(tmp_path):

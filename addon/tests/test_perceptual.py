@@ -7,7 +7,8 @@ import csv
 import numpy as np
 import pytest
 from bench import charts, flip_metric
-from bench.pages.perceptual import flips
+from bench.flip_metric import of_object
+from bench.project import MissingError
 from campaigns import only_kept, run_script
 
 SIDE = 64
@@ -18,7 +19,7 @@ EVERYWHERE = np.ones((SIDE, SIDE), bool)
 def flip():
     try:
         flip_metric._flip()
-    except flip_metric.NoFlipError as absent:
+    except MissingError as absent:
         pytest.skip(str(absent))
 
 
@@ -75,8 +76,8 @@ def test_the_percentile_and_the_mean_are_the_objects(flip):
     test, where = reference.copy(), np.zeros((SIDE, SIDE), bool)
     test[:16] *= 3  # row 0 is the bottom
     where[40:] = True
-    assert flips(reference, test, where)[0] < 1e-3
-    assert flips(reference, test, ~where)[1] > 0.2
+    assert of_object(reference, test, where)[0] < 1e-3
+    assert of_object(reference, test, ~where)[1] > 0.2
 
 
 @pytest.mark.long

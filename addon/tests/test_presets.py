@@ -13,7 +13,7 @@ import presets
 import pytest
 from command_line import environment
 from conftest import ADDONS, ROOT
-from preset_table import CATALOGS, PRESETS, Weave
+from presets import CATALOGS, PRESETS, Weave
 from velour.core import presets as library
 from velour.native import Model, Tile, images
 

@@ -5,7 +5,9 @@ from __future__ import annotations
 import math
 
 import numpy as np
+import planes
 import pytest
+from planes import SIDE
 from velour.native import (
     Instruction,
     Output,
@@ -15,32 +17,18 @@ from velour.native import (
     Texture,
     TextureSlot,
     VelourError,
-    render_job,
 )
 
-SIDE = 8
 PLACES = (np.arange(SIDE) + 0.5) / SIDE  # of pixels, from 0 to 1
 
 
 def _rendered(shader, to_world=None, sun=None, transparent=False, spp=64):
-    """A plane from -1 to 1 seen from above."""
     with Scene() as scene:
-        positions = np.array([[-1, -1, 0], [1, -1, 0], [1, 1, 0], [-1, 1, 0]], np.float32)
-        triangles = np.array([[0, 1, 2], [0, 2, 3]], np.uint32)
-        uvs = np.ascontiguousarray(0.5 + 0.5 * positions[triangles][..., :2], np.float32)
-        mesh = scene.add_mesh(positions, triangles, corner_uvs=uvs)[0]
         to_world = np.eye(4) if to_world is None else to_world
-        scene.add_instance(mesh, to_world, [scene.add_shader_material(shader)])
+        scene.add_instance(planes.add(scene), to_world, [scene.add_shader_material(shader)])
         if sun is not None:
             scene.add_light("sun", (1, 1, 1), sun)
-        look_down = np.eye(4)
-        look_down[2, 3] = 5
-        scene.set_camera("orthographic", look_down, (-1, 1, -1, 1))
-        scene.commit()
-        options = {"width": SIDE, "height": SIDE, "spp": spp, "split": 1, "strategy": "mis"}
-        with render_job(scene, transparent=int(transparent), **options) as job:
-            job.run()
-            return job.read_pass("Combined")
+        return planes.seen(scene, spp=spp, split=1, strategy="mis", transparent=int(transparent))
 
 
 def _source(kind, number=0, shift="none", output=0):

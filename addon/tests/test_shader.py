@@ -3,28 +3,17 @@
 from __future__ import annotations
 
 import numpy as np
+import planes
 import pytest
-from velour.native import Model, Scene, Shader, Texture, TextureSlot, VelourError, render_job
-
-SIDE = 8
+from planes import SIDE
+from velour.native import Model, Scene, Shader, Texture, TextureSlot, VelourError
 
 
 def _rendered(shader, transparent=False):
     with Scene() as scene:
-        positions = np.array([[-1, -1, 0], [1, -1, 0], [1, 1, 0], [-1, 1, 0]], np.float32)
-        triangles = np.array([[0, 1, 2], [0, 2, 3]], np.uint32)
-        uvs = np.ascontiguousarray(0.5 + 0.5 * positions[triangles][..., :2], np.float32)
-        mesh = scene.add_mesh(positions, triangles, corner_uvs=uvs)[0]
-        scene.add_instance(mesh, np.eye(4), [scene.add_shader_material(shader)])
+        scene.add_instance(planes.add(scene), np.eye(4), [scene.add_shader_material(shader)])
         scene.set_world_color((1, 1, 1))
-        look_down = np.eye(4)
-        look_down[2, 3] = 5
-        scene.set_camera("orthographic", look_down, (-1, 1, -1, 1))
-        scene.commit()
-        options = {"width": SIDE, "height": SIDE, "spp": 256, "strategy": "cosine"}
-        with render_job(scene, transparent=int(transparent), **options) as job:
-            job.run()
-            return job.read_pass("Combined")
+        return planes.seen(scene, spp=256, transparent=int(transparent))
 
 
 def _diffuse(shader, color):
@@ -112,8 +101,7 @@ def test_wrong_calls_are_refused_with_a_sentence():
 def _floor_under_glow(strategy, drawn):
     """Mean of a floor under a square that glows, and the scene's warnings."""
     with Scene() as scene:
-        positions = np.array([[-1, -1, 0], [1, -1, 0], [1, 1, 0], [-1, 1, 0]], np.float32)
-        mesh = scene.add_mesh(positions, np.array([[0, 1, 2], [0, 2, 3]], np.uint32))[0]
+        mesh = planes.add(scene)
         scene.add_instance(
             mesh, np.eye(4), [scene.add_principled_material(base_color=(0.5,) * 3, specular=0)]
         )
@@ -123,13 +111,8 @@ def _floor_under_glow(strategy, drawn):
         above = np.eye(4)
         above[2, 3] = 1
         scene.add_instance(mesh, above, [glow], hidden=["camera"])
-        look_down = np.eye(4)
-        look_down[2, 3] = 5
-        scene.set_camera("orthographic", look_down, (-0.01, 0.01, -0.01, 0.01))
-        scene.commit()
-        with render_job(scene, width=SIDE, height=SIDE, spp=4096, strategy=strategy) as job:
-            job.run()
-            return job.read_pass("Combined")[..., :3].mean(), scene.info()["warning_codes"]
+        pixels = planes.seen(scene, 0.01, spp=4096, strategy=strategy)
+        return pixels[..., :3].mean(), scene.info()["warning_codes"]
 
 
 def test_what_glows_lights_without_bounces():

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import numpy as np
+import planes
 import pytest
-from velour.native import Scene, Status, Texture, TextureSlot, VelourError, images, render_job
-
-SIDE = 8
+from planes import SIDE
+from velour.native import Scene, Status, Texture, TextureSlot, VelourError, images
 
 
 def _picture():
@@ -14,25 +14,12 @@ def _picture():
     return np.ascontiguousarray(np.stack([columns, rows, np.full_like(rows, 0.25)], axis=-1))
 
 
-def _plane(scene):
-    positions = np.array([[-1, -1, 0], [1, -1, 0], [1, 1, 0], [-1, 1, 0]], np.float32)
-    triangles = np.array([[0, 1, 2], [0, 2, 3]], np.uint32)
-    uvs = (0.5 + 0.5 * positions[triangles][..., :2]).astype(np.float32)
-    return scene.add_mesh(positions, triangles, corner_uvs=np.ascontiguousarray(uvs))[0]
-
-
 def _rendered(textures, **values):
     with Scene() as scene:
         material = scene.add_textured_material(textures, specular=0.0, **values)
-        scene.add_instance(_plane(scene), np.eye(4), [material])
+        scene.add_instance(planes.add(scene), np.eye(4), [material])
         scene.set_world_color((1, 1, 1))
-        look_down = np.eye(4)
-        look_down[2, 3] = 5
-        scene.set_camera("orthographic", look_down, (-1, 1, -1, 1))
-        scene.commit()
-        with render_job(scene, width=SIDE, height=SIDE, spp=32, strategy="cosine") as job:
-            job.run()
-            return job.read_pass("Combined")[..., :3]
+        return planes.seen(scene, spp=32)[..., :3]
 
 
 def test_a_plane_shows_its_picture():
@@ -82,14 +69,8 @@ def test_wrong_textures_are_refused_with_a_sentence(tmp_path):
 
 def _painted_plane(scene, *colors):
     """[4 x 3] colors of the corners of a square each: one set a color array."""
-    positions = np.array([[-1, -1, 0], [1, -1, 0], [1, 1, 0], [-1, 1, 0]], np.float32)
-    triangles = np.array([[0, 1, 2], [0, 2, 3]], np.uint32)
-    return scene.add_mesh(
-        positions,
-        triangles,
-        corner_vertices=np.arange(4, dtype=np.uint32),
-        corner_colors=np.array(colors, np.float32),
-    )[0]
+    vertices = np.arange(4, dtype=np.uint32)
+    return planes.add(scene, corner_vertices=vertices, corner_colors=np.array(colors, np.float32))
 
 
 def _painted(textures, *colors):
@@ -97,14 +78,9 @@ def _painted(textures, *colors):
         material = scene.add_textured_material(textures, specular=0.0)
         scene.add_instance(_painted_plane(scene, *colors), np.eye(4), [material])
         scene.set_world_color((1, 1, 1))
-        look_down = np.eye(4)
-        look_down[2, 3] = 5
-        scene.set_camera("orthographic", look_down, (-1, 1, -1, 1))
-        scene.commit()
+        pixels = planes.seen(scene, spp=256)[..., :3]
         assert scene.info()["untextured"] == 0
-        with render_job(scene, width=SIDE, height=SIDE, spp=256, strategy="cosine") as job:
-            job.run()
-            return job.read_pass("Combined")[..., :3]
+        return pixels
 
 
 def test_a_mesh_shows_the_colors_of_its_corners():

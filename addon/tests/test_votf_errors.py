@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from bench.pages.votf import shell_errors, soft_iou, without_holes
-from bench.shapes import Cloth, Cylinder, Sphere, smooth_mesh, structured_mesh
+from bench import tiles
+from bench.pages.votf import Shot, shell_errors, soft_iou, without_holes
+from bench.tiles import Cloth, Cylinder, Sphere, smooth_mesh, structured_mesh
+from velour.native import Model, Scene, Tile
 
 
 def _ring() -> np.ndarray:
@@ -60,3 +62,19 @@ def test_normals_of_a_cloth_are_those_of_its_points():
     for step in ((1e-3, 0), (0, 1e-3)):
         along = cloth.frame(uv + np.array(step))[0] - points
         assert np.abs((along * normals).sum(axis=-1)).max() < 1e-2 * np.linalg.norm(along, axis=-1).min()
+
+
+def test_a_shell_looks_like_the_geometry_that_it_stands_for(model_file):
+    with Tile.create("net") as tile, Model.load(model_file) as plain, Scene() as scene:
+        tiles.add(tile, scene)
+        shell, _report = tiles.with_shell(scene, tile.info(), plain)
+        shot = Shot(Sphere(3, tile.info()["period"][0]), 16, 64, 16)
+        with shell:
+            truth, found, smooth = shot.of_geometry(tile, plain), shot.of_model(shell), shot.of_model(plain)
+    errors, control = (shell_errors(each.pixels, truth.pixels) for each in (found, smooth))
+    assert errors.alpha > 0.9 > control.alpha
+    assert errors.outline > 0.9
+    blocks = [each.pixels.reshape(8, 8, 8, 8, 4).mean(axis=(1, 3)) for each in (truth, found, smooth)]
+    of_shell, of_smooth = (np.square(each - blocks[0]).sum() for each in blocks[1:])
+    assert of_shell < 0.05 * of_smooth
+    assert found.bytes < 0.5 * truth.bytes

@@ -1,21 +1,33 @@
 """Measurements and models made for the tests, kept in build/blend-tests/inputs."""
 
+import importlib
 import os
+import sys
 from pathlib import Path
+from unittest import mock
 
 import numpy as np
 
 from .blender import ADDON, folder, library_file
 
+_SCRIPTS = Path(__file__).resolve().parents[2] / "scripts/lib"
 MERL_SCALES = (1 / 1500, 1.15 / 1500, 1.66 / 1500)
 MERL_SIZE = (90, 90, 180)  # theta_h, theta_d, phi_d
 
 
-def native():
-    """The add-on's `native` package: tests call it by the add-on's own name, as users do."""
-    import importlib
+def module(name):
+    """A module of the add-on, by the add-on's own name, as users call it."""
+    return importlib.import_module(f"{ADDON}.{name}")
 
-    return importlib.import_module(f"{ADDON}.native")
+
+def native():
+    return module("native")
+
+
+def script(name):
+    """A module of scripts/lib, or one that imports some."""
+    with mock.patch.object(sys, "path", [str(_SCRIPTS), *sys.path]):
+        return importlib.import_module(name)
 
 
 def lambert_measurement(albedo=(0.8, 0.5, 0.2)):

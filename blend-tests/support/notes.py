@@ -6,6 +6,14 @@ from support import inputs, scenes
 from support.blender import BlenderTest
 
 
+def export_notes(**options):
+    """What the export of the current scene says."""
+    export, depsgraph = inputs.module("export"), bpy.context.evaluated_depsgraph_get()
+    notes, view = export.Notes(), inputs.module("export.camera").final_view(depsgraph)
+    export.export_scene(depsgraph, view, notes, **options)[0].close()
+    return list(notes)
+
+
 class NotesTest(BlenderTest):
     """A scene with a camera and a world, to which tests add what they ask about."""
 
@@ -16,13 +24,7 @@ class NotesTest(BlenderTest):
         scenes.set_world()
 
     def notes(self):
-        export = __import__(f"{inputs.ADDON}.export", fromlist=["export"])
-        camera = __import__(f"{inputs.ADDON}.export.camera", fromlist=["camera"])
-        notes = export.Notes()
-        depsgraph = bpy.context.evaluated_depsgraph_get()
-        view = camera.final_view(depsgraph)
-        export.export_scene(depsgraph, view, notes)[0].close()
-        return list(notes)
+        return export_notes()
 
     def assert_said(self, *words):
         notes = self.notes()

@@ -10,9 +10,7 @@ _PATIENCE = 180  # seconds; a ray looks up to 160 times at an outline, here on a
 
 def ball_in(structure, material, radius=4.0):
     """A ball of it whose outline is that of a mesostructure."""
-    for obj in list(bpy.data.objects):
-        if obj.type != "CAMERA":
-            bpy.data.objects.remove(obj)
+    scenes.remove_all_but_camera()
     with window.override():
         bpy.ops.velour.add_mesostructure(type=structure, count=2, resolution=8)
         tile = bpy.context.object

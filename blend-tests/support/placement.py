@@ -1,18 +1,17 @@
 """Tests place a tile of four grays: its picture, what is measured of it and what is said."""
 
-import importlib
-
 import bpy
 import numpy as np
 
 from . import inputs, scenes
 from .blender import BlenderTest
+from .notes import export_notes
 
 SIZE = 64  # pixels of a picture two units wide
 
 
 def export_module(name):
-    return importlib.import_module(f"{inputs.ADDON}.export.{name}")
+    return inputs.module(f"export.{name}")
 
 
 def _expected(uv_map, uvs):
@@ -67,8 +66,4 @@ class Placed(BlenderTest):
         return dict(self._report(**arguments).rows)
 
     def _notes(self):
-        export = importlib.import_module(f"{inputs.ADDON}.export")
-        notes = export.Notes()
-        depsgraph = bpy.context.evaluated_depsgraph_get()
-        export.export_scene(depsgraph, export_module("camera").final_view(depsgraph), notes)[0].close()
-        return list(notes)
+        return export_notes()

@@ -1,7 +1,5 @@
 """The plots of the material panel in a window."""
 
-import importlib
-
 import bpy
 import numpy as np
 
@@ -13,7 +11,7 @@ _CLOSE = 8  # of 255: rounding of the theme's colors, which are mixed again on t
 
 
 def preview():
-    return importlib.import_module(f"{inputs.ADDON}.ui.plot_preview")
+    return inputs.module("ui.plot_preview")
 
 
 def material(data=None):

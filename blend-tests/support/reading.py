@@ -1,6 +1,5 @@
 """Files that take long to read, and reading that does not begin before it may."""
 
-import importlib
 import threading
 import time
 from pathlib import Path
@@ -16,9 +15,7 @@ LARGE = 300_000_000  # bytes: beside them what a turn has to do anyway is little
 _HELD_SHARE = 0.08  # that a turn may take from the main thread, of what reading at once takes from it
 
 
-def module(name):
-    """A module of the add-on."""
-    return importlib.import_module(f"{inputs.ADDON}.{name}")
+module = inputs.module
 
 
 def large_file(folder, name="large.velour", size=LARGE, model=None):

@@ -50,6 +50,13 @@ def add_owners():
             datablock.use_fake_user = True
 
 
+def write_own(path):
+    """Writes the table of the Velour that runs (scripts/saved_settings)."""
+    bpy.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)
+    add_owners()
+    write(Path(path), described())
+
+
 def described():
     """{owner: {path of a property in its `velour`: what it is}} of the Velour that runs."""
     return {name: dict(_properties(owner().velour)) for name, owner in OWNERS.items()}

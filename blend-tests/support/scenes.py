@@ -43,6 +43,12 @@ def add_camera(distance=5.0, ortho_scale=None):
     return camera
 
 
+def remove_all_but_camera():
+    for obj in list(bpy.data.objects):
+        if obj.type != "CAMERA":
+            bpy.data.objects.remove(obj)
+
+
 def add_sphere(material=None, radius=1.0):
     bpy.ops.mesh.primitive_uv_sphere_add(segments=32, ring_count=16, radius=radius)
     return _finish(material, smooth=True)
@@ -116,12 +122,18 @@ def former_material(data, name="Former"):
     return material
 
 
-def _add_former_group(tree, output):
-    group = bpy.data.node_groups.new("Velour approximation", "ShaderNodeTree")
+def new_group(name, output):
+    """A node group with one shader as its output."""
+    group = bpy.data.node_groups.new(name, "ShaderNodeTree")
     if hasattr(group, "interface"):  # 4.0 and newer
-        group.interface.new_socket(name="BSDF", in_out="OUTPUT", socket_type="NodeSocketShader")
+        group.interface.new_socket(name=output, in_out="OUTPUT", socket_type="NodeSocketShader")
     else:
-        group.outputs.new("NodeSocketShader", "BSDF")
+        group.outputs.new("NodeSocketShader", output)
+    return group
+
+
+def _add_former_group(tree, output):
+    group = new_group("Velour approximation", "BSDF")
     shader, sink = group.nodes.new("ShaderNodeBsdfPrincipled"), group.nodes.new("NodeGroupOutput")
     group.links.new(shader.outputs[0], sink.inputs[0])
     group.velour.is_approximation = True

@@ -1,6 +1,5 @@
 """The rendered viewport under test."""
 
-import importlib
 import time
 
 import bpy
@@ -12,8 +11,7 @@ TURN = 0.05
 _PATIENCE = 60  # seconds; the machine may be busy
 
 
-def addon(name):
-    return importlib.import_module(f"{inputs.ADDON}.{name}")
+addon = inputs.module
 
 
 def area():
@@ -86,6 +84,15 @@ def real_time_finished(patience=_PATIENCE):
     """Turns until all of a picture in real time is on the screen."""
     yield from until(_is_drawn, "nothing is drawn in real time", patience)
     yield 0.3
+
+
+def choose_real_time_again():
+    """What was refused is there now."""
+    bpy.context.scene.velour.viewport_mode = "RAY_TRACED"
+    yield from finished()
+    bpy.context.scene.velour.viewport_mode = "REAL_TIME"
+    yield from real_time_finished()
+    assert not the_one()._refusal
 
 
 def job():

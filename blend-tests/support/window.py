@@ -94,6 +94,13 @@ def until(holds, what, seconds=120):
         yield 0.05
 
 
+def at_rest():
+    """The turns until nothing is read, runs or is queued."""
+    state = bpy.context.window_manager.velour
+    yield 0.1
+    yield from until(lambda: not (state.reading or state.running or state.waiting), "all jobs have ended")
+
+
 def show_properties(tab):
     """A large Properties editor in place of the 3D viewport."""
     scenes.use_engine()

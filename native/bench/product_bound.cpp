@@ -12,23 +12,63 @@
 #include <cmath>
 #include <cstdio>
 #include <limits>
+#include <map>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
-#include "described_scene.h"
 #include "light/environment_mixture.h"
 #include "material/material.h"
 #include "math/sphere/random.h"
+#include "model/model_file.h"
+#include "model/model_material.h"
 #include "render/direction_sampling.h"
 #include "render/lights/environment_proposals.h"
 #include "render/lights/lighting.h"
 #include "render/vertex.h"
+#include "scene/obj_file.h"
+#include "scene/scene.h"
 
 namespace {
 
 using namespace velour;
+
+/// Pairs of words: --name value.
+class Arguments {
+ public:
+  /// `values`: those that need not be given.
+  Arguments(int argc, char** argv, std::map<std::string, std::string> values) : values_(std::move(values)) {
+    for (int i = 1; i + 1 < argc; i += 2) values_[std::string(argv[i]).substr(2)] = argv[i + 1];
+  }
+  /// Throws where it was not given and has no default.
+  const std::string& operator[](const std::string& name) const {
+    const auto found = values_.find(name);
+    if (found == values_.end()) throw std::runtime_error("product_bound: --" + name + " is missing.");
+    return found->second;
+  }
+  int width() const { return std::stoi((*this)["size"]); }
+  int height() const {
+    const std::string& size = (*this)["size"];
+    return std::stoi(size.substr(size.find('x') + 1));
+  }
+
+ private:
+  std::map<std::string, std::string> values_;
+};
+
+/// The scene of `velour render` with its defaults: --mesh, whose y is up; --material, a model; --world; the camera that
+/// frames the mesh in a picture of --size. Committed.
+void describe(const Arguments& a, Scene& scene) {
+  const Affine up{{1, 0, 0, 0, 0, 0, -1, 0, 0, 1, 0, 0}};
+  const uint32_t mesh = scene.add_mesh(read_obj(a["mesh"]));
+  const auto material = make_material(std::make_shared<const Model>(load_model(a["material"])), 0);
+  scene.add_instance(mesh, up, {scene.add_material({.material = material})});
+  scene.set_environment(Environment::load(a["world"], {}, 1, Mat3(1)));
+  scene.frame_camera(static_cast<float>(a.width()) / static_cast<float>(a.height()), 2);
+  scene.commit();
+}
 
 constexpr int kColumns = 1024, kRows = 512;
 enum Density { kProduct, kSurface, kLights, kExact, kDensities };

@@ -9,16 +9,12 @@ import subprocess
 from collections.abc import Iterator
 from pathlib import Path
 
-import mutant_tests
+import mutant_faults
 from checks import running
-from mutant_tests import PRESET, MutantsError, Outcome, Run
+from mutant_faults import PRESET, MutantsError, Outcome, Run
 
 PLANTED = "VELOUR_MUTANT"  # the fault's name in the environment of its tests
 _BUILD_SECONDS = 7200
-
-
-class TreeError(MutantsError):
-    """The copy cannot be used."""
 
 
 class BuildError(MutantsError):
@@ -38,10 +34,7 @@ class Tree:
             _git(self.root, "clone", "--quiet", "--shared", "--no-checkout", str(self.root), str(self.folder))
         _git(self.folder, "checkout", "--quiet", "--force", "--detach", commit)
         self.restore()
-        self._share_tools()
-
-    def _share_tools(self) -> None:
-        """Links the tools that scripts/setup installed from PyPI, so that they are not downloaded again."""
+        # Links the tools that scripts/setup installed from PyPI, so that they are not downloaded again.
         tools, shared = self.folder / "build/tools", self.root / "build/tools"
         tools.parent.mkdir(exist_ok=True)
         if shared.is_dir() and not tools.exists():
@@ -57,11 +50,11 @@ class Tree:
             self.restore()
 
     def restore(self) -> None:
-        """Reverts the planted fault. Raises TreeError if the copy is not clean then."""
+        """Reverts the planted fault. Raises MutantsError if the copy is not clean then."""
         _git(self.folder, "checkout", "--quiet", "--", ".")
         left = _git(self.folder, "status", "--porcelain")
         if left:
-            raise TreeError(f"{self.folder} is not clean: {', '.join(left.split())}; remove that folder.")
+            raise MutantsError(f"{self.folder} is not clean: {', '.join(left.split())}; remove that folder.")
 
     def build(self, targets: tuple[str, ...], log: Path) -> None:
         """Raises BuildError."""
@@ -79,7 +72,7 @@ class Tree:
         report.unlink(missing_ok=True)
         report.parent.mkdir(parents=True, exist_ok=True)
         status, own_log = self._execute(run.command, log, run.seconds, **self._variables(fault))
-        return mutant_tests.outcome(self.folder, run, status, own_log)
+        return mutant_faults.outcome(self.folder, run, status, own_log)
 
     def _execute(
         self, command: tuple[str, ...], log: Path, seconds: float, **variables: str
@@ -106,5 +99,5 @@ def head(root: Path) -> str:
 def _git(folder: Path, *arguments: str) -> str:
     done = subprocess.run(["git", *arguments], cwd=folder, capture_output=True, text=True, check=False)
     if done.returncode:
-        raise TreeError(f"git {arguments[0]} failed in {folder}: {' '.join(done.stderr.split())}")
+        raise MutantsError(f"git {arguments[0]} failed in {folder}: {' '.join(done.stderr.split())}")
     return done.stdout.strip()

@@ -17,11 +17,11 @@ from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
+import tomllib
 from bench import blender, charts
 from bench.progress import Progress
+from bench.project import ROOT
 from bench.tiles import UNMOVED, model_of_tile, with_shell
-from bench.velour_cli import ROOT
-from preset_table import CATALOGS, PRESETS, Preset, Surface, Weave
 from velour.core import files, presets
 from velour.core.ball import ROWS, ball_job, ball_scene, shown
 from velour.core.machine import threads
@@ -39,6 +39,63 @@ _SIDE, _COLUMNS = 256, 6  # pixels of a preview; columns of the sheet of all
 _LICENCE = """The materials of this folder are in the public domain: CC0-1.0,
 https://creativecommons.org/publicdomain/zero/1.0/
 """
+
+
+@dataclasses.dataclass(frozen=True)
+class Surface:
+    """Arguments of velour.native.microsurface_job."""
+
+    roughness: float
+    metal: str = "copper"
+    anisotropy: float = 1.0
+    base_albedo: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    base_share: float = 0.0
+    ior: float = 0.0
+    flake_roughness: float = 0.2
+
+
+@dataclasses.dataclass(frozen=True)
+class Weave:
+    """A tile of velour.native.Tile and the surfaces of its yarns, one per material slot."""
+
+    kind: str
+    yarns: tuple[Surface, ...]
+    shape: dict = dataclasses.field(default_factory=dict)  # further arguments of Tile.create
+    repeats: int = 24  # tiles around the preview's ball, and per unit of texture coordinates
+
+
+@dataclasses.dataclass(frozen=True, eq=False)
+class Preset:
+    name: str
+    catalog: str
+    made_of: Surface | Weave
+    description: str
+    tags: tuple[str, ...]
+
+    @property
+    def file_name(self) -> str:
+        return self.name.lower().replace(" ", "_")
+
+    @property
+    def repeats(self) -> int:
+        """Tiles per unit of texture coordinates; 0: not a texture."""
+        return self.made_of.repeats if isinstance(self.made_of, Weave) else 0
+
+
+def _surface(values: dict) -> Surface:
+    return Surface(**{name: tuple(v) if isinstance(v, list) else v for name, v in values.items()})
+
+
+def _preset(name: str, catalog: str, description: str, tags: list, **made: dict) -> Preset:
+    made_of = _surface(made["surface"]) if "surface" in made else Weave(**made)
+    if "yarns" in made:
+        made_of = dataclasses.replace(made_of, yarns=tuple(map(_surface, made["yarns"])))
+    return Preset(name, catalog, made_of, description, tuple(tags))
+
+
+_READ = tomllib.loads(Path(__file__).with_name("presets.toml").read_text(encoding="utf-8"))
+CATALOGS = _READ["catalogs"]
+PRESETS = tuple(_preset(**values) for values in _READ["preset"])
 
 
 class Sizes(NamedTuple):

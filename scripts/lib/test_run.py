@@ -25,15 +25,16 @@ class Clock:
     """Seconds since its creation, and the processor seconds of child processes."""
 
     def __init__(self) -> None:
-        self._start, self._processor = time.monotonic(), self._children()
+        self._start = self._now()
 
     def read(self) -> tuple[float, float]:
-        return time.monotonic() - self._start, self._children() - self._processor
+        now = self._now()
+        return now[0] - self._start[0], now[1] - self._start[1]
 
     @staticmethod
-    def _children() -> float:
+    def _now() -> tuple[float, float]:
         used = resource.getrusage(resource.RUSAGE_CHILDREN)
-        return used.ru_utime + used.ru_stime
+        return time.monotonic(), used.ru_utime + used.ru_stime
 
 
 class Total:
@@ -41,35 +42,22 @@ class Total:
 
     def __init__(self, file: Path) -> None:
         self._file = file
-        self._cases: list[Case] = []
+        self.cases: list[Case] = []
         self._groups: dict[str, dict] = {}
 
     def add(self, name: str, found: list[Case], clock: Clock) -> None:
-        self._cases += found
-        counts = cases.count(found)
-        seconds, processor = clock.read()
-        for case in cases.slowest(found, SLOWEST):
-            say(f"  {case.seconds:7.1f} s  {case.name}")
+        self.cases += found
+        counts, (seconds, processor) = cases.count(found), clock.read()
+        slowest = [(case.name, case.seconds) for case in cases.slowest(found, SLOWEST)]
+        for case, its in slowest:
+            say(f"  {its:7.1f} s  {case}")
         for sentence in cases.reasons(found):
             say(sentence)
         told = ", ".join(f"{counts[outcome]} {outcome}" for outcome in (PASSED, FAILED, SKIPPED))
         say(f"{name}: {told}, {seconds:.0f} s, {processor:.0f} s of processor time")
-        longest = cases.slowest(found, SLOWEST)
-        self._groups[name] = {
-            "tests": len(found),
-            "seconds": seconds,
-            "processor": processor,
-            "slowest": [(case.name, case.seconds) for case in longest],
-        }
+        times = {"tests": len(found), "seconds": seconds, "processor": processor}
+        self._groups[name] = times | {"slowest": slowest}
         self._file.write_text(json.dumps(self._groups, indent=1))
-
-    def last_line(self) -> str:
-        counts = cases.count(self._cases)
-        return f"{counts[PASSED]} passed, {counts[FAILED]} failed, {counts[SKIPPED]} not run"
-
-    @property
-    def failed(self) -> bool:
-        return cases.count(self._cases)[FAILED] > 0
 
 
 def main() -> int:
@@ -97,15 +85,15 @@ def main() -> int:
             say(sentence)
     seconds, processor = clock.read()
     say(f"{seconds / 60:.1f} minutes in all, {processor / 60:.1f} of processor time")
-    say(total.last_line())
-    return 1 if total.failed else 0
+    counts = cases.count(total.cases)
+    say(f"{counts[PASSED]} passed, {counts[FAILED]} failed, {counts[SKIPPED]} not run")
+    return 1 if counts[FAILED] else 0
 
 
 def _name_denoiser() -> None:
     """Sets VELOUR_OIDN to the denoiser that the setup may just have installed, as common.sh does."""
-    for file in (ROOT / "build/tools/lib").glob(
-        "python3*/site-packages/pyoidn/oidn/lib/libOpenImageDenoise.so.2"
-    ):
+    wheel = "python3*/site-packages/pyoidn/oidn/lib/libOpenImageDenoise.so.2"
+    for file in (ROOT / "build/tools/lib").glob(wheel):
         os.environ.setdefault("VELOUR_OIDN", str(file))
 
 
@@ -135,7 +123,7 @@ def _arguments() -> argparse.Namespace:
 
 def _build(run: Run, total: Total, with_native_tests: bool) -> bool:
     clock = Clock()
-    targets = ["all" if with_native_tests else "velour", "uniform_moments"]
+    targets = ["all" if with_native_tests else "velour"]
     status = subprocess.run([ROOT / "scripts/build", run.preset, *targets]).returncode
     total.add("build", [Case("build", FAILED if status else PASSED, clock.read()[0])], clock)
     return status == 0

@@ -32,11 +32,9 @@ NEEDS = {
     "chart": Needs(("product_bound",), "peers"),
     "closures": Needs(tools="metrics"),
     "failure_modes": Needs(("test_failure_modes",)),
-    "figures_check": Needs(("uniform_moments",)),
     "inputs": Needs(("test_image", "test_mesh", "test_brdf", "test_btf")),
     "models": Needs(("evaluation_cost",)),
     "perceptual": Needs(tools="metrics"),
-    "votf_tables": Needs(("occlusion_tables",)),
 }
 
 
@@ -57,25 +55,19 @@ def main(words: list[str]) -> int:
 
 def _build(needs: Needs) -> None:
     subprocess.run([ROOT / "scripts/setup", *([f"--{needs.tools}"] if needs.tools else [])], check=True)
-    targets = [name for name in needs.targets if name.startswith("test_") or _is_here(name)]
-    subprocess.run([ROOT / "scripts/build", "release", "velour", *targets], check=True)
-
-
-def _is_here(program: str) -> bool:
-    return (ROOT / f"native/bench/{program}.cpp").is_file()
+    subprocess.run([ROOT / "scripts/build", "release", "velour", *needs.targets], check=True)
 
 
 def run(name: str, words: list[str]) -> int:
     from velour.native import VelourError
 
     from .blender import BlenderError
-    from .data_files import NoDataError
-    from .flip_metric import NoFlipError
+    from .project import MissingError
 
     module = importlib.import_module(f"{__package__}.pages.{name}")
     try:
         _measure(module, name, _arguments(module, name, words))
-    except (NoDataError, NoFlipError) as absent:
+    except MissingError as absent:
         print(f"{name}: {absent}")
     except KeyboardInterrupt:
         print(f"{name}: stopped; the next run goes on from here.", file=sys.stderr)
@@ -92,19 +84,18 @@ def _arguments(module, name: str, words: list[str]) -> argparse.Namespace:
     from velour.core.machine import threads
 
     parser = argparse.ArgumentParser(prog=f"scripts/bench {name}", description=module.__doc__)
+    for option, about in (
+        ("--quick", "a small version, to try the script; its page stays in build"),
+        ("--page", "writes the page from the numbers of the last run, measures nothing"),
+        ("--fresh", "makes again what an earlier run has kept"),
+        ("--built", "skips scripts/setup and scripts/build"),
+    ):
+        parser.add_argument(option, action="store_true", help=about)
     add = parser.add_argument
-    add("--quick", action="store_true", help="a small version, to try the script; its page stays in build")
-    add(
-        "--page",
-        action="store_true",
-        help="writes the page from the numbers of the last run, measures nothing",
-    )
-    add("--fresh", action="store_true", help="makes again what an earlier run has kept")
     add("--output", metavar="FOLDER", type=Path, help="folder of the page instead of docs/results")
     add("--work", metavar="FOLDER", type=Path, help=f"folder of what is kept instead of build/{name}")
     add("--seed", metavar="K", type=int, default=1)
     add("--threads", metavar="T", type=int, default=min(2, threads()))
-    add("--built", action="store_true", help="skips scripts/setup and scripts/build")
     for setting, (value, _) in module.SETTINGS.items():
         option = f"--{setting.replace('_', '-')}"
         if isinstance(value, bool):
@@ -123,13 +114,13 @@ def _reader(name: str, value):
     if not isinstance(value, tuple):
         return type(value)
     kind = type(value[0]) if value else str
-    return lambda text: tuple(
-        kind(part) for part in text.split("x" if name.endswith("size") else ",") if part
-    )
+    separator = "x" if name.endswith("size") else ","
+    return lambda text: tuple(kind(part) for part in text.split(separator) if part)
 
 
 def _measure(module, name: str, args: argparse.Namespace) -> None:
-    from .page import RESULTS
+    from . import page
+    from .project import RESULTS
     from .run import Run
 
     # A small version only tries the script; it must not replace the numbers of a full run.
@@ -139,8 +130,13 @@ def _measure(module, name: str, args: argparse.Namespace) -> None:
     run = Run(name, work, output, settings, args.seed, args.threads, args.fresh)
     if not args.page:
         _keep(module, run, module.measure(run))
-    if hasattr(module, "write"):
-        module.write(run, load(module, run.output, name))
+    if hasattr(module, "PAGES"):
+        found = load(module, run.output, name)
+        values = found["conditions"] | module.values(found)
+        for file, template in module.PAGES.items():
+            page.write(run.output, file, page.text(template, values))
+    if hasattr(module, "draw"):
+        module.draw(run.output, found)
 
 
 def _keep(module, run, found: dict | None) -> None:

@@ -5,12 +5,11 @@ from __future__ import annotations
 import json
 import os
 import shutil
-import subprocess
 import sys
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from pathlib import Path
 
-from .velour_cli import ROOT
+from .project import ROOT
 
 sys.path.append(str(ROOT / "blend-tests"))
 
@@ -30,13 +29,11 @@ def run(
     task: dict,
     log: Path,
     options: tuple[str, ...] = (),
-    hear: Callable[[str], None] = lambda line: None,
     version: str | None = None,
 ) -> dict | None:
     """Calls main(task) of the module bench.inside.SCRIPT and returns what it returns.
 
-    `options`: further options for Blender. `hear` is called with each line that Blender or the script prints.
-    `version`: a version of scripts/blenders, with the packaged add-on.
+    `options`: further options for Blender. `version`: one of scripts/blenders, with the packaged add-on.
     """
     found = log.with_suffix(".report.json")
     found.unlink(missing_ok=True)
@@ -46,13 +43,13 @@ def run(
     command = [*_blender(version), "-b", "--factory-startup", "-noaudio"]
     # The order matters: --python-exit-code applies only to the arguments after it.
     command += ["--python-exit-code", "7", *options, "--python-expr", code]
-    if status := _run(command, log, hear):
+    if status := process.execute(command, process.environment(command[0], STAGE), log, None):
         raise BlenderError(f"Blender failed with status {status}; {_ending(log)}")
     return json.loads(found.read_text(encoding="utf-8")) if found.is_file() else None
 
 
 def in_window(
-    script: Path,
+    module: str,
     task: dict,
     folder: Path,
     screen: tuple[int, int],
@@ -60,10 +57,11 @@ def in_window(
     options: Sequence[str] = (),
     files: Sequence[Path] = (),
     seconds: float = 3600,
-) -> None:
-    """Calls start(folder) of a script in a window of `screen` pixels, and waits for the report of its steps.
+) -> dict:
+    """Runs steps(folder, task) of a module, a generator function, in a window of `screen` pixels and returns
+    what it returns.
 
-    The folder is new, with copies of `files` and the task as task.json. `program`: Blender's name or path.
+    The folder is new, with copies of `files`. `program`: Blender's name or path.
     """
     for tool in ("xvfb-run", program):
         if not shutil.which(tool):
@@ -73,16 +71,17 @@ def in_window(
     folder.mkdir(parents=True)
     for file in files:
         shutil.copy(file, folder)
-    (folder / "task.json").write_text(json.dumps(task))
+    (folder / "task.json").write_text(json.dumps({**task, "module": module}))
     program, size, log = shutil.which(program), [str(side) for side in screen], folder / "log.txt"
     command = ["env", "-C", folder, f"BLENDER_USER_CONFIG={folder / 'config'}"]
     command += ["xvfb-run", "-a", "-s", f"-screen 0 {'x'.join(size)}x24 -fbdir . -nocursor"]
     command += [program, "--factory-startup", "-noaudio", *options, "--window-geometry", "0", "0", *size]
-    command += ["--python-exit-code", "1", "--python", _HARNESS, "--", script, folder]
+    command += ["--python-exit-code", "1", "--python", _HARNESS, "--", INSIDE / "in_window.py", folder]
     status = process.execute(list(map(str, command)), process.environment(program, STAGE), log, seconds)
     found = report.read(folder)
     if status != 0 or not found or any(test.outcome == report.FAILED for test in found):
         raise BlenderError(f"{folder.name} failed in Blender; {_ending(log)}")
+    return json.loads((folder / "result.json").read_text())
 
 
 def _ending(log: Path) -> str:
@@ -98,22 +97,3 @@ def _blender(version: str | None) -> list[str]:
     if not found:
         raise BlenderError("blender is not installed; run scripts/setup")
     return [found]
-
-
-def _run(command: list[str], log: Path, hear: Callable[[str], None]) -> int:
-    """Returns the exit status. Kills Blender on any exception: Ctrl-C itself ends only its current render."""
-    pipes = {"stdin": subprocess.DEVNULL, "stdout": subprocess.PIPE, "stderr": subprocess.STDOUT}
-    pipes |= {"env": process.environment(command[0], STAGE)}
-    with (
-        open(log, "w") as file,
-        subprocess.Popen(command, text=True, errors="replace", **pipes) as child,
-    ):
-        try:
-            for line in child.stdout:
-                file.write(line)
-                file.flush()
-                hear(line)
-        except BaseException:
-            child.kill()
-            raise
-    return child.returncode

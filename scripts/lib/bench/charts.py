@@ -15,30 +15,14 @@ from PIL import Image
 from velour.core import files
 
 # Color of each strategy or model in all plots, distinguishable for the color-blind (Okabe and Ito's palette).
-COLORS = {
-    "uniform": "#999999",
-    "cosine": "#56b4e9",
-    "table": "#cc79a7",
-    "srbf": "#d55e00",
-    "light": "#e69f00",
-    "mis": "#009e73",
-    "ggx": "#f0e442",
-    "mis-ggx": "#0072b2",
-    "product": "#000000",
-    "dissertation": "#a6761d",
-    "mis-dissertation": "#882255",
-    "scattered": "#d55e00",
-    "parametric": "#0072b2",
-    "principled": "#009e73",
-    "svd": "#999999",
-    "svd-view": "#56b4e9",
-    "tucker": "#f0e442",
-    "cta": "#e69f00",
-    "kcta": "#009e73",
-    "kcta 2": "#cc79a7",
-    "kcta 3": "#0072b2",
-    "kcta 4": "#000000",
-}
+_GRAY, _SKY, _PINK, _RED, _ORANGE, _GREEN = "#999999", "#56b4e9", "#cc79a7", "#d55e00", "#e69f00", "#009e73"
+_YELLOW, _BLUE, _BLACK = "#f0e442", "#0072b2", "#000000"
+COLORS = {"uniform": _GRAY, "cosine": _SKY, "table": _PINK, "srbf": _RED, "light": _ORANGE, "mis": _GREEN}
+COLORS |= {"ggx": _YELLOW, "mis-ggx": _BLUE, "product": _BLACK}
+COLORS |= {"dissertation": "#a6761d", "mis-dissertation": "#882255"}
+COLORS |= {"scattered": _RED, "parametric": _BLUE, "principled": _GREEN}
+COLORS |= {"svd": _GRAY, "svd-view": _SKY, "tucker": _YELLOW, "cta": _ORANGE, "kcta": _GREEN}
+COLORS |= {"kcta 2": _PINK, "kcta 3": _BLUE, "kcta 4": _BLACK}
 _FEW_DECADES = 50  # ratio of an axis's ends below which powers of ten alone are too few labels
 
 Points = Sequence[tuple[float, float]]

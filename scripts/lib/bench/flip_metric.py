@@ -10,16 +10,12 @@ import numpy as np
 from velour.core.luminance import LUMINANCE
 
 from .charts import display
-from .velour_cli import ROOT
+from .project import ROOT, MissingError
 
 # Where scripts/setup --metrics installs FLIP. Last on the path, so that numpy remains the system's.
 _PACKAGES = ROOT / "build/tools/lib/python{}.{}/site-packages".format(*sys.version_info[:2])
 GRAY = 0.18  # the object's mean luminance after exposure: the photographer's gray card
 _SIDE, _GRAY_LIGHTNESS = 64, 50.0  # uniform patches: pixels, L*
-
-
-class NoFlipError(RuntimeError):
-    """FLIP is not installed; the message is a sentence."""
 
 
 @functools.cache
@@ -28,7 +24,7 @@ def _flip():
     try:
         import flip_evaluator
     except ImportError as error:
-        raise NoFlipError(
+        raise MissingError(
             f"skipped, FLIP is not installed ({error}); scripts/setup --metrics does."
         ) from error
     return flip_evaluator
@@ -45,6 +41,13 @@ def flip_map(reference: np.ndarray, test: np.ndarray) -> np.ndarray:
 def exposure(picture: np.ndarray, where: np.ndarray) -> float:
     """Factor that makes the mean luminance of the pixels of `where` equal to GRAY."""
     return float(GRAY / (picture[where] @ LUMINANCE).mean())
+
+
+def of_object(reference: np.ndarray, test: np.ndarray, where: np.ndarray) -> tuple[float, float]:
+    """Mean and 99th percentile of FLIP of two linear pictures, over the pixels that show the object."""
+    scale = exposure(reference, where)
+    values = flip_map(*(display(scale * picture) for picture in (reference, test)))[::-1][where]
+    return float(values.mean()), float(np.percentile(values, 99))
 
 
 def of_lightness(difference: float) -> float:

@@ -9,18 +9,17 @@ from typing import NamedTuple
 
 import numpy as np
 
-from . import data_files
+from . import project
 from .reference import FIRST_SEED, Batches, Reference, points, silhouette
 from .run import Picture, Run
-from .scenes import BUNNY_CAMERA, SUNSET, Scene, made, write_sphere
-from .velour_cli import ROOT
+from .scenes import BUNNY_CAMERA, SUNSET, Scene, write_sphere
 
 MATERIALS = ("satin_rosaline_rgb", "paper_white_rgb", "cc_iris_purple_gem_rgb")
 STRATEGIES = ("mis", "product")
 DIRECTIONS = 8  # light directions per camera ray, in both programs
 _REFERENCES = 4
 _CAMERAS = {"bunny": BUNNY_CAMERA, "sphere": "0,-4,0,0,0,0,40"}
-_PYTHON, _PROGRAM = ROOT / "build/tools/bin/python", Path(__file__).with_name("mitsuba_render.py")
+_PYTHON, _PROGRAM = project.ROOT / "build/tools/bin/python", Path(__file__).with_name("mitsuba_render.py")
 _VARIANTS = ("llvm_ad_rgb", "scalar_rgb")
 
 
@@ -34,61 +33,9 @@ class Wish(NamedTuple):
     timed: bool
 
 
-class Mitsuba:
-    """Renders by Mitsuba, made by the Python that has it in a separate process, and kept as our own are."""
-
-    def __init__(self, run: Run, size: tuple[int, int]):
-        self._run, self._size = run, size
-        self.variant = ""
-
-    @staticmethod
-    def installed() -> bool:
-        import_it = [_PYTHON, "-c", "import mitsuba"]
-        return _PYTHON.is_file() and subprocess.run(import_it, capture_output=True).returncode == 0
-
-    def choose_variant(self, scene: Scene, rays: int) -> None:
-        """Chooses the fastest variant that works here: an LLVM too old for the processor ends the process."""
-        seconds = {}
-        for self.variant in _VARIANTS:
-            try:
-                seconds[self.variant] = self.render(scene, [Wish(rays, 0, True)])[0][0].seconds
-            except MitsubaError as error:
-                print(f"    Mitsuba's {self.variant}: {error}")
-        if not seconds:
-            raise MitsubaError("none of its variants works here")
-        self.variant = min(seconds, key=seconds.get)
-
-    def cost(self, wishes: list[Wish]) -> float:
-        """Cost of the pictures in light directions, for the progress."""
-        rays = sum(wish.rays * (2 if wish.timed else 1) for wish in wishes)
-        return float(rays * DIRECTIONS * self._size[0] * self._size[1])
-
-    def render(self, scene: Scene, wishes: list[Wish]) -> tuple[list[Picture], dict]:
-        """The pictures, and the report with Mitsuba's version."""
-        task = {"variant": self.variant, "threads": self._run.threads, "directions": DIRECTIONS}
-        task |= {"sampler": "multijitter", "size": list(self._size), "camera": scene.camera, "up": scene.up}
-        files = {"mesh": scene.mesh, "world": scene.world, "measurement": scene.material}
-        parameters = {**task, **files, "wishes": wishes, "program": _PROGRAM}
-        stem = self._run.stem("mitsuba", parameters)
-        outs = [stem.with_name(f"{stem.name}-{k}.exr") for k in range(len(wishes))]
-        pictures = [{**wish._asdict(), "out": str(out)} for wish, out in zip(wishes, outs, strict=True)]
-        task |= {name: str(path) for name, path in files.items()} | {"pictures": pictures}
-        label = f"Mitsuba {self.variant}, {scene.name}, {', '.join(str(wish.rays) for wish in wishes)} rays"
-        make = lambda: self._make(task, stem.with_suffix(".partial"))  # noqa: E731
-        report = self._run.keep(label, "mitsuba", parameters, make, self.cost(wishes))
-        taken = zip(outs, report["seconds"], strict=True)
-        return [Picture(out, {"seconds": seconds}) for out, seconds in taken], report
-
-    def _make(self, task: dict, report: Path) -> dict:
-        log = self._run.kept / f"mitsuba-{self.variant}.log"
-        with open(log, "w") as file:
-            command = [_PYTHON, _PROGRAM, json.dumps(task), report]
-            done = subprocess.run(command, stdout=file, stderr=subprocess.STDOUT)
-        if done.returncode:
-            raise MitsubaError(f"it failed with status {done.returncode}; its words are in {log}")
-        found = json.loads(report.read_text())
-        report.unlink()
-        return found
+def installed() -> bool:
+    import_it = [_PYTHON, "-c", "import mitsuba"]
+    return _PYTHON.is_file() and subprocess.run(import_it, capture_output=True).returncode == 0
 
 
 def compare(run: Run) -> dict | str:
@@ -97,32 +44,35 @@ def compare(run: Run) -> dict | str:
 
     `run.settings`: peer_materials, peer_size, peer_rays (camera rays per pixel) and peer_reference_rays.
     """
-    own, theirs = run.settings, Mitsuba(run, run.settings.peer_size)
-    if not theirs.installed():
+    own = run.settings
+    if not installed():
         return "Mitsuba is left out: it is not installed and could not be had from PyPI (build/peers.log)."
     ladder = [Wish(rays, run.seed, True) for rays in own.peer_rays]
     converged = [Wish(own.peer_reference_rays, FIRST_SEED + k, False) for k in range(_REFERENCES)]
-    materials = MATERIALS[: own.peer_materials]
+    materials, spp = MATERIALS[: own.peer_materials], [DIRECTIONS * rays for rays in own.peer_rays]
     for _ in materials:
         for wishes in (ladder, converged, converged):
-            run.progress.expect(theirs.cost(wishes))
+            run.progress.expect(_cost(run, wishes))
         run.expect(DIRECTIONS * own.peer_reference_rays, own.peer_size, 2 * _REFERENCES)
-        for rays in own.peer_rays:
-            run.expect(DIRECTIONS * rays, own.peer_size, len(STRATEGIES))
+        for count in spp:
+            run.expect(count, own.peer_size, len(STRATEGIES))
     found = {"rows": [], "spheres": []}
     try:
-        theirs.choose_variant(_scene(run, "bunny", materials[0]), own.peer_rays[-1])
+        variant = _fastest(run, _scene(run, "bunny", materials[0]), own.peer_rays[-1])
         for material in materials:
             bunny, sphere = (_scene(run, name, material) for name in _CAMERAS)
-            pictures, report = theirs.render(bunny, ladder)
+            pictures, report = _render(run, variant, bunny, ladder)
             found |= {"version": report["version"], "variant": report["variant"]}
-            reference = Batches(theirs.render(bunny, converged)[0])
-            found["rows"] += _points(run, pictures, reference, material, "mitsuba")
-            ours = _reference(run, bunny)
+            curves = {"mitsuba": (pictures, Batches(_render(run, variant, bunny, converged)[0]))}
+            ours, how = _reference(run, bunny), {"size": own.peer_size, "split": DIRECTIONS}
             for strategy in STRATEGIES:
-                renders = [_ours(run, bunny, rays, strategy) for rays in own.peer_rays]
-                found["rows"] += _points(run, renders, ours, material, strategy)
-            both = _reference(run, sphere), Batches(theirs.render(sphere, converged)[0])
+                curves[strategy] = [run.render(bunny, n, strategy=strategy, **how) for n in spp], ours
+            for curve, (rendered, reference) in curves.items():
+                about = {"scene": material, "curve": curve, "seed": run.seed}
+                found["rows"] += points(
+                    [(p, {**about, "spp": n}) for p, n in zip(rendered, spp, strict=True)], reference
+                )
+            both = _reference(run, sphere), Batches(_render(run, variant, sphere, converged)[0])
             where = silhouette(run, sphere, own.peer_size)
             found["spheres"].append({"material": material, **_difference(*both, where)})
     except MitsubaError as error:
@@ -130,33 +80,73 @@ def compare(run: Run) -> dict | str:
     return found
 
 
+def _fastest(run: Run, scene: Scene, rays: int) -> str:
+    """The fastest variant that works here: an LLVM too old for the processor ends the process."""
+    seconds = {}
+    for variant in _VARIANTS:
+        try:
+            seconds[variant] = _render(run, variant, scene, [Wish(rays, 0, True)])[0][0].seconds
+        except MitsubaError as error:
+            print(f"    Mitsuba's {variant}: {error}")
+    if not seconds:
+        raise MitsubaError("none of its variants works here")
+    return min(seconds, key=seconds.get)
+
+
+def _cost(run: Run, wishes: list[Wish]) -> float:
+    """In light directions, for the progress."""
+    rays, (width, height) = (
+        sum(wish.rays * (2 if wish.timed else 1) for wish in wishes),
+        run.settings.peer_size,
+    )
+    return float(rays * DIRECTIONS * width * height)
+
+
+def _render(run: Run, variant: str, scene: Scene, wishes: list[Wish]) -> tuple[list[Picture], dict]:
+    """The pictures, made in the Python that has Mitsuba and kept, and the report with Mitsuba's version."""
+    task = {"variant": variant, "threads": run.threads, "directions": DIRECTIONS}
+    task |= {
+        "sampler": "multijitter",
+        "size": list(run.settings.peer_size),
+        "camera": scene.camera,
+        "up": scene.up,
+    }
+    files = {"mesh": scene.mesh, "world": scene.world, "measurement": scene.material}
+    parameters = {**task, **files, "wishes": wishes, "program": _PROGRAM}
+    stem = run.stem("mitsuba", parameters)
+    outs = [stem.with_name(f"{stem.name}-{k}.exr") for k in range(len(wishes))]
+    pictures = [{**wish._asdict(), "out": str(out)} for wish, out in zip(wishes, outs, strict=True)]
+    task |= {name: str(path) for name, path in files.items()} | {"pictures": pictures}
+    partial, log = stem.with_suffix(".partial"), run.kept / f"mitsuba-{variant}.log"
+
+    def make() -> dict:
+        with open(log, "w") as file:
+            command = [_PYTHON, _PROGRAM, json.dumps(task), partial]
+            done = subprocess.run(command, stdout=file, stderr=subprocess.STDOUT)
+        if done.returncode:
+            raise MitsubaError(f"it failed with status {done.returncode}; its words are in {log}")
+        found = json.loads(partial.read_text())
+        partial.unlink()
+        return found
+
+    label = f"Mitsuba {variant}, {scene.name}, {', '.join(str(wish.rays) for wish in wishes)} rays"
+    report = run.keep(label, "mitsuba", parameters, make, _cost(run, wishes))
+    return list(map(Picture, outs, report["seconds"])), report
+
+
 def _scene(run: Run, name: str, material: str) -> Scene:
     """The scene in reference mode: Velour evaluates the raw measurement."""
-    measurement, data = run.data / f"brdf/{material}.bsdf", run.data
+    measurement = run.data / f"brdf/{material}.bsdf"
     model, _ = run.fit(measurement, max_lobes=16)
-    mesh, up = data_files.mesh(data, "bunny"), "y"
+    mesh, up = project.mesh(run.data, "bunny"), "y"
     if name == "sphere":
-        mesh, up = made(run.kept / "sphere.obj", write_sphere), "z"
-    world = data_files.world(data, SUNSET)
-    return Scene(f"{name}, {material}", mesh, up, world, measurement, model, _CAMERAS[name])
-
-
-def _ours(run: Run, scene: Scene, rays: int, strategy: str) -> Picture:
-    return run.render(
-        scene, DIRECTIONS * rays, size=run.settings.peer_size, split=DIRECTIONS, strategy=strategy
-    )
+        mesh, up = run.made("sphere.obj", write_sphere), "z"
+    return Scene(f"{name}, {material}", mesh, up, run.world(SUNSET), measurement, model, _CAMERAS[name])
 
 
 def _reference(run: Run, scene: Scene) -> Reference:
     options = {"size": run.settings.peer_size, "split": DIRECTIONS, "strategy": "product"}
-    spp = DIRECTIONS * run.settings.peer_reference_rays
-    return Reference(run, scene, spp, **options).add(_REFERENCES)
-
-
-def _points(run: Run, pictures: list[Picture], reference: Batches, material: str, curve: str) -> list[dict]:
-    about = {"scene": material, "curve": curve, "seed": run.seed}
-    spp = ({**about, "spp": DIRECTIONS * rays} for rays in run.settings.peer_rays)
-    return points(list(zip(pictures, spp, strict=True)), reference)
+    return Reference(run, scene, DIRECTIONS * run.settings.peer_reference_rays, **options).add(_REFERENCES)
 
 
 def _difference(ours: Batches, theirs: Batches, where: np.ndarray) -> dict:

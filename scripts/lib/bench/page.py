@@ -1,38 +1,32 @@
-"""Pages, tables and kept numbers.
+"""Pages and kept numbers.
 
-Whole pages are written from templates in the folder `pages`: Markdown with fields in braces. Other pages are
-written by hand, apart from parts between markers.
+A template of the folder `pages` is Markdown with
+
+- fields in braces, those of str.format. None is "-", or empty if the field has no format. The format p is a
+  percentage; others may begin with a factor: k and M divide by a thousand and a million;
+- rows of a table: `*NAME* | {cell} | {cell} |`, below the titles, repeats for each of the rows NAME;
+- sections: the lines from `*each NAME*` to `*end NAME*` repeat for each of NAME.
 """
 
 from __future__ import annotations
 
 import csv
+import re
 import string
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
 from pathlib import Path
 
 from velour.core import files
 
-from . import provenance
-from .velour_cli import ROOT
+from .project import RESULTS, sentence
 
-RESULTS = ROOT / "docs/results"
 _TEMPLATES = Path(__file__).with_name("pages")
-_SCALES = {"k": 1e-3, "M": 1e-6, "m": 1e3}
+_SCALES = {"k": 1e-3, "M": 1e-6}
+_SECTION = re.compile(r"^\*each (\w+)\*\n(.*?)^\*end \1\*\n", re.MULTILINE | re.DOTALL)
+_ROWS = re.compile(r"^\*(\w+)\* (\|.*\|\n)", re.MULTILINE)
 
 
-def table(rows: Iterable, header: str, cells: str) -> str:
-    """A Markdown table. `header`: the titles, between bars; `cells`: the template of a row, likewise.
-
-    Fields of the template are those of str.format, for the entries of a row. None is "-", or empty if the
-    field has no format. The format p is a percentage; others may begin with a factor: k and M divide by a
-    thousand and a million, m multiplies by a thousand.
-    """
-    lines = [f"| {line} |\n" for line in (header, *(filled(cells, row) for row in rows))]
-    return "".join([lines[0], "|" + "---|" * len(header.split("|")) + "\n", *lines[1:]])
-
-
-class _Cells(string.Formatter):
+class _Fields(string.Formatter):
     def format_field(self, value, spec):
         if value is None:
             return "-" if spec else ""
@@ -43,46 +37,60 @@ class _Cells(string.Formatter):
         return super().format_field(value, spec)
 
 
-_CELLS = _Cells()
+def fields(template: str, values: Mapping) -> str:
+    return _Fields().vformat(template, (), values)
 
 
 def filled(template: str, values: Mapping) -> str:
-    return _CELLS.vformat(template, (), values)
+    before, *rest = _SECTION.split(template)
+    text = _tables(before, values)
+    for name, section, after in zip(rest[::3], rest[1::3], rest[2::3], strict=True):
+        text += "".join(filled(section, {**values, **each}) for each in values[name]) + _tables(after, values)
+    return text
 
 
-def replaced(page: str, part: str, text: str, script: str = "models") -> str:
-    """`page` with `text` between the markers of `part` of `script`. Raises ValueError if they are missing."""
-    begin, end = f"<!-- {part}: written by scripts/{script} -->\n", f"<!-- end of {part} -->"
-    if page.count(begin) != 1 or page.count(end) != 1 or page.index(begin) > page.index(end):
-        raise ValueError(f"the page has no part {part!r} between its two markers")
-    return page[: page.index(begin) + len(begin)] + text + page[page.index(end) :]
+def _tables(template: str, values: Mapping) -> str:
+    before, *rest = _ROWS.split(template)
+    text = fields(before, values)
+    for name, cells, after in zip(rest[::3], rest[1::3], rest[2::3], strict=True):
+        titles = text.splitlines()[-1]
+        text += "|" + "---|" * (titles.count("|") - 1) + "\n"
+        text += "".join(fields(cells, row) for row in values[name]) + fields(after, values)
+    return text
 
 
 def text(template: str, values: Mapping) -> str:
-    """A template of the folder `pages`, filled. `values`: its fields, among them the conditions, which the
-    field `conditions` states."""
+    """A template of the folder `pages`, filled. `values`: among them the conditions, which the field
+    `conditions` states."""
     source = (_TEMPLATES / f"{template}.md").read_text(encoding="utf-8")
-    sentence = {"conditions": provenance.sentence(values)} if "commit" in values else {}
-    return filled(source, {**sentence, **values})
+    return filled(source, {"conditions": sentence(values), **values} if "commit" in values else values)
+
+
+def replaced(page: str, part: str, text: str) -> str:
+    """`page` with `text` between the markers of `part`. Raises ValueError if they are missing."""
+    pattern = re.compile(f"(?<=<!-- {part}: )(.*?-->\n).*?(?=<!-- end of {part} -->)", re.DOTALL)
+    if len(pattern.findall(page)) != 1:
+        raise ValueError(f"the page has no part {part!r} between its two markers")
+    return pattern.sub(lambda found: found[1] + text, page)
 
 
 def write(output: Path, name: str, page: str) -> None:
-    """Writes a page of docs/results, and prints its path."""
+    """Writes a page of docs/results, or the part "measured" of a hand-written one; prints its path."""
+    known = (RESULTS / name).read_text(encoding="utf-8") if (RESULTS / name).is_file() else ""
+    if "<!-- measured: " in known:
+        page = replaced(known, "measured", page)
     (output / name).parent.mkdir(parents=True, exist_ok=True)
     files.write_text(output / name, page)
     print(output / name)
 
 
-def write_parts(output: Path, name: str, script: str, **parts: str) -> None:
-    """Writes the page docs/results/NAME with new parts to OUTPUT/NAME, and prints its path."""
-    page = (RESULTS / name).read_text(encoding="utf-8")
-    for part, found in parts.items():
-        page = replaced(page, part, found, script)
-    write(output, name, page)
-
-
 def verdict(met: bool | None) -> str:
     return {True: "met", False: "missed", None: "not measured"}[met]
+
+
+def judged(target: str, where: str, measured: str, met: bool | None) -> dict:
+    """A row of a table of targets."""
+    return {"target": target, "where": where, "measured": measured, "met": met, "word": verdict(met)}
 
 
 def write_rows(path: Path, rows: list[dict], conditions: Mapping) -> None:

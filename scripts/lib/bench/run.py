@@ -16,6 +16,7 @@ import subprocess
 from collections.abc import Callable
 from pathlib import Path
 from types import SimpleNamespace
+from typing import TYPE_CHECKING
 
 import numpy as np
 import velour as addon
@@ -23,12 +24,13 @@ from velour.core import files
 from velour.core.machine import machine
 from velour.native import images
 
-from . import data_files, provenance
+from . import project
 from .progress import Progress
-from .scenes import Scene
-from .velour_cli import ROOT, velour
+from .project import flags
 
-BUILT = ROOT / "build/release/native"
+if TYPE_CHECKING:
+    from .scenes import Scene
+
 _LIBRARY = Path(addon.__file__).with_name("lib") / "libvelour.so"
 # Cost of a process besides its samples, in samples: startup, reading the mesh, building the BVH.
 START = 10_000_000
@@ -37,16 +39,13 @@ START = 10_000_000
 @dataclasses.dataclass(frozen=True)
 class Picture:
     path: Path
-    report: dict
+    seconds: float
+    report: dict = dataclasses.field(default_factory=dict)
 
     @functools.cached_property
     def pixels(self) -> np.ndarray:
         """Linear RGB, float32."""
         return read_rgb(self.path)
-
-    @property
-    def seconds(self) -> float:
-        return self.report["seconds"]
 
     def errors(self, reference: np.ndarray) -> tuple[float, float]:
         """rmse and relmse."""
@@ -75,27 +74,26 @@ class Run:
 
     @functools.cached_property
     def data(self) -> Path:
-        """The test data. Raises NoDataError."""
-        return data_files.folder()
+        """The test data. Raises MissingError."""
+        return project.data_folder()
+
+    def world(self, name: str) -> Path:
+        return project.world(self.data, name)
+
+    def materials(self) -> list[tuple[str, Path]]:
+        """Names and files of the first `materials` measurements."""
+        return project.materials(self.data)[: self.settings.materials]
 
     def conditions(self, **more) -> dict:
         """The machine, commit and settings that numbers are measured with, for their page."""
-        settings = {name: shown(name, value) for name, value in vars(self.settings).items()}
-        return provenance.conditions(self.seed, self.threads) | settings | more
+        settings = {name: _shown(name, value) for name, value in vars(self.settings).items()}
+        return project.conditions(self.seed, self.threads) | settings | more
 
     def expect(self, spp: int, size: tuple[int, int] | None = None, count: int = 1) -> None:
         """Announces renders to the progress."""
         self.progress.expect(_cost(spp, size or self.settings.size), count)
 
-    def render(
-        self,
-        scene: Scene,
-        spp: int,
-        *,
-        seed: int | None = None,
-        size: tuple[int, int] | None = None,
-        **options,
-    ) -> Picture:
+    def render(self, scene: Scene, spp: int, *, seed: int | None = None, size=None, **options) -> Picture:
         """`options`: command line options of `velour render`."""
         size = size or self.settings.size
         parameters = {**scene.options, "size": "{}x{}".format(*size), "spp": spp, **options}
@@ -104,17 +102,25 @@ class Run:
         out = self.stem("render", parameters).with_suffix(".exr")
         cache = [] if "cache" in options else ["--cache", self.kept]
         words = ["render", *flags(parameters), *cache, "-o", out]
-        return Picture(out, self.velour(label, "render", parameters, *words, cost=_cost(spp, size)))
+        report = self.velour(label, "render", parameters, *words, cost=_cost(spp, size))
+        return Picture(out, report["seconds"], report)
 
     def fit(self, measurement: Path, model: str = "scattered", **options) -> tuple[Path, dict]:
         """The model, and the report of its fit: {"refused": True} if no model has so few `bytes`."""
         options = {"model": model, "tolerance": 0.02, "seed": self.seed, **options}
         options = {name.replace("_", "-"): value for name, value in options.items()}
-        parameters = {"measurement": measurement, **options}
-        out = self.stem("fit", parameters).with_suffix(".velour")
         label = f"{model} fit of {measurement.stem}, " + ", ".join(f"{k} {v}" for k, v in options.items())
-        words = ("fit", measurement, "-o", out, *flags(options))
-        return out, self.velour(label, "fit", parameters, *words, refusable="bytes" in options)
+        return self.model(label, "fit", measurement, options, refusable="bytes" in options)
+
+    def model(
+        self, label: str, verb: str, source: Path, options: dict, name: str = "", **how
+    ) -> tuple[Path, dict]:
+        """The model that a verb makes of a source, and its report. `name`: of the kept files; `how`:
+        arguments of velour()."""
+        parameters = {"measurement": source, **options}
+        out = self.stem(name or verb, parameters).with_suffix(".velour")
+        words = (verb, source, "-o", out, *flags(options))
+        return out, self.velour(label, name or verb, parameters, *words, **how)
 
     def compare_peer(self, measurement: Path, peer: str) -> dict:
         """Errors of the closest `peer`: ggx or principled."""
@@ -130,7 +136,7 @@ class Run:
         def run() -> dict:
             before = processor_seconds()
             try:
-                found = velour(*words, "--quiet")
+                found = project.velour(*words, "--quiet")
             except subprocess.CalledProcessError as error:
                 if error.returncode != 1 or not refusable:
                     raise
@@ -144,8 +150,7 @@ class Run:
         that do not change the result."""
         if not program.is_file():
             return None
-        more = [str(word) for name, value in unkeyed.items() for word in (f"--{name}", value)]
-        command = [program, *map(str, arguments), *more]
+        command = [program, *map(str, arguments), *words_of(unkeyed)]
 
         def run() -> dict:
             said = subprocess.run(command, check=True, stdout=subprocess.PIPE, text=True).stdout
@@ -170,9 +175,19 @@ class Run:
         """Path of the files that depend on the parameters, without suffix."""
         return self.kept / f"{name}-{key(parameters)}"
 
+    def made(self, name: str, write: Callable[[Path], Path]) -> Path:
+        """A file of the kept ones, which `write` makes unless it exists."""
+        path = self.kept / name
+        return path if path.is_file() else write(path)
+
 
 def _cost(spp: int, size: tuple[int, int]) -> float:
     return spp * size[0] * size[1] + START
+
+
+def words_of(options: dict) -> list[str]:
+    """Options of a program of native/bench."""
+    return [str(word) for name, value in options.items() for word in (f"--{name}", value)]
 
 
 def read_rgb(path: Path) -> np.ndarray:
@@ -188,11 +203,6 @@ def key(parameters: dict) -> str:
     return hashlib.sha256(text.encode()).hexdigest()[:16]
 
 
-def flags(parameters: dict) -> list[str]:
-    # One word per option: a value may begin with a minus.
-    return [f"--{name}={value}" for name, value in parameters.items()]
-
-
 def _hash(path: Path) -> str:
     status = path.stat()
     return _hash_of_version(path, status.st_mtime_ns, status.st_size)
@@ -203,7 +213,7 @@ def _hash_of_version(path: Path, modified: int, size: int) -> str:
     return files.sha256(path)
 
 
-def shown(name: str, value) -> object:
+def _shown(name: str, value) -> object:
     """A setting as its page shows it."""
     if isinstance(value, tuple):
         return ("x" if name.endswith("size") else ", ").join(map(str, value))

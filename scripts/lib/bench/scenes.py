@@ -11,7 +11,7 @@ from velour.core import files
 from velour.core.luminance import LUMINANCE
 from velour.native import images
 
-from . import blender, data_files
+from . import blender, project
 
 if TYPE_CHECKING:
     from .run import Run
@@ -60,18 +60,18 @@ class Subject:
 
     def scene(self, world: str, data: Path) -> Scene:
         """The scene with the model, which is both evaluated and sampled."""
-        return Scene(f"{self.name}, {world}", self.mesh, "y", data_files.world(data, world), self.model)
+        return Scene(f"{self.name}, {world}", self.mesh, "y", project.world(data, world), self.model)
 
 
 def subjects(run: Run) -> list[Subject]:
     """The subjects whose inputs exist. Prints which are omitted."""
     data = run.data
     found = [
-        ("7.11", "bunny", data_files.mesh(data, "bunny"), data_files.merl(data, "blue-metallic-paint")),
-        ("7.12", "buddha", data_files.mesh(data, "buddha"), data / "brdf/krylon_blue.brdf"),
+        ("7.11", "bunny", project.mesh(data, "bunny"), project.merl(data, "blue-metallic-paint")),
+        ("7.12", "buddha", project.mesh(data, "buddha"), data / "brdf/krylon_blue.brdf"),
     ]
     if suzanne := _suzanne(run):
-        found.append(("7.13", "Suzanne", suzanne, data_files.merl(data, "nickel")))
+        found.append(("7.13", "Suzanne", suzanne, project.merl(data, "nickel")))
     return [
         Subject(figure, f"{name}, {file.stem.replace('_', '-')}", mesh, file, run.fit(file, max_lobes=16)[0])
         for figure, name, mesh, file in found
@@ -118,11 +118,6 @@ def write_sphere(path: Path, rings: int = 128, sectors: int = 256) -> Path:
     x, y = np.sin(theta) * np.cos(phi), np.sin(theta) * np.sin(phi)
     points = np.stack([x, y, np.broadcast_to(np.cos(theta), x.shape)], axis=-1)
     return write_grid(path, points, points)
-
-
-def made(path: Path, write) -> Path:
-    """The file, which `write` makes unless it exists."""
-    return path if path.is_file() else write(path)
 
 
 def sky_directions(rows: int) -> np.ndarray:

@@ -72,7 +72,7 @@ def style(run: Run) -> list[Case]:
     ruff = own if os.access(own, os.X_OK) else shutil.which("ruff")
     if ruff is None:
         return [*found, skipped("ruff", "it is not installed and cannot be had from PyPI")]
-    places = [ROOT / "addon", ROOT / "scripts", ROOT / "blend-tests", *_python_programs()]
+    places = [*(ROOT / name for name in ("addon", "scripts", "blend-tests", "native")), *_python_programs()]
     found.append(check(run, "ruff", ruff, "check", "--no-cache", *places))
     found.append(check(run, "ruff-format", ruff, "format", "--no-cache", "--check", *places))
     return found
@@ -90,72 +90,76 @@ def _python_programs() -> list[Path]:
 
 
 def native(run: Run) -> list[Case]:
-    programs, report, log = run.results / "native", run.results / "ctest.xml", run.results / "native.log"
+    programs, jobs = run.results / "native", str(os.cpu_count() or 1)
     shutil.rmtree(programs, ignore_errors=True)
-    jobs = str(os.cpu_count() or 1)
-    command = ["ctest", "--test-dir", run.build, "-j", jobs, "--output-on-failure", "--output-junit", report]
-    progress = running.last(r"(\d+/\d+) Test ", "test programs")
-    report.unlink(missing_ok=True)
-    status = running.run(command, log, progress, **run.variables, GTEST_OUTPUT=f"xml:{programs}/")
-    return _judged("ctest", status, cases.of_ctest(report, programs), log)
+    command = ["ctest", "--test-dir", run.build, "-j", jobs, "--output-on-failure", "--output-junit"]
+    progress, variables = (
+        running.last(r"(\d+/\d+) Test ", "test programs"),
+        {"GTEST_OUTPUT": f"xml:{programs}/"},
+    )
+    read = lambda report: cases.of_ctest(report, programs)  # noqa: E731
+    return _reported(run, "native", command, progress, read, **variables)
 
 
 def python(run: Run) -> list[Case]:
-    report, log = run.results / "python.xml", run.results / "python.log"
-    report.unlink(missing_ok=True)
     # loadfile: the tests of a file share expensive fixtures.
-    command = [PYTHON, "-m", "pytest", "-n", "2", "--dist", "loadfile", "--junitxml", report]
-    status = running.run(command, log, running.last(r"\[ *(\d+%)\]", "of the tests"), **run.variables)
-    return _judged("pytest", status, cases.of_report(report), log)
+    command = [PYTHON, "-m", "pytest", "-n", "2", "--dist", "loadfile", "--junitxml"]
+    return _reported(run, "python", command, running.last(r"\[ *(\d+%)\]", "of the tests"))
 
 
 def blender(run: Run) -> list[Case]:
     package = check(run, "package", ROOT / "scripts/package")  # one test has Blender install it
-    return [package, *_in_blender(run, "blender", [])]
+    return [package, *_in_blender(run, "blender")]
 
 
-def _in_blender(run: Run, name: str, before: Sequence[str | Path], *options: str | Path) -> list[Case]:
-    report, log = run.results / f"{name}.xml", run.results / f"{name}.log"
-    report.unlink(missing_ok=True)
-    command = [*before, PYTHON, ROOT / "blend-tests/run", "--junit", report, *options]
-    status = running.run(command, log, running.matches(r": (ok|FAILED), ", "files"), **run.variables)
-    return _judged(name, status, cases.of_report(report), log, leave_out=_PASSED)
+def _in_blender(run: Run, name: str, *options: str | Path, before: Sequence[str | Path] = ()) -> list[Case]:
+    command = [*before, PYTHON, ROOT / "blend-tests/run", *options, "--junit"]
+    return _reported(run, name, command, running.matches(r": (ok|FAILED), ", "files"), leave_out=_PASSED)
 
 
 def scenes(run: Run) -> list[Case]:
-    update = ["--update"] if run.update else []
-    return _scenes(run, "scenes", [], *update, *run.scenes)
+    return _scenes(run, "scenes", *(["--update"] if run.update else []), *run.scenes)
 
 
-def _scenes(run: Run, name: str, before: Sequence[str | Path], *options: str | Path) -> list[Case]:
+def _scenes(run: Run, name: str, *options: str | Path, before: Sequence[str | Path] = ()) -> list[Case]:
+    command = [*before, PYTHON, ROOT / "blend-tests/run_scenes", *options, "--junit"]
+    found = _reported(run, name, command, running.matches(r"^  [\d.]+ s$", "scenes"))
+    if run.scenes or run.update:
+        running.show_end(run.results / f"{name}.log")
+    return found
+
+
+def _reported(
+    run: Run,
+    name: str,
+    command: Sequence[str | Path],
+    progress: Callable[[str], str],
+    read: Callable[[Path], list[Case]] = cases.of_report,
+    leave_out: str | None = None,
+    **variables: str,
+) -> list[Case]:
+    """The cases of a command that ends with the option that names its report."""
     report, log = run.results / f"{name}.xml", run.results / f"{name}.log"
     report.unlink(missing_ok=True)
-    command = [*before, PYTHON, ROOT / "blend-tests/run_scenes", "--junit", report, *options]
-    status = running.run(command, log, running.matches(r"^  [\d.]+ s$", "scenes"), **run.variables)
-    if run.scenes or run.update:
-        running.show_end(log)
-    return _judged(name, status, cases.of_report(report), log)
+    status = running.run([*command, report], log, progress, **run.variables, **variables)
+    return _judged(name, status, read(report), log, leave_out)
 
 
 def other_blender(run: Run, version: str) -> list[Case]:
     """The groups blender and scenes with the package, in a folder without the build dependencies. Omits the
     long tests, which only add samples."""
-    run = replace(run, long=False)
-    limit = ["timeout", str(_SETUP_SECONDS)]
-    status = running.run(
-        [*limit, ROOT / "scripts/blenders", version], run.results / f"blender-{version}-setup.log"
-    )
-    if status in _NOT_HERE:
+    run, log = replace(run, long=False), run.results / f"blender-{version}-setup.log"
+    command = ["timeout", str(_SETUP_SECONDS), ROOT / "scripts/blenders", version]
+    if running.run(command, log) in _NOT_HERE:
         return [skipped(f"Blender {version}", "it cannot be set up here")]
     package = check(run, "package", ROOT / "scripts/package")
     if package.outcome == FAILED:
         return [package]
-    files = ROOT / f"build/blend-tests-{version}"
-    stage = f"VELOUR_STAGE={ROOT / 'build/package/blender'}"
+    files, stage = ROOT / f"build/blend-tests-{version}", f"VELOUR_STAGE={ROOT / 'build/package/blender'}"
     before = [ROOT / "scripts/blenders", "--run", version, "env", stage]
     return [
-        *_in_blender(run, f"blender-{version}", before, "--files", files),
-        *_scenes(run, f"scenes-{version}", before, "--output", files / "scenes"),
+        *_in_blender(run, f"blender-{version}", "--files", files, before=before),
+        *_scenes(run, f"scenes-{version}", "--output", files / "scenes", before=before),
     ]
 
 

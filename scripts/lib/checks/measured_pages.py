@@ -18,14 +18,12 @@ PAGES = {
     "docs/results/chart_btf.md": _BTFS,
     "docs/results/equal_noise.md": _PICTURES,
     "docs/results/figures/README.md": _FITS + _PICTURES,
-    "docs/results/figures/check.md": _FITS + _PICTURES,
     "docs/results/for_scene.md": (*_FITS, *_PICTURES, "usage"),
     "docs/results/models.md": _FITS,
     "docs/results/perceptual.md": _FITS + _PICTURES,
     "docs/results/performance.md": _PICTURES,
     "docs/results/viewport.md": _PICTURES,
     "docs/results/votf_numbers.md": (*_BTFS, *_PICTURES, "votf"),
-    "docs/results/votf_tables.md": ("capture", "votf"),
 }
 
 

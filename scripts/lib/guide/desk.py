@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import importlib
 from pathlib import Path
 
 import bpy
@@ -67,6 +66,11 @@ class Desk:
             yield from self.click(x, window.first().height - 1 - header.row)
         raise TimeoutError(f"panel {label!r} of tab {tab} does not fold")
 
+    def open_panels(self, *labels: str):
+        """Opens panels of the Material tab, outer ones first."""
+        for label in labels:
+            yield from self.fold("MATERIAL", label, is_open=True)
+
     def click(self, x: int, y: int):
         """Clicks the left button at window coordinates."""
         for kind, value in (("MOUSEMOVE", "NOTHING"), ("LEFTMOUSE", "PRESS"), ("LEFTMOUSE", "RELEASE")):
@@ -92,25 +96,25 @@ class Desk:
 
     def drawn(self, kind: str):
         """Waits until the plot that a panel shows is drawn."""
-        preview = importlib.import_module(f"{inputs.ADDON}.ui.plot_preview")
-        for _ in range(5 * _PATIENCE):
-            area("PROPERTIES").tag_redraw()
-            yield 0.2
-            if preview.is_at_rest() and any(wanted.kind == kind for wanted in preview._pictures):
-                yield from self._read()
-                yield 0.8
-                return
-        raise TimeoutError(f"the plot {kind} is not drawn")
+        preview = inputs.module("ui.plot_preview")
+        is_there = lambda: preview.is_at_rest() and any(p.kind == kind for p in preview._pictures)  # noqa: E731
+        yield from self.until(is_there, f"the plot {kind}")
+        yield from self._read()
+        yield 0.8
 
     def _read(self):
         """Waits until panels have read the summaries of files."""
-        summaries = importlib.import_module(f"{inputs.ADDON}.ui.summaries")
-        for _ in range(_PATIENCE):
+        summaries = inputs.module("ui.summaries")
+        yield from self.until(summaries.is_at_rest, "what the panels read")
+
+    def until(self, holds, what: str):
+        """Redraws the Properties editor until something holds."""
+        for _ in range(2 * _PATIENCE):
             area("PROPERTIES").tag_redraw()
             yield 0.4
-            if summaries.is_at_rest():
+            if holds():
                 return
-        raise TimeoutError("the panels still read")
+        raise TimeoutError(f"{what} is never there")
 
     def start(self, operator, **arguments):
         """Starts a long operator as its button does, in the context of the 3D viewport."""

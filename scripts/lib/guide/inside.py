@@ -1,32 +1,17 @@
-"""A chapter inside Blender's window; task.json names it."""
-
-import importlib
-import json
-import math
-import sys
-from pathlib import Path
+"""A chapter inside Blender's window."""
 
 import bpy
-from support import window
 
-sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
-
-from guide.desk import Desk
+from . import chapters
+from .desk import Desk
 
 
-def start(folder):
-    """Called by the harness when the window exists."""
-    task = json.loads((folder / "task.json").read_text())
+def steps(folder, task):
     bpy.context.preferences.view.show_tooltips = False  # they would appear in pictures at random
-
-    def steps(folder):
-        chapter = importlib.import_module(f"guide.{task['chapter']}")
-        desk, facts = Desk(folder), {"blender": bpy.app.version_string}
-        try:
-            yield from chapter.steps(desk, folder / task["measurement"], facts)
-        except Exception:
-            desk.picture_of_window("failed", height=None)
-            raise
-        (folder / "facts.json").write_text(json.dumps(facts))
-
-    window.run(folder, (steps,), seconds=math.inf)
+    desk, facts = Desk(folder), {"blender": bpy.app.version_string}
+    try:
+        yield from getattr(chapters, task["chapter"])(desk, folder / task["measurement"], facts)
+    except Exception:
+        desk.picture_of_window("failed", height=None)
+        raise
+    return facts

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import importlib
 from collections.abc import Iterator
 from typing import NamedTuple
 
@@ -51,9 +50,7 @@ def _shown(tab: str, parent: str) -> list[type]:
 
 def _registered() -> list[type]:
     """Blender's own panels in order of definition, then ours in order of registration."""
-    ours = [
-        c for c in importlib.import_module(f"{inputs.ADDON}.ui").CLASSES if issubclass(c, bpy.types.Panel)
-    ]
+    ours = [c for c in inputs.module("ui").CLASSES if issubclass(c, bpy.types.Panel)]
     others = [panel for panel in _all(bpy.types.Panel) if panel not in ours and panel.is_registered]
     return others + ours
 

@@ -1,4 +1,4 @@
-"""Scripts that run inside Blender, each with a function main(task), and the scenes that they share."""
+"""What runs in Blender: main(task), or in a window the generator steps(folder, task); and their scenes."""
 
 import importlib
 import json

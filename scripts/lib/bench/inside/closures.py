@@ -19,7 +19,7 @@ def main(task):
     cycles.use_adaptive_sampling = False
     build.camera((0, -7, 1.5), lens=85)
     materials = [_material(task, masking) for masking in ("closures", None)]
-    for make in (_sphere, _sculpture):
+    for make in (_sphere, build.monkey):
         shape = make()
         for world in task["worlds"]:
             build.world(world)
@@ -54,19 +54,6 @@ def _material(task, masking):
 
 
 def _sphere():
-    bpy.ops.mesh.primitive_uv_sphere_add(segments=256, ring_count=128)
-    return _smooth("sphere")
-
-
-def _sculpture():
-    bpy.ops.mesh.primitive_monkey_add()
-    found = _smooth("Suzanne")
-    found.modifiers.new("Smooth", "SUBSURF").render_levels = 3
-    return found
-
-
-def _smooth(name):
-    found = bpy.context.object
-    found.name = name
-    found.data.polygons.foreach_set("use_smooth", [True] * len(found.data.polygons))
+    found = build.ball((0, 0, 0), 1, segments=256)
+    found.name = "sphere"
     return found

@@ -5,7 +5,6 @@ import bpy
 import numpy as np
 from velour.native import images, render_job
 
-from ..steps import print_step
 from . import scene as build
 
 SIZE = (640, 480)
@@ -32,9 +31,7 @@ def _material(task):
     bpy.ops.velour.load_material(filepath=task["model"])
     node = build.measured_node(subject.active_material)
     node.velour.measurement = raw.velour.measurement
-    report = _render_both(task["folder"], node, "rendering the measurement", "rendering the model")["model"]
-    print_step("taking error against time")
-    return report | {"curves": _curves(scene)}
+    return _render_both(task["folder"], node)["model"] | {"curves": _curves(scene)}
 
 
 def _btf(task):
@@ -42,9 +39,7 @@ def _btf(task):
     build.empty(SIZE, BTF_SAMPLES, BOUNCES)
     bpy.ops.velour.add_mesostructure(type="WEAVE")
     tile = bpy.context.object
-    print_step("capturing a tile of weave")
-    captured = lambda: print_step("fitting a model to its BTF")  # noqa: E731
-    report = build.capture_and_compress(task["folder"], CAPTURE, 0, captured)
+    report = build.capture_and_compress(task["folder"], CAPTURE, 0)
     bpy.data.objects.remove(tile)
     subject = furnish()
     # A cube projection: tiles of one size all over the subject, with seams between the six sides.
@@ -55,8 +50,7 @@ def _btf(task):
     bpy.ops.object.mode_set(mode="OBJECT")
     subject.data.materials.append(bpy.data.materials[build.NAME])
     node = build.measured_node(bpy.data.materials[build.NAME])
-    steps = ("rendering the BTF", "rendering the model of the BTF")
-    for name, rendered in _render_both(task["folder"], node, *steps).items():
+    for name, rendered in _render_both(task["folder"], node).items():
         report[f"{name}_seconds"] = rendered["seconds"]
     return report
 
@@ -74,11 +68,10 @@ def furnish():
     return subject
 
 
-def _render_both(folder, node, *steps):
+def _render_both(folder, node):
     """Writes reference.{exr,png} and model.{exr,png}; returns the reports."""
     reports = {}
-    for name, itself, step in zip(("reference", "model"), (True, False), steps, strict=True):
-        print_step(step)
+    for name, itself in (("reference", True), ("model", False)):
         node.velour.use_reference = itself
         reports[name] = build.render(folder, name)
     return reports

@@ -89,22 +89,13 @@ def _plane(size, material, location=(0, 0, 0), rotation=(0, 0, 0)):
 def _box(low, high, material):
     corners = [(x, y, z) for z in (low[2], high[2]) for y in (low[1], high[1]) for x in (low[0], high[0])]
     faces = [(0, 2, 3, 1), (4, 5, 7, 6), (0, 1, 5, 4), (2, 6, 7, 3), (0, 4, 6, 2), (1, 3, 7, 5)]
-    mesh = bpy.data.meshes.new("Box")
-    mesh.from_pydata(corners, [], faces)
-    mesh.materials.append(material)
-    build.link("Box", mesh)
-
-
-def _ball(location, radius, material):
-    bpy.ops.mesh.primitive_uv_sphere_add(radius=radius, location=location, segments=48, ring_count=24)
-    bpy.ops.object.shade_smooth()
-    bpy.context.object.data.materials.append(material)
+    build.polygons("Box", corners, faces, material)
 
 
 def _four_balls():
     looks = ({"Roughness": 0.4}, {"Metallic": 1.0, "Roughness": 0.3}, {"Roughness": 0.2}, {"Roughness": 0.9})
     for i, (color, look) in enumerate(zip(_COLORS, looks, strict=True)):
-        _ball(((i - 1.5) * 1.6, 0, 0.7), 0.7, _principled(f"Ball {i}", color, **look))
+        build.ball(((i - 1.5) * 1.6, 0, 0.7), 0.7, _principled(f"Ball {i}", color, **look))
 
 
 def _floor(size):
@@ -141,8 +132,8 @@ def _interior():
     _box((-1.6, -0.7, 0.7), (0.8, 0.7, 0.78), wood)
     for x, y in ((-1.5, -0.6), (0.65, -0.6), (-1.5, 0.55), (0.65, 0.55)):
         _box((x, y, 0), (x + 0.08, y + 0.08, 0.7), wood)
-    _ball((-0.9, 0, 0.98), 0.2, _principled("Steel", (0.8, 0.8, 0.8), Metallic=1.0, Roughness=0.25))
-    _ball((0.1, 0.2, 0.93), 0.15, _principled("Plastic", (0.1, 0.4, 0.2), Roughness=0.35))
+    build.ball((-0.9, 0, 0.98), 0.2, _principled("Steel", (0.8, 0.8, 0.8), Metallic=1.0, Roughness=0.25))
+    build.ball((0.1, 0.2, 0.93), 0.15, _principled("Plastic", (0.1, 0.4, 0.2), Roughness=0.35))
     build.world("forest", 3.0)
     build.camera((-3.4, -2.6, 1.8), (1.0, 0.6, 0.9), lens=24)
 
@@ -162,7 +153,7 @@ def _metals():
     _plane(30, _principled("Floor", (0.2, 0.2, 0.22), Roughness=0.25))
     for i in range(4):
         look = {"Metallic": 1.0, "Roughness": 0.15 + 0.15 * i}
-        _ball(((i - 1.5) * 1.6, 0, 0.7), 0.7, _principled(f"Metal {i}", _COLORS[i], **look))
+        build.ball(((i - 1.5) * 1.6, 0, 0.7), 0.7, _principled(f"Metal {i}", _COLORS[i], **look))
     build.world("city")
     build.camera((0, -7, 2.6), (0, 0, 0.7), lens=50)
 
@@ -179,7 +170,7 @@ def _corridor():
         ((-1.4, 12, 0), (1.4, 12.2, 2.5)),
     ):
         _box(low, high, wall)
-    _ball((0.4, 5, 0.5), 0.5, _principled("Ball", (0.7, 0.15, 0.1), Roughness=0.3))
+    build.ball((0.4, 5, 0.5), 0.5, _principled("Ball", (0.7, 0.15, 0.1), Roughness=0.3))
     build.world()
     build.lamp("AREA", 150, (3.5, 7.7, 2.2), (0, 7.7, 1), size=0.8)
     build.camera((0, 0.2, 1.5), (0, 8, 1.1), lens=28)
@@ -203,7 +194,7 @@ def _copper(clamp=0.0):
     _plane(8, _diffuse("Wall", (0.7, 0.7, 0.7)), (0, 2, 2), (math.pi / 2, 0, 0))
     copper = _principled("Copper", (0.95, 0.64, 0.54), Metallic=1.0, Roughness=0.12)
     _plane(1.6, copper, (-0.7, 0.9, 0.05), (0.1, 0.05, 0.3))
-    _ball((0.9, 0.7, 0.6), 0.6, copper)
+    build.ball((0.9, 0.7, 0.6), 0.6, copper)
     build.world(strength=0.2, color=(0.6, 0.7, 0.9))
     build.lamp("AREA", 60, (-1.5, -1.5, 2.6), (-0.5, 1, 0), size=0.15)
     build.camera((0, -5, 1.8), (0, 0.8, 0.8), lens=45)

@@ -70,26 +70,21 @@ def _ground():
     profile += [(8.0, 12.0)]
     points = [(x, y, z) for y, z in profile for x in (-30.0, 30.0)]
     faces = [(2 * i, 2 * i + 1, 2 * i + 3, 2 * i + 2) for i in range(len(profile) - 1)]
-    ground = _new_object("Ground", points, faces)
+    ground = _smooth_object("Ground", points, faces)
     material = build.material("Ground", Base_Color=(0.28, 0.27, 0.26), Roughness=0.55)
     ground.data.materials.append(material)
 
 
-def _new_object(name, points, faces):
-    mesh = bpy.data.meshes.new(name)
-    mesh.from_pydata(points, [], faces)
-    mesh.polygons.foreach_set("use_smooth", np.ones(len(mesh.polygons), bool))
-    mesh.update()
-    return build.link(name, mesh)
+def _smooth_object(name, points, faces):
+    obj = build.polygons(name, points, faces)
+    obj.data.polygons.foreach_set("use_smooth", np.ones(len(obj.data.polygons), bool))
+    obj.data.update()
+    return obj
 
 
 def _ball(place, radius):
-    x, y, z = place
-    bpy.ops.mesh.primitive_uv_sphere_add(
-        segments=128, ring_count=64, radius=radius, location=(x, y, z + radius)
-    )
-    bpy.ops.object.shade_smooth()
-    return bpy.context.object
+    """A ball that stands at a place of the floor."""
+    return build.ball((place[0], place[1], place[2] + radius), radius, segments=128)
 
 
 def _pedestal(place):
@@ -137,7 +132,7 @@ def _knot(place, size, turn=20):
         for i in range(along)
         for j in range(around)
     ]
-    obj = _new_object("Knot", (points - [0, 0, points[:, 2].min()]).tolist(), faces)
+    obj = _smooth_object("Knot", (points - [0, 0, points[:, 2].min()]).tolist(), faces)
     layer = obj.data.uv_layers.new(name="UVMap")
     corners = [((i + di) / along, (j + dj) / around) for i in range(along) for j in range(around)
                for di, dj in ((0, 0), (0, 1), (1, 1), (1, 0))]  # fmt: skip

@@ -1,24 +1,16 @@
 """In a window of Blender: a net of its BTF in real time and by the ray tracer, and the error."""
 
-import json
-import math
-
 import numpy as np
-from support import realtime, viewport, window
+from support import realtime, viewport
 from window_realtime_outline import _plane_of_its_btf
 
 
-def start(folder):
-    """Called by the harness when the window exists."""
-    window.run(folder, (net,), seconds=math.inf, viewport=True)
-
-
-def net(folder):
+def steps(folder, _task):
     realtime.sky(folder)
     _plane_of_its_btf(folder, "NET")
     viewport.show_real_time()
-    yield from viewport.real_time_finished()
+    yield from viewport.real_time_finished(patience=600)
     drawn = realtime.pixels()
     traced = realtime.traced(realtime.equirectangular(realtime.mixture()), samples=2048)
     np.save(folder / "net.npy", np.stack((traced.mean, drawn)))
-    (folder / "result.json").write_text(json.dumps({"relative_l2": float(realtime.error(drawn, traced))}))
+    return {"relative_l2": float(realtime.error(drawn, traced))}

@@ -78,6 +78,25 @@ def material(name="Material", shader="Principled BSDF", **inputs):
     return found
 
 
+def polygons(name, points, faces, own_material=None):
+    """A new object of points and faces."""
+    mesh = bpy.data.meshes.new(name)
+    mesh.from_pydata(points, [], faces)
+    if own_material:
+        mesh.materials.append(own_material)
+    return link(name, mesh)
+
+
+def ball(center, radius, own_material=None, segments=48):
+    bpy.ops.mesh.primitive_uv_sphere_add(
+        radius=radius, location=center, segments=segments, ring_count=segments // 2
+    )
+    bpy.ops.object.shade_smooth()
+    if own_material:
+        bpy.context.object.data.materials.append(own_material)
+    return bpy.context.object
+
+
 def monkey(size=2.0, turned=(0, 0), levels=3):
     """Suzanne, smooth. `turned`: degrees about x and about z."""
     rotation = (math.radians(turned[0]), 0, math.radians(turned[1]))
@@ -157,16 +176,15 @@ class _ReportHandler(logging.Handler):
         super().close()
 
 
-def capture_and_compress(folder, capture, megabytes, captured=lambda: None):
+def capture_and_compress(folder, capture, megabytes):
     """Captures the active object, a tile, as a BTF and makes the material NAME of it.
 
-    `capture`: arguments of the operator; `megabytes`: 0: the library chooses. `captured` is called before the
-    fit. Returns seconds and bytes."""
+    `capture`: arguments of the operator; `megabytes`: 0: the library chooses. Returns seconds and bytes.
+    """
     btf = os.path.join(folder, f"{NAME}.btf")
     start = time.perf_counter()
     bpy.ops.velour.capture_btf(directory=btf, sides="ONE", **capture)
     middle = time.perf_counter()
-    captured()
     bpy.ops.velour.compress_btf(filepath=btf, megabytes=megabytes)
     return {
         "capture_seconds": middle - start,

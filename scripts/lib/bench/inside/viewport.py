@@ -1,20 +1,20 @@
 """Measures in Blender's window the seconds until the rendered viewport shows a change.
 
-task.json names the scene, and how often the viewport is switched off and on; the results go to result.json.
+The task names the scene, and how often the viewport is switched off and on.
 """
 
-import json
 import math
-import sys
 import time
 from pathlib import Path
 
 import bpy
+from guide import chapters
+from mathutils import Euler, Quaternion
 from support import viewport, window
 
-sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
-
-from bench.inside import viewport_scenes
+from ..project import ROOT
+from . import large_scenes
+from . import scene as build
 
 SAMPLES = 8
 PICTURE = (1280, 720)  # size in real time
@@ -22,6 +22,109 @@ REPEATS = 5  # repetitions of each change; the median counts
 DRAG = 5.0  # seconds of a continuous change
 _TURN = 0.005
 _PATIENCE = 120
+
+
+PAINT = ROOT / "blend-tests/scenes/data/paint.velour"
+OBJECTS, FACES = 500, 5000  # 10,000 triangles each
+INSTANCES = 100_000
+
+
+def monkey():
+    """One smooth object in a measured paint under an environment map and a light."""
+    chapters.add_world()
+    with viewport.override():
+        subject = chapters.add_monkey()
+        bpy.ops.velour.load_material(filepath=str(PAINT), pack=False)
+    subject.name = "Subject"
+
+
+def objects():
+    """Five million triangles in 500 objects, each with a mesh of its own."""
+    with viewport.override():
+        first = _grid(FACES, 0.9)
+    first.data.materials.append(_gray())
+    side = math.ceil(math.sqrt(OBJECTS))
+    for i in range(1, OBJECTS):
+        build.link("Object", first.data.copy(), (i % side - side / 2, i // side - side / 2, 0))
+    first.location, first.name = (-side / 2, -side / 2, 0), "Subject"
+
+
+def instances():
+    """100,000 instances of a sphere of 992 triangles, at the vertices of a plane."""
+    with viewport.override():
+        sphere, _ = large_scenes.instances(INSTANCES)
+    sphere.data.materials.append(_gray())
+    sphere.name = "Subject"
+
+
+SCENES = {"monkey": monkey, "objects": objects, "instances": instances}
+
+
+def build_scene(name):
+    """In Blender's startup file, without its cube."""
+    bpy.data.objects.remove(bpy.data.objects["Cube"])
+    SCENES[name]()
+    view = viewport.space().region_3d
+    view.view_rotation, view.view_distance = Euler((0.9, 0, 0.6)).to_quaternion(), 14
+
+
+def turn_view(_time):
+    view = viewport.space().region_3d
+    view.view_rotation = Quaternion((0, 0, 1), 0.05) @ view.view_rotation
+
+
+def change_lamp(time):
+    bpy.data.lights["Light"].energy = 800 + 100 * time
+
+
+def change_world(time):
+    background = bpy.context.scene.world.node_tree.nodes["Background"]
+    background.inputs["Strength"].default_value = 0.8 + 0.1 * time
+
+
+def change_material(time):
+    """Changes the color, or the exposure of a measured material."""
+    material = bpy.data.objects["Subject"].active_material
+    if material.name == "Gray":
+        node = next(node for node in material.node_tree.nodes if node.type == "BSDF_DIFFUSE")
+        node.inputs["Color"].default_value = (0.5, 0.1 * (time % 9), 0.3, 1)
+    else:
+        group = next(node for node in material.node_tree.nodes if node.type == "GROUP")
+        group.inputs["Exposure"].default_value = 0.1 * (time + 1)
+
+
+def move_object(time):
+    bpy.data.objects["Subject"].location.z += 0.01 * (-1) ** time
+
+
+def edit_mesh(_time):
+    mesh = bpy.data.objects["Subject"].data
+    mesh.vertices[0].co.z += 0.01
+    mesh.update()
+
+
+CHANGES = {
+    "the view turns": turn_view,
+    "strength of a lamp": change_lamp,
+    "strength of the world": change_world,
+    "a material": change_material,
+    "an object moves": move_object,
+    "a mesh is edited": edit_mesh,
+}
+
+
+def _grid(faces, size):
+    side = round(math.sqrt(faces))
+    bpy.ops.mesh.primitive_grid_add(x_subdivisions=side, y_subdivisions=side, size=size)
+    grid = bpy.context.object
+    for vertex in grid.data.vertices:
+        vertex.co.z = 0.1 * math.sin(20 * vertex.co.x) * math.sin(20 * vertex.co.y)
+    bpy.ops.object.shade_smooth()
+    return grid
+
+
+def _gray():
+    return build.material("Gray", "BsdfDiffuse")
 
 
 class Stopwatch:
@@ -63,21 +166,10 @@ class Stopwatch:
         return {"seen": self.seen, "export": self.export, "held": self.held}
 
 
-def start(folder):
-    """Called by the harness when the window exists."""
-    task = json.loads((folder / "task.json").read_text())
-
-    def steps(folder):
-        result = {"blender": bpy.app.version_string, "samples": SAMPLES}
-        yield from _measure(folder, task, result)
-        (folder / "result.json").write_text(json.dumps(result))
-
-    window.run(folder, (steps,), seconds=math.inf, viewport=True)
-
-
-def _measure(folder, task, result):
+def steps(folder, task):
+    result = {"blender": bpy.app.version_string, "samples": SAMPLES}
     bpy.context.scene.render.engine = "VELOUR"
-    viewport_scenes.start(task["scene"])
+    build_scene(task["scene"])
     yield 1.0
     watch = Stopwatch()
     viewport.show(samples=SAMPLES)
@@ -85,14 +177,15 @@ def _measure(folder, task, result):
     yield from viewport.finished()
     result["changes"] = {"switched on": [watch.row()]}
     result["size"] = [viewport.region().width, viewport.region().height]
-    for name, change in viewport_scenes.CHANGES.items():
+    for name, change in CHANGES.items():
         result["changes"][name] = yield from _repeated(watch, change)
-    result["dragged"] = yield from _dragged(viewport_scenes.move_object)
+    result["dragged"] = yield from _dragged(move_object)
     window.screenshot(folder, "viewport")
     result["mib"] = _resident_mib()
     if task["restarts"]:
         result["restarts"] = yield from _restarted(watch, task["restarts"])
         result["real_time"] = yield from _real_time()
+    return result
 
 
 def _repeated(watch, change):

@@ -9,13 +9,15 @@ import json
 import os
 import re
 import subprocess
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 
-from .. import blender, page, provenance
+from .. import blender
+from ..project import ROOT
 from ..run import Run
-from ..velour_cli import ROOT
 
+CSV = "blender_parity.csv"  # of the honored features; others stand on the page
 SETTINGS = {"last": (False, False), "renders": (3, 1)}  # renders: of each engine, in turn; the fastest counts
+PAGES = {"blender_parity.md": "blender_parity", "blender_export.md": "blender_export"}
 _ROWS = ROOT / "build/blend-tests/parity"
 _SCENES = {
     "one mesh of 5 million triangles": {"kind": "grid", "count": 5_000_000},
@@ -34,8 +36,13 @@ def measure(run: Run) -> dict:
     lines = [line for file in sorted(_ROWS.glob("*/rows.jsonl")) for line in file.open(encoding="utf-8")]
     if not lines:
         raise FileNotFoundError(f"there is no row in {_ROWS}; run without --last.")
-    export = [_export(run, name, task) for name, task in _SCENES.items()]
-    return {"conditions": run.conditions(seed=0), "parity": list(map(json.loads, lines)), "export": export}
+    features = list(map(json.loads, lines))
+    return {
+        "conditions": run.conditions(seed=0, blender=features[0]["blender"]),
+        "rows": list(_groups(row for row in features if row["verdict"] == "honored")),
+        "others": [row for row in features if row["verdict"] != "honored"],
+        "export": [_export(run, name, task) for name, task in _SCENES.items()],
+    }
 
 
 def _export(run: Run, name: str, task: dict) -> dict:
@@ -52,52 +59,31 @@ def _export(run: Run, name: str, task: dict) -> dict:
     return {"scene": name, "hierarchies": min(float(tracing) for _, _, tracing in ours), **numbers}
 
 
-def write(run: Run, found: dict) -> None:
-    rows = found["parity"]
-    sentence = f"{provenance.sentence(found['conditions'])} Blender and Cycles {rows[0]['blender']}."
-    honored = [row for row in rows if row["verdict"] == "honored"]
-    groups = list(_groups(honored))
-    conditions = found["conditions"] | {"blender": rows[0]["blender"]}
-    page.write_rows(run.output / "blender_parity.csv", groups, conditions)
-    agreeing = page.table(
-        (group for group in groups if group["percent"] >= _NOTABLE),
-        "honored | scenes | largest block difference, % | in standard errors",
-        "{honored} | {scenes} | {percent:.2f} | {errors:s}",
-    )
-    others = page.table(
-        (row | {"errors": _errors([row])} for row in rows if row["verdict"] != "honored"),
-        "feature | verdict | largest block difference, % | in standard errors",
-        "{feature} | {verdict} | {percent:.2f} | {errors:s}",
-    )
-    parity = f"""Honored: {len(honored)} scenes of {len(groups)} features ([CSV](blender_parity.csv)), at most
-{_errors(honored)} standard errors apart. Blocks that noise lets differ by {_NOTABLE} % or more:
-
-{agreeing}
-All others:
-
-{others}"""
-    export = page.table(
-        found["export"],
-        "scene | export, s | Cycles' synchronisation, s | ratio | hierarchies for tracing, s | MiB",
-        "{scene} | {seconds:.2f} | {cycles:.2f} | {ratio:.2f} | {hierarchies:.2f} | {mib}",
-    )
-    for name, text in (("parity", parity), ("export", export)):
-        part = {name: f"\n{sentence}\n\n{text}\n"}
-        page.write_parts(run.output, f"blender_{name}.md", "blender_support", **part)
+def values(found: dict) -> dict:
+    groups = found["rows"]
+    return {
+        "scenes": sum(group["scenes"] for group in groups),
+        "features": len(groups),
+        "apart": max(group["errors"] for group in groups if group["errors"] is not None),
+        "notable": _NOTABLE,
+        "groups": [group for group in groups if group["percent"] >= _NOTABLE],
+        "others": [row | {"errors": _shown(row["z"])} for row in found["others"]],
+        "export": found["export"],
+    }
 
 
-def _groups(rows: list[dict]) -> Iterator[dict]:
+def _groups(rows: Iterable[dict]) -> Iterator[dict]:
     """A row per group of features, which is named before the colon; the largest differences of the group."""
     groups: dict[str, list[dict]] = {}
     for row in rows:
         groups.setdefault(row["feature"].partition(": ")[0], []).append(row)
     for group, own in groups.items():
+        errors = [row["z"] for row in own if row["z"] is not None]  # None: pictures without noise
         features = "; ".join(filter(None, (row["feature"].partition(": ")[2] for row in own)))
-        numbers = {"percent": max(row["percent"] for row in own), "errors": _errors(own)}
+        numbers = {"percent": max(row["percent"] for row in own), "errors": max(errors, default=None)}
         yield {"honored": group, "scenes": len(own), **numbers, "features": features}
 
 
-def _errors(rows: list[dict]) -> str | None:
-    """The largest difference in standard errors; None for pictures without noise."""
-    found = [row["z"] for row in rows if row["z"] is not None]
-    return f"{max(found):.{0 if max(found) >= 100 else 1}f}" if found else None
+def _shown(errors: float | None) -> str | None:
+    """A difference in standard errors; None for pictures without noise."""
+    return None if errors is None else f"{errors:.{0 if errors >= 100 else 1}f}"

@@ -3,32 +3,21 @@
 from __future__ import annotations
 
 import functools
-import subprocess
 from collections.abc import Iterator, Mapping
 from pathlib import Path
 
 import numpy as np
-from velour.native import images
 from velour.native.table import STRATEGIES
 
-from .. import charts, mitsuba, page
-from ..curve import Curve, Reading, ratio, shown
-from ..reference import Reference, points
-from ..run import BUILT, Run
-from ..scenes import (
-    STUDIO,
-    SUN,
-    SUN_DIAMETER,
-    SUN_SHARE,
-    SUNSET,
-    Scene,
-    Subject,
-    made,
-    subjects,
-    write_sunny_sky,
-)
+from .. import charts, mitsuba
+from ..page import judged
+from ..project import BUILT
+from ..reference import Curve, Reading, Reference, points, ratio, shown
+from ..run import Run, words_of
+from ..scenes import STUDIO, SUNSET, Scene, Subject, subjects, write_sunny_sky
 
 CSV = "chart/chart.csv"
+PAGES = {"chart/README.md": "chart"}
 SETTINGS = {
     "size": ((320, 240), (48, 36)),
     "worlds": ((STUDIO, SUNSET), (SUNSET,)),
@@ -58,13 +47,15 @@ _EQUAL_SAMPLES = {
     ("blue-metallic-paint", STUDIO): 0.5,
     ("krylon-blue", STUDIO): 0.5,
 }
+# Curves with a column in the table of equal errors; the pictures and the CSV have all.
+_SHOWN = ("uniform", "light", "mis", "mis-ggx", "product", "mis-dissertation", "mis, random")
 _MOST_GGX_ERROR = 0.2  # relative L2 above which SRBF lobes must be clearly faster
 
 
 def measure(run: Run) -> dict:
     shown_ = subjects(run)
     scenes = [(s, world, s.scene(world, run.data)) for s in shown_ for world in run.settings.worlds]
-    sky, bunny = made(run.kept / "sunny.exr", write_sunny_sky), shown_[0]
+    sky, bunny = run.made("sunny.exr", write_sunny_sky), shown_[0]
     scenes.append((bunny, SKY, Scene(f"{bunny.name}, {SKY}", bunny.mesh, "y", sky, bunny.model)))
     for _ in scenes:
         for name in _curves(run):
@@ -81,7 +72,6 @@ def measure(run: Run) -> dict:
         "rows": rows,
         "scenes": found,
         "mitsuba": mitsuba.compare(run),
-        "sun": _sun_lobes(run, scenes[-1][2]),
     }
 
 
@@ -119,38 +109,8 @@ def _bound(run: Run, scene: Scene) -> dict | None:
     f cos times radiance at some hits; None if it is not built."""
     options = {"mesh": scene.mesh, "material": scene.material, "world": scene.world}
     options |= {"size": "{}x{}".format(*run.settings.size), "hits": run.settings.bound_hits, "seed": run.seed}
-    words = [word for name, value in options.items() for word in (f"--{name}", value)]
-    found = run.program(f"{scene.name}, bound", BUILT / "bench/product_bound", *words)
+    found = run.program(f"{scene.name}, bound", BUILT / "bench/product_bound", *words_of(options))
     return found and found["variance"]
-
-
-def _sun_lobes(run: Run, scene: Scene) -> dict:
-    """What product sampling keeps of the sun, read from the mixture that a small render caches: lobes within
-    a diameter of its center, at most two diameters wide. Their number, their share of the mixture's
-    energy, and the diameter of the disk with the same mean cosine, in degrees, as a mean by energy."""
-    folder = run.kept / "sun"
-    folder.mkdir(exist_ok=True)
-    run.render(scene, 8, size=(16, 12), strategy="product", cache=str(folder))
-    mixture = max(folder.glob("sky-*.exr"), key=lambda path: path.stat().st_mtime)
-
-    def part(name: str) -> np.ndarray:
-        alone = mixture.with_name(f"part-{name}.exr")
-        subprocess.run(["oiiotool", mixture, "--subimage", f"lobes.{name}", "-o", alone], check=True)
-        return images.read(alone)
-
-    center, color = part("center").reshape(-1, 3), part("coefficient").reshape(-1, 3)
-    bandwidth = part("bandwidth").ravel()
-    # The integral of exp(lambda (t - 1)) over the sphere.
-    energy = color @ [0.2126, 0.7152, 0.0722] * 2 * np.pi * -np.expm1(-2 * bandwidth) / bandwidth
-    # The mean cosine of a disk of radius a is 1 - a^2 / 4, that of a lobe 1 - 1 / lambda.
-    diameter = 4 / np.sqrt(bandwidth)
-    kept = (center @ SUN > np.cos(SUN_DIAMETER)) & (diameter <= 2 * SUN_DIAMETER)
-    mean = np.degrees(np.average(diameter[kept], weights=energy[kept])) if kept.any() else 0.0
-    return {
-        "count": int(kept.sum()),
-        "energy": float(energy[kept].sum() / energy.sum()),
-        "diameter": float(mean),
-    }
 
 
 class Result:
@@ -175,10 +135,6 @@ class Result:
         return found
 
     @property
-    def level_seconds(self) -> float:
-        return self.means(DEFAULT)[self.level_spp][0]
-
-    @property
     def level(self) -> float:
         """relmse of the default strategy at `level_spp` samples."""
         return self.means(DEFAULT)[self.level_spp][1]
@@ -186,22 +142,19 @@ class Result:
     def seconds_to_level(self, name: str) -> Reading | None:
         return self.curves[name].seconds_at(self.level)
 
-    def error_at_equal_time(self, name: str) -> Reading | None:
-        return self.curves[name].error_at(self.level_seconds)
-
     def time_ratio(self, name: str, other: str) -> Reading | None:
         """Ratio of `name` to `other` in seconds to the level."""
-        return ratio(self.seconds_to_level(name), self.seconds_to_level(other))
+        return ratio(*map(self.seconds_to_level, (name, other)))
 
     def error_ratio(self, name: str, other: str) -> Reading | None:
         """Ratio of `name` to `other` in relmse at equal time."""
-        return ratio(self.error_at_equal_time(name), self.error_at_equal_time(other))
+        seconds = self.means(DEFAULT)[self.level_spp][0]
+        return ratio(*(self.curves[curve].error_at(seconds) for curve in (name, other)))
 
     def gain(self, name: str, other: str, spp: int) -> tuple[float, float]:
         """Ratio of `name` to `other` in relmse at equal samples, of means over seeds, and its standard error,
         estimated from the seeds."""
-        both = (np.array([p["relmse"] for p in self.points[n] if p["spp"] == spp]) for n in (name, other))
-        a, b = both
+        a, b = (np.array([p["relmse"] for p in self.points[n] if p["spp"] == spp]) for n in (name, other))
         relative = [x.var(ddof=1) / len(x) / x.mean() ** 2 if len(x) > 1 else np.nan for x in (a, b)]
         value = float(a.mean() / b.mean())
         return value, abs(value) * sum(relative) ** 0.5
@@ -241,165 +194,105 @@ def peers_of(found: Mapping) -> list[Mapping]:
     return materials
 
 
-def verdicts(results: list[Result], sun: Mapping, peers: list[Mapping], spp: int) -> Iterator[dict]:
+def verdicts(results: list[Result], peers: list[Mapping], spp: int) -> Iterator[dict]:
     """Targets and whether they are met. `spp`: the number of samples at which equal samples are compared."""
-
-    def judged(target: str, where: str, measured: str, met: bool | None) -> dict:
-        return {"target": target, "where": where, "measured": measured, "met": met}
-
-    def limit(target: str, result: Result, found: Reading | None, most: float) -> dict:
-        return judged(target, result.about["name"], shown(found), found and found.value <= most)
-
     figures = [result for result in results if result.about["world"] != SKY]
     for result in figures:
-        most = _EQUAL_SAMPLES.get((result.about["material"], result.about["world"]))
-        if most is not None:
-            gain, target = (
-                result.gain("product", DEFAULT, spp),
-                f"relmse of `product` / `mis` at {spp} spp at most {most}",
-            )
-            yield judged(target, result.about["name"], _gain(gain), gain[0] <= most)
-    for result in figures:
-        target = "relmse of `product` / `mis` at equal time at most 1.2"
-        yield limit(target, result, result.error_ratio("product", DEFAULT), 1.2)
+        name, material = result.about["name"], result.about["material"]
+        if most := _EQUAL_SAMPLES.get((material, result.about["world"])):
+            gain = result.gain("product", DEFAULT, spp)
+            target = f"relmse of `product` / `mis` at {spp} spp at most {most}"
+            yield judged(target, name, _gain(gain), gain[0] <= most)
+        part = 100 if material == "nickel" else 5
+        is_hard = result.about["ggx"] > _MOST_GGX_ERROR
+        most, words = (2 / 3, "2/3 of") if is_hard else (1.0, "those of")
+        to_equal, to_time = "seconds of `mis` to equal error at most", "at equal time at most"
+        for target, found, bound in (
+            (f"relmse of `product` / `mis` {to_time} 1.2", result.error_ratio("product", DEFAULT), 1.2),
+            (f"{to_equal} 1/{part} of `uniform`", result.time_ratio(DEFAULT, "uniform"), 1 / part),
+            (f"{to_equal} {words} `mis-ggx`", result.time_ratio(DEFAULT, "mis-ggx"), most),
+        ):
+            yield judged(target, name, shown(found), found and found.value <= bound)
     readings = [result.error_ratio("product", DEFAULT) for result in figures]
     better = sum(reading is not None and reading.value < 1 for reading in readings)
     target = "`product` better than `mis` at equal time on at least four of six"
     yield judged(target, "all", f"{better} of {len(readings)}", better >= 4)
-    for result in figures:
-        part = 100 if result.about["material"] == "nickel" else 5
-        target = f"seconds of `mis` to equal error at most 1/{part} of `uniform`"
-        yield limit(target, result, result.time_ratio(DEFAULT, "uniform"), 1 / part)
-    for result in figures:
-        most, words = (2 / 3, "2/3 of") if result.about["ggx"] > _MOST_GGX_ERROR else (1.0, "those of")
-        target = f"seconds of `mis` to equal error at most {words} `mis-ggx`"
-        yield limit(target, result, result.time_ratio(DEFAULT, "mis-ggx"), most)
-    target = "the sun's lobes keep its energy within 1 % of all, no wider than twice the sun"
-    measured = f"{100 * sun['energy']:.1f} %, {sun['diameter']:.2f} degrees"
-    yield judged(target, SKY, measured, abs(sun["energy"] - SUN_SHARE) <= 0.01)
     for peer in peers:
         target, found = "seconds of Mitsuba to equal error over ours above 1", peer["speed_up"]
         yield judged(target, peer["material"], shown(found), found and found.value > 1)
-    for peer in peers:
-        target = "converged spheres of Mitsuba and ours differ by at most 1 %"
-        yield judged(target, peer["material"], f"{100 * peer['relative']:.2f} %", peer["relative"] <= 0.01)
+        target, apart = "converged spheres of Mitsuba and ours differ by at most 1 %", peer["relative"]
+        yield judged(target, peer["material"], f"{100 * apart:.2f} %", apart <= 0.01)
 
 
-def write(run: Run, found: dict) -> None:
-    results, conditions, sun = results_of(found), found["conditions"], found["sun"]
-    for result in results:
-        _draw(run.output / "chart" / _picture(result), result)
-    peers = [] if isinstance(found["mitsuba"], str) else peers_of(found["mitsuba"])
+def values(found: dict) -> dict:
+    results, conditions = results_of(found), found["conditions"]
+    absent = found["mitsuba"] if isinstance(found["mitsuba"], str) else ""
+    peers = [] if absent else peers_of(found["mitsuba"])
     equal_spp, most_spp = int(conditions["equal_spp"]), max(results[-1].means("product"))
-    targets = list(verdicts(results, sun, peers, equal_spp))
-    for target in targets:
-        target["word"] = page.verdict(target["met"])
+    targets = list(verdicts(results, peers, equal_spp))
     bounded = all(result.about["bound"] for result in results)
-    values = {
-        "scenes": "\n".join(map(_scene_text, results)),
-        "targets": page.table(
-            (target for target in targets if not target["met"]),
-            "target | where | measured | ",
-            "{target} | {where} | {measured} | {word}",
-        ),
+    curves = [name for name in _SHOWN if name in results[0].points]
+    every = sorted({p["spp"] for p in results[0].points["product"]})[-2:]
+    bound_titles = " | exact / `mis`, variance | `product` / `mis`, variance | share of the gain"
+    return {
+        "scenes": [result.about | {"picture": _picture(result)} for result in results],
+        "missed": [target for target in targets if not target["met"]],
         "met": sum(target["met"] is True for target in targets),
         "judged": len(targets),
-        "equal_error": _equal_error(results),
-        "equal_samples": _equal_samples(results, equal_spp, bounded),
-        "bound": _BOUND.format(conditions["bound_hits"]) if bounded else _NO_BOUND,
-        "sun": sun,
-        "sun_share": 100 * sun["energy"],
+        "curves": " | ".join(curves),
+        "equal_error": [_equal_error(result, curves) for result in results],
+        "bounded": [{}] if bounded else [],
+        "unbounded": [] if bounded else [{}],
+        "every": " | ".join(f"{spp} spp" for spp in every)
+        + " | `mis` / `mis-dissertation`"
+        + bound_titles * bounded,
+        "equal_samples": [_equal_samples(result, every, equal_spp, bounded) for result in results],
         "sun_gain": _gain(results[-1].gain("product", DEFAULT, most_spp)),
         "most_spp": most_spp,
-        "mitsuba": _mitsuba(found["mitsuba"], peers, conditions) if peers else f"{found['mitsuba']}\n",
+        "absent": [{"why": absent}] if absent else [],
+        "present": [] if absent else [_mitsuba(found["mitsuba"], peers, conditions)],
     }
-    page.write(run.output, "chart/README.md", page.text("chart", conditions | values))
 
 
-_NO_BOUND = "The bound is left out: the program `product_bound` is not built."
-_BOUND = """Variance: of one light direction at {} hits, over the squared mean; exact:
-proportional to f cos times radiance on the environment's pixels. Edges, curvature and visibility add noise,
-so the relmse of a pixel gains less."""
+def draw(output: Path, found: dict) -> None:
+    for result in results_of(found):
+        means = {name: list(result.means(name).values()) for name in result.points}
+        panels = [
+            (error, {name: [(point[0], point[k]) for point in points] for name, points in means.items()})
+            for k, error in ((1, "relmse"), (2, "rmse"))
+        ]
+        title = f"{result.about['name']}; dotted: {DEFAULT} at {result.level_spp} samples a pixel"
+        axes, path = ("seconds", "error against the reference"), output / "chart" / _picture(result)
+        charts.curves(path, panels, *axes, levels={"relmse": result.level}, shared=False, title=title)
 
 
 def _picture(result: Result) -> str:
     return result.about["name"].replace(", ", "-").replace(" ", "_").lower() + ".png"
 
 
-def _scene_text(result: Result) -> str:
-    noise = f"relmse of the reference: {result.about['noise']:.1e}."
-    return f"![{result.about['name']}]({_picture(result)})\n\n{noise}\n"
-
-
-def _draw(path: Path, result: Result) -> None:
-    means = {name: list(result.means(name).values()) for name in result.points}
-    panels = [
-        (error, {name: [(point[0], point[k]) for point in points] for name, points in means.items()})
-        for k, error in ((1, "relmse"), (2, "rmse"))
-    ]
-    title = f"{result.about['name']}; dotted: {DEFAULT} at {result.level_spp} samples a pixel"
-    axes = ("seconds", "error against the reference")
-    charts.curves(path, panels, *axes, levels={"relmse": result.level}, shared=False, title=title)
-
-
-# Curves with a column in the table of equal errors; the pictures and the CSV have all.
-_SHOWN = ("uniform", "light", "mis", "mis-ggx", "product", "mis-dissertation", "mis, random")
-
-
 def _gain(gain: tuple[float, float]) -> str:
     return f"{gain[0]:.2f} ± {gain[1]:.2f}"
 
 
-def _equal_error(results: list[Result]) -> str:
-    """A table with a column per shown curve."""
-    names, rows = [name for name in _SHOWN if name in results[0].points], []
-    for result in results:
-        cells = [*map(result.seconds_to_level, names), result.time_ratio("uniform", DEFAULT)]
-        texts = " | ".join(map(shown, cells))
-        rows.append({"name": result.about["name"], "level": result.level, "cells": texts})
-    titles = f"scene | relmse | {' | '.join(names)} | `uniform` / `mis`"
-    return page.table(rows, titles, "{name} | {level:.2e} | {cells}")
+def _equal_error(result: Result, curves: list[str]) -> dict:
+    cells = [*map(result.seconds_to_level, curves), result.time_ratio("uniform", DEFAULT)]
+    return {"name": result.about["name"], "level": result.level, "cells": " | ".join(map(shown, cells))}
 
 
-def _equal_samples(results: list[Result], equal_spp: int, bounded: bool) -> str:
-    every, rows = sorted({p["spp"] for p in results[0].points["product"]})[-2:], []
-    for result in results:
-        gains = [_gain(result.gain("product", DEFAULT, spp)) for spp in every]
-        gained = result.gain(DEFAULT, DISSERTATION, equal_spp)[0]
-        rows.append({"name": result.about["name"], "gains": " | ".join(gains), "gained": gained})
-        if bounded:
-            bound = result.about["bound"]
-            shares = {name: bound[name] / bound["mis"] for name in ("exact", "product")}
-            rows[-1] |= shares | {"share": 100 * result.share_of_bound}
-    titles, cells = " | ".join(f"{spp} spp" for spp in every), "{name} | {gains} | {gained:.2f}"
-    titles = f"scene | {titles} | `mis` / `mis-dissertation`"
+def _equal_samples(result: Result, every: list[int], equal_spp: int, bounded: bool) -> dict:
+    cells = [_gain(result.gain("product", DEFAULT, spp)) for spp in every]
+    cells.append(f"{result.gain(DEFAULT, DISSERTATION, equal_spp)[0]:.2f}")
     if bounded:
-        titles += " | exact / `mis`, variance | `product` / `mis`, variance | share of the gain"
-        cells += " | {exact:.3f} | {product:.3f} | {share:.0f} %"
-    return page.table(rows, titles, cells)
+        bound = result.about["bound"]
+        cells += [f"{bound[name] / bound['mis']:.3f}" for name in ("exact", "product")]
+        cells.append(f"{100 * result.share_of_bound:.0f} %")
+    return {"name": result.about["name"], "cells": " | ".join(cells)}
 
 
-def _mitsuba(found: Mapping, peers: list[Mapping], conditions: Mapping) -> str:
-    rows = [
-        {"material": p["material"], "level": p["level"], "speed_up": shown(p["speed_up"])}
-        | {name: shown(reading) for name, reading in p["seconds"].items()}
-        for p in peers
-    ]
-    titles = " | ".join(f"`{name}`" for name in mitsuba.STRATEGIES)
-    cells = " | ".join(f"{{{name}}}" for name in mitsuba.STRATEGIES)
-    values = {
-        "version": found["version"],
-        "variant": found["variant"],
-        "most_rays": conditions["peer_rays"].split(", ")[-1],
-        "times": page.table(
-            rows,
-            f"material | relmse | Mitsuba | {titles} | Mitsuba / fastest",
-            f"{{material}} | {{level:.2e}} | {{mitsuba}} | {cells} | {{speed_up}}",
-        ),
-        "differences": page.table(
-            peers,
-            "material | means | difference | of which noise",
-            "{material} | {means:.4f} | {relative:.4f} | {noise:.4f}",
-        ),
-    }
-    return page.text("chart_mitsuba", conditions | values)
+def _mitsuba(found: Mapping, peers: list[Mapping], conditions: Mapping) -> dict:
+    for peer in peers:
+        peer["cells"] = " | ".join(map(shown, [*peer["seconds"].values(), peer["speed_up"]]))
+    strategies = " | ".join(f"`{name}`" for name in mitsuba.STRATEGIES)
+    most = conditions["peer_rays"].split(", ")[-1]
+    own = {"most_rays": most, "peers": peers, "strategies": strategies}
+    return {"version": found["version"], "variant": found["variant"], **own}

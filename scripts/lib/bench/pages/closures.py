@@ -7,10 +7,9 @@ from pathlib import Path
 import numpy as np
 from velour.native import images
 
-from .. import blender, charts, data_files, flip_metric, page
+from .. import blender, charts, flip_metric
 from ..run import Run, read_rgb
 from ..scenes import STUDIO, SUNSET
-from .perceptual import flips
 
 CSV = "closures.csv"
 SETTINGS = {
@@ -19,55 +18,46 @@ SETTINGS = {
     "size": (128, 48),
     "samples": (256, 16),
 }
+PAGES = {"closures.md": "closures"}
 SHAPES, KINDS = ("sphere", "Suzanne"), ("measurement", "network", "principled")
 _BLOCK = 4  # pixels, over which noise averages out
 
 
 def measure(run: Run) -> dict:
     rows, sheet = [], []
-    for name, measurement in data_files.materials(run.data)[: run.settings.materials]:
+    for name, measurement in run.materials():
         model, _report = run.fit(measurement, "parametric", tolerance=0.02)
-        folder = _pictures(run, name, measurement, model)
-        rows += _rows(run, name, folder)
-        sheet += [_shown(run, name, folder, shape) for shape in SHAPES]
+        stem = _pictures(run, name, measurement, model)
+        for world in run.settings.worlds:
+            for shape in SHAPES:
+                reference, *others, where = _read(stem, f"{run.world(world).name}-{shape}")
+                row = {"material": name, "world": world, "shape": shape}
+                for kind, picture in zip(KINDS[1:], others, strict=True):
+                    found = _differences(reference, picture, where)
+                    row |= {f"{kind}_{key}": value for key, value in found.items()}
+                rows.append(row)
+                if world == run.settings.worlds[0]:
+                    scale, pictures = flip_metric.exposure(reference, where), [reference, *others]
+                    shown = [charts.display(scale * picture) for picture in pictures]
+                    sheet.append([(f"{name}, {k}", p) for k, p in zip(KINDS, shown, strict=True)])
     charts.sheet(run.output / "images/closures.png", sheet, (1.6, 1.6))
     return {"conditions": run.conditions(), "rows": rows}
 
 
 def _pictures(run: Run, name: str, measurement: Path, model: Path) -> Path:
     """The folder of the pictures of a material, which an earlier run may have made."""
-    folder, own = run.kept / name, run.settings
-    done = folder / "done"
-    if not done.exists():
+    own, parameters = run.settings, {"model": model, "measurement": measurement, **vars(run.settings)}
+    folder = run.stem("closures", parameters)
+    task = {"model": str(model), "measurement": str(measurement), "folder": str(folder)}
+    task |= {"worlds": [str(run.world(world)) for world in own.worlds]}
+    task |= {"size": own.size, "samples": own.samples}
+
+    def make() -> dict:
         folder.mkdir(exist_ok=True)
-        worlds = [str(data_files.world(run.data, world)) for world in own.worlds]
-        task = {"model": str(model), "measurement": str(measurement), "worlds": worlds, "folder": str(folder)}
-        task |= {"size": own.size, "samples": own.samples}
-        blender.run("closures", task, folder / "blender.log", ("--addons", "velour"))
-        done.touch()
+        return blender.run("closures", task, folder / "blender.log", ("--addons", "velour"))
+
+    run.keep(f"pictures of {name}", "closures", parameters, make)
     return folder
-
-
-def _rows(run: Run, name: str, folder: Path) -> list[dict]:
-    rows = []
-    for world in run.settings.worlds:
-        for shape in SHAPES:
-            stem = f"{data_files.world(run.data, world).name}-{shape}"
-            reference, *others, where = _read(folder, stem)
-            row = {"material": name, "world": world, "shape": shape}
-            for kind, picture in zip(KINDS[1:], others, strict=True):
-                row |= {
-                    f"{kind}_{key}": value for key, value in _differences(reference, picture, where).items()
-                }
-            rows.append(row)
-    return rows
-
-
-def _shown(run: Run, name: str, folder: Path, shape: str) -> list:
-    """The pictures under the first world, with titles."""
-    *pictures, where = _read(folder, f"{data_files.world(run.data, run.settings.worlds[0]).name}-{shape}")
-    scale = flip_metric.exposure(pictures[0], where)
-    return [(f"{name}, {kind}", charts.display(scale * p)) for kind, p in zip(KINDS, pictures, strict=True)]
 
 
 def _read(folder: Path, stem: str) -> list[np.ndarray]:
@@ -82,7 +72,7 @@ def _differences(reference: np.ndarray, picture: np.ndarray, where: np.ndarray) 
     blocks = [_blocks(each * where[..., None]) for each in (picture, reference)]
     error = np.sqrt(np.square(blocks[0] - blocks[1]).sum() / np.square(blocks[1]).sum())
     found = dict(zip(("red", "green", "blue"), map(float, mean), strict=True))
-    return found | {"l2": float(error), "flip": flips(reference, picture, where)[0]}
+    return found | {"l2": float(error), "flip": flip_metric.of_object(reference, picture, where)[0]}
 
 
 def _blocks(picture: np.ndarray) -> np.ndarray:
@@ -91,19 +81,5 @@ def _blocks(picture: np.ndarray) -> np.ndarray:
     return picture[:side, :side].reshape(shape).mean((1, 3))
 
 
-def write(run: Run, found: dict) -> None:
-    rows = found["rows"]
-    for row in rows:
-        row["mean"] = "; ".join(
-            " ".join(f"{row[f'{kind}_{c}']:.3f}" for c in ("red", "green", "blue")) for kind in KINDS[1:]
-        )
-    titles = (
-        "material | world | shape | mean of red, green, blue: nodes; Principled | L2: nodes | Principled | "
-        "FLIP: nodes | Principled"
-    )
-    cells = (
-        "{material} | {world} | {shape} | {mean} | {network_l2:.3f} | {principled_l2:.3f} | "
-        "{network_flip:.3f} | {principled_flip:.3f}"
-    )
-    parts = {"table": page.table(rows, titles, cells)}
-    page.write(run.output, "closures.md", page.text("closures", found["conditions"] | parts))
+def values(found: dict) -> dict:
+    return {"rows": found["rows"]}

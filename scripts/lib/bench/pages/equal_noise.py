@@ -12,21 +12,11 @@ import numpy as np
 from scipy.ndimage import median_filter
 from velour.core.luminance import LUMINANCE
 
-from .. import blender, charts, page, provenance
+from .. import blender, charts, project
 from ..run import Run, read_rgb
 
-SCENES = (
-    "floor of 9 m",
-    "floor of 20 m",
-    "floor of 200 m",
-    "room",
-    "hundred lamps",
-    "metals",
-    "corridor",
-    "signs",
-    "copper",
-    "clamped copper",
-)  # of inside/equal_noise.py
+SCENES = ("floor of 9 m", "floor of 20 m", "floor of 200 m", "room", "hundred lamps", "metals", "corridor")
+SCENES += ("signs", "copper", "clamped copper")  # of inside/equal_noise.py
 ENGINES = {"cycles": "CYCLES", "velour": "VELOUR"}
 # Both take about the same time; noise falls with time in the same way for both.
 SETTINGS = {
@@ -37,6 +27,7 @@ SETTINGS = {
     "only": (SCENES, SCENES),
     "blender": ("", ""),
 }
+PAGES = {"equal_noise.md": "equal_noise"}
 DENOISED_TO = 0.01  # relmse
 _FIREFLY = 0.25  # luminance above the median of 3 x 3 pixels that makes a firefly
 
@@ -48,7 +39,7 @@ def measure(run: Run) -> dict:
         raise SystemExit(f"There is no scene {', '.join(sorted(unknown))}; there are {', '.join(SCENES)}.")
     if own.blender or len(own.only) < len(SCENES):
         run.output = run.work / "part"  # it must not replace the page
-    load, version = provenance.busy_threads(), ""
+    load, version = project.busy_threads(), ""
     for name in own.only:
         row, pictures, version = _compared(run, name)
         print(f"{name}: {_ratio(row):.2f} of Cycles' time to equal noise", flush=True)
@@ -105,32 +96,14 @@ def _ratio(row: dict) -> float:
     return _cost(row["velour"]) / _cost(row["cycles"])
 
 
-def write(run: Run, found: dict) -> None:
-    rows, conditions = found["rows"], found["conditions"]
+def values(found: dict) -> dict:
+    rows = found["rows"]
     for row in rows:
         # Both should render the same picture.
         row |= {"ratio": _ratio(row), "apart": 100 * (row["velour"]["light"] / row["cycles"]["light"] - 1)}
-    scenes = page.table(
-        rows,
-        "scene | Cycles: s | relmse | Velour: s | relmse | time to equal noise | mean light | "
-        "fireflies: Cycles | Velour",
-        "{scene} | {cycles[seconds]:.1f} | {cycles[noise]:.2e} | {velour[seconds]:.1f} | "
-        "{velour[noise]:.2e} | {ratio:.2f} | {apart:+.1f} % | {cycles[fireflies]:.0f} | "
-        "{velour[fireflies]:.0f}",
-    )
-    values = {"scenes": scenes, "firefly": _FIREFLY, "denoised": _denoised(rows)}
-    page.write(run.output, "equal_noise.md", page.text("equal_noise", conditions | values))
-
-
-def _denoised(rows: list[dict]) -> str:
-    if any(row["denoised"] is None for row in rows):
-        return ""
-    for row in rows:
-        row["without"] = _cost(row["velour"]) / DENOISED_TO
-        row["times"] = row["without"] / row["denoised"]
-    cells = "{scene} | {denoised:.1f} | {without:.1f} | {times:.1f}"
-    return f"""Processor time until the denoised picture's relmse is certain to be at most {DENOISED_TO}
-(*Denoise*, *Noise Threshold* {DENOISED_TO**0.5:g}), and what the picture without it takes to that relmse:
-
-{page.table(rows, "scene | s | without: s | times less", cells)}
-"""
+        if row["denoised"]:
+            row["without"] = _cost(row["velour"]) / DENOISED_TO
+            row["times"] = row["without"] / row["denoised"]
+    denoised = {"denoised": rows, "relmse": DENOISED_TO, "noise": DENOISED_TO**0.5}
+    parts = [denoised] if all(row["denoised"] for row in rows) else []
+    return {"rows": rows, "firefly": _FIREFLY, "denoised": parts}

@@ -10,6 +10,7 @@ from ..run import Picture, Run
 from ..scenes import SUNSET, Subject, subjects
 
 CSV = "figures/figures.csv"
+PAGES = {"figures/README.md": "figures"}
 SETTINGS = {
     "size": ((640, 480), (96, 72)),
     "spp": ((200, 400, 600, 800, 1000), (8, 32)),
@@ -106,42 +107,31 @@ def _relative(pixels: np.ndarray, reference: np.ndarray) -> np.ndarray:
     return charts.colored(np.abs(x - r) / np.sqrt(r**2 + 0.01 * r.mean() ** 2), "inferno", 0, _WORST)
 
 
-def write(run: Run, found: dict) -> None:
+def values(found: dict) -> dict:
     figures: dict[str, list[dict]] = {}
     for row in found["rows"]:
         figures.setdefault(row["figure"], []).append(row)
     samplers = list(dict.fromkeys(row["sampler"] for row in found["rows"] if row["sampler"]))
-    parts = {
-        "errors": page.table(
-            (line for rows in figures.values() for line in _lines(rows, samplers)),
-            "figure | spp | " + " | ".join(f"relmse {s} | rmse {s}" for s in samplers),
-            "{figure} | {spp} | " + " | ".join(f"{{{s}}}" for s in samplers),
-        ),
-        "references": page.table(
-            (_reference(rows, samplers) for rows in figures.values()),
-            f"figure | spp | renders | seconds | RMS standard error | smallest RMSE, {samplers[0]} | ratio | "
-            f"at least 10 | smallest RMSE, {samplers[1]} | ratio",
-            "{figure} | {spp} | {renders} | {seconds:.0f} | {rmse:.2e} | {smallest[0]:.2e} | "
-            "{ratios[0]:.1f} | {met} | {smallest[1]:.2e} | {ratios[1]:.1f}",
-        ),
-    }
-    page.write(run.output, "figures/README.md", page.text("figures", found["conditions"] | parts))
+    titles = " | ".join(f"relmse {s} | rmse {s}" for s in samplers)
+    lines = [line for rows in figures.values() for line in _lines(rows, samplers)]
+    references = [_reference(rows, samplers) for rows in figures.values()]
+    return {"titles": titles, "samplers": samplers, "lines": lines, "references": references}
+
+
+_CELLS = "{relmse:.2e} | {rmse:.2e}"
 
 
 def _lines(rows: list[dict], samplers: list[str]) -> list[dict]:
     """Lines of the fewest and the most samples, then one of the fit's error."""
     pictures = [row for row in rows if row["what"] == "picture"]
-    lines = []
-    counts = [row["spp"] for row in pictures]
+    counts, lines = [row["spp"] for row in pictures], []
     for spp in dict.fromkeys((min(counts), max(counts))):
-        own = {r["sampler"]: page.filled(_CELLS, r) for r in pictures if r["spp"] == spp}
-        lines.append({"figure": rows[0]["figure"], "spp": spp, **own})
-    (fit,) = (page.filled(_CELLS, row) for row in rows if row["what"] == "fit")
-    name = f"{rows[0]['figure']}: the fit's error"
-    return [*lines, {"figure": name, "spp": None, **dict.fromkeys(samplers, fit)}]
-
-
-_CELLS = "{relmse:.2e} | {rmse:.2e}"
+        own = {row["sampler"]: page.fields(_CELLS, row) for row in pictures if row["spp"] == spp}
+        cells = " | ".join(own[sampler] for sampler in samplers)
+        lines.append({"figure": rows[0]["figure"], "spp": spp, "cells": cells})
+    (fit,) = (page.fields(_CELLS, row) for row in rows if row["what"] == "fit")
+    cells = " | ".join([fit] * len(samplers))
+    return [*lines, {"figure": f"{rows[0]['figure']}: the fit's error", "spp": None, "cells": cells}]
 
 
 def _reference(rows: list[dict], samplers: list[str]) -> dict:

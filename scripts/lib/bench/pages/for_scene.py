@@ -8,26 +8,19 @@ from pathlib import Path
 
 import numpy as np
 
-from .. import data_files, page
-from ..run import Run, flags
-from ..scenes import (
-    MOVED_PATCH_CAMERA,
-    PATCH_CAMERA,
-    Scene,
-    made,
-    write_patch,
-    write_soft_sky,
-    write_sunny_sky,
-)
+from ..project import flags
+from ..run import Run
+from ..scenes import MOVED_PATCH_CAMERA, PATCH_CAMERA, Scene, write_patch, write_soft_sky, write_sunny_sky
 
 CSV = "for_scene.csv"
+PAGES = {"for_scene.md": "for_scene"}
 SETTINGS = {"size": ((120, 90), (32, 24)), "spp": (4096, 64), "materials": (99, 1)}
 OUTSIDE = ("same picture", "moved camera", "small sun")
 _SMALL = (32, 24)  # size of renders that measure only the share outside the scene usage
 
 
 def measure(run: Run) -> dict:
-    subjects = data_files.materials(run.data)[: run.settings.materials]
+    subjects = run.materials()
     run.expect(run.settings.spp, count=8 * len(subjects))
     run.expect(1, _SMALL, count=len(OUTSIDE) * len(subjects))
     return {"conditions": run.conditions(), "rows": [_row(run, *subject) for subject in subjects]}
@@ -35,8 +28,8 @@ def measure(run: Run) -> dict:
 
 def _row(run: Run, name: str, measurement: Path) -> dict:
     model, full = run.fit(measurement, "parametric", max_lobes=16)
-    patch = made(run.kept / "patch.obj", write_patch)
-    soft, sunny = made(run.kept / "soft.exr", write_soft_sky), made(run.kept / "sunny.exr", write_sunny_sky)
+    patch = run.made("patch.obj", write_patch)
+    soft, sunny = run.made("soft.exr", write_soft_sky), run.made("sunny.exr", write_sunny_sky)
     scene = Scene(name, patch, "z", soft, model, camera=PATCH_CAMERA)
     small, reduced = _fit_for(run, scene, measurement)
     seen = replace(scene, name=f"{name} reduced", material=small)
@@ -58,10 +51,7 @@ def _fit_for(run: Run, scene: Scene, measurement: Path) -> tuple[Path, dict]:
     usage = run.stem("observe", seen).with_suffix(".scene.json")
     run.velour(f"observing {scene.name}", "observe", seen, "observe", *flags(seen), "-o", usage)
     options = {"for-scene": usage, "full-model": scene.material, "seed": run.seed}
-    parameters = {"measurement": measurement, **options}
-    out = run.stem("reduce", parameters).with_suffix(".velour")
-    words = ("fit", measurement, "-o", out, *flags(options))
-    return out, run.velour(f"fit of {measurement.stem} for the scene", "reduce", parameters, *words)
+    return run.model(f"fit of {measurement.stem} for the scene", "fit", measurement, options, "reduce")
 
 
 def _pictures(run: Run, scene: Scene, first_seed: int) -> tuple[np.ndarray, np.ndarray]:
@@ -81,28 +71,19 @@ def _error(pictures: tuple, first: tuple, second: tuple) -> tuple[float, float]:
     return float(shares.mean()), float(shares.std() / np.sqrt(shares.size))
 
 
-def write(run: Run, found: dict) -> None:
+def values(found: dict) -> dict:
     rows = found["rows"]
     for row in rows:
         row["saving"] = row["full_parameter_bytes"] / row["reduced_parameter_bytes"]
         row["excess"] = row["reduced_relmse"] - 1.1 * row["full_relmse"]
-    parts = {
+    return {
+        "rows": rows,
         "count": len(rows),
         "smaller": sum(row["saving"] >= 3 for row in rows),
         "as_good": sum(row["excess"] <= 0 for row in rows),
         "within": _within([row for row in rows if row["excess"] > 0]),
         "refused": sum(min(row["moved camera"], row["small sun"]) > 1e-3 for row in rows),
-        "sizes": page.table(
-            rows,
-            "material | bytes | reduced | saving | lobes | reduced | seconds | relmse of the full model | "
-            "of the reduced one",
-            "{material} | {full_parameter_bytes} | {reduced_parameter_bytes} | {saving:.1f} | {full_lobes} | "
-            "{reduced_lobes} | {reduced_seconds:.1f} | {full_relmse:.1e} ± {full_error:.0e} | "
-            "{reduced_relmse:.1e} ± {reduced_error:.0e}",
-        ),
     }
-    part = page.text("for_scene", found["conditions"] | parts)
-    page.write_parts(run.output, "for_scene.md", "for_scene", for_scene=part)
 
 
 def _within(above: list[dict]) -> str:

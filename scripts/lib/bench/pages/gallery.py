@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import shutil
 
-from .. import blender, page
+from .. import blender
 from ..run import Run
 
 SCENES = {
@@ -16,6 +16,7 @@ SETTINGS = {
     "samples": (4096, 64),  # maximum number of light directions per pixel
     "noise": (0.012, 0.1),
 }
+PAGES = {"gallery.md": "gallery"}
 
 
 def measure(run: Run) -> dict:
@@ -36,16 +37,5 @@ def _row(run: Run, name: str) -> dict:
     return {"scene": name, "seconds": report["seconds"], "directions": report["spp"]}
 
 
-def write(run: Run, found: dict) -> None:
-    rows = [row | {"about": SCENES[row["scene"]]} for row in found["rows"]]
-    table = page.table(
-        rows, "picture | seconds | light directions a pixel", "{about} | {seconds:.0f} | {directions:.0f}"
-    )
-    pictures = "\n".join(
-        "## {about}\n\n![{about}](images/gallery_{scene}.png)\n".format(**row) for row in rows
-    )
-    page.write(
-        run.output,
-        "gallery.md",
-        page.text("gallery", found["conditions"] | {"table": table, "pictures": pictures}),
-    )
+def values(found: dict) -> dict:
+    return {"rows": [row | {"about": SCENES[row["scene"]]} for row in found["rows"]]}

@@ -7,17 +7,12 @@ import textwrap
 import xml.etree.ElementTree as ET
 
 from .. import page
-from ..run import BUILT, Run
-from ..velour_cli import ROOT
+from ..project import BUILT, ROOT
+from ..run import Run
 
 SETTINGS = {}
-_PROGRAMS = (
-    "image/test_image",
-    "image/test_portable_picture",
-    "scene/test_mesh",
-    "brdf/test_brdf",
-    "btf/test_btf",
-)
+_PROGRAMS = ("image/test_image", "image/test_portable_picture", "scene/test_mesh")
+_PROGRAMS += ("brdf/measure/test_brdf", "btf/measure/test_btf")
 _MARK = "input|"
 
 
@@ -31,23 +26,21 @@ def measure(run: Run) -> None:
             if each.get("name").startswith(_MARK):
                 file_format, variant = each.get("name").removeprefix(_MARK).split("|", 1)
                 found.setdefault(file_format, {})[variant] = each.get("value")
-    page.write(ROOT / "docs/reference", "inputs.md", page.text("inputs", {"formats": _lists(found)}))
-
-
-def _lists(found: dict[str, dict[str, str]]) -> str:
-    """A heading per format, with a line per variant: what Velour does with it. Formats that are refused as a
-    whole share a heading."""
+    # Formats that are refused as a whole share a section.
     others: dict[str, list[str]] = {}
-    for file_format in sorted(found):
-        if list(found[file_format]) == ["any"]:
-            others.setdefault(found[file_format]["any"], []).append(file_format)
-    parts = [_list(name, found[name]) for name in sorted(found) if list(found[name]) != ["any"]]
+    for name in sorted(found):
+        if list(found[name]) == ["any"]:
+            others.setdefault(found.pop(name)["any"], []).append(name)
+    sections = sorted(found.items())
     if others:
-        parts.append(_list("Others", {", ".join(names): verdict for verdict, names in others.items()}))
-    return "\n".join(parts)
+        sections.append(("Others", {", ".join(names): verdict for verdict, names in others.items()}))
+    formats = [{"name": name, "lines": _lines(own)} for name, own in sections]
+    page.write(ROOT / "docs/reference", "inputs.md", page.text("inputs", {"formats": formats}))
 
 
-def _list(title: str, verdicts: dict[str, str]) -> str:
-    lines = (f"- {variant}: {verdict}" for variant, verdict in sorted(verdicts.items()))
-    wrapped = (textwrap.fill(line, 120, subsequent_indent="  ", break_on_hyphens=False) for line in lines)
-    return "\n".join((f"## {title}\n", *wrapped)) + "\n"
+def _lines(variants: dict[str, str]) -> str:
+    """A line per variant: what Velour does with it."""
+    lines = (f"- {variant}: {verdict}" for variant, verdict in sorted(variants.items()))
+    return "\n".join(
+        textwrap.fill(line, 120, subsequent_indent="  ", break_on_hyphens=False) for line in lines
+    )

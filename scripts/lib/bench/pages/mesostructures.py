@@ -11,10 +11,9 @@ from .. import tiles
 from ..run import Run
 
 SETTINGS = {"side": (280, 70), "spp": (400, 16)}
-REPEATS = 3
 FIELD_OF_VIEW = 0.25  # radians
-SUN_IRRADIANCE = 2.2
-SKY_RADIANCE = 0.35
+_TILT = math.radians(40)  # from the vertical
+_COPIES = range(-4, 3)  # around the origin, more than are seen, so that no edge is visible
 
 
 def measure(run: Run) -> None:
@@ -29,28 +28,21 @@ def measure(run: Run) -> None:
 
 def picture(tile: Tile, side: int, spp: int) -> np.ndarray:
     """Linear pixels [side x side x 3]; black behind the holes."""
-    width = tile.info()["period"][0]
-    # Looks down at 40 degrees from the vertical, so that about 2 repeats fill the picture.
-    distance, tilt = 2 * width / (2 * math.tan(FIELD_OF_VIEW / 2)), math.radians(40)
+    width, height = tile.info()["period"]
+    distance = 2 * width / (2 * math.tan(FIELD_OF_VIEW / 2))  # about 2 repeats fill the picture
     with Scene() as scene:
-        repeat(tile, scene)
-        scene.set_world_color([SKY_RADIANCE] * 3)
-        scene.add_light("sun", [SUN_IRRADIANCE] * 3, tiles.sun((0.6275, 0.4394, 0.6428)), angle=0.01)
-        eye = (0.0, -distance * math.sin(tilt), distance * math.cos(tilt))
+        mesh, materials = tile.add_to(scene)
+        for x in _COPIES:
+            for y in _COPIES:
+                matrix = np.eye(4)
+                matrix[:2, 3] = (x + 0.5) * width, (y + 0.5) * height
+                scene.add_instance(mesh, matrix, materials)
+        scene.set_world_color([0.35] * 3)
+        scene.add_light("sun", [2.2] * 3, tiles.sun((0.6275, 0.4394, 0.6428)), angle=0.01)
+        eye = (0.0, -distance * math.sin(_TILT), distance * math.cos(_TILT))
         scene.look_at(eye, (0, 0, 0), FIELD_OF_VIEW, 1.0)
         scene.commit()
         options = {"width": side, "height": side, "spp": spp, "bounces": 3, "transparent": 1}
         with render_job(scene, **options) as job:
             job.run()
             return job.read_pass("Combined")[..., :3].copy()
-
-
-def repeat(tile: Tile, scene: Scene) -> None:
-    """REPEATS x REPEATS copies around the origin, and more around them, so that no edge is visible."""
-    mesh, materials = tile.add_to(scene)
-    period = tile.info()["period"]
-    for x in range(-2, REPEATS + 2):
-        for y in range(-2, REPEATS + 2):
-            matrix = np.eye(4)
-            matrix[:2, 3] = (x - REPEATS / 2) * period[0], (y - REPEATS / 2) * period[1]
-            scene.add_instance(mesh, matrix, materials)

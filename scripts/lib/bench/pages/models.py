@@ -8,11 +8,12 @@ from pathlib import Path
 
 from velour.native import Measurement, fit_job, table
 
-from .. import charts, data_files, page, provenance
-from ..run import BUILT, Run
-from ..velour_cli import velour
+from .. import charts, project
+from ..project import BUILT, velour
+from ..run import Run
 
 CSV = "models/models.csv"
+PAGES = {"models.md": "models"}
 SETTINGS = {
     "materials": (99, 1),
     "lobes": ((1, 2, 4, 8, 16, 32), (1, 4)),
@@ -23,14 +24,11 @@ TOLERANCE, UNBOUND = 0.02, 1e-6  # the latter is met by no fit, so that only the
 UNTURNED = "scattered, unturned"  # the per-view fit that mixes slices without aligning them
 ANGLES = ("5", "30", "60", "75", "85")
 SIZES = ("relative_l2", "lobes", "bytes", "parameter_bytes", "seconds")
-COSTS = {"f": "f, ns", "sample_pdf": "sample, pdf", "f_16": "f, 16", "sample_pdf_16": "sample, pdf, 16"}
-# Targets of the parametric model, in the columns of the summary.
-TARGETS = "| *target* |  | all |  | 2700 | 2.00 | 60 | 120 | 30 | 60 |\n"
+COSTS = ("f", "sample_pdf", "f_16", "sample_pdf_16")
 
 
 def measure(run: Run) -> dict:
-    conditions = run.conditions(load=provenance.busy_threads())
-    subjects = data_files.materials(run.data)[: run.settings.materials]
+    conditions, subjects = run.conditions(load=project.busy_threads()), run.materials()
     points = len(run.settings.lobes) + len(run.settings.bytes)
     each = 2 + len(table.MODELS) * (points + 2) + 2 * len(PEERS)
     run.progress.expect(1, 1 + len(subjects) * each)
@@ -46,33 +44,20 @@ def _rows(run: Run, name: str, measurement: Path) -> tuple[list[dict], dict]:
     """The rows of a material, and the values of its Principled material."""
 
     def row(model: str, report: Mapping, cost: Mapping = {}, **more) -> dict:
-        errors = report.get("by_view_angle", {})
-        sizes = {key: report.get(key) for key in SIZES}
-        angles = {f"error_{angle}": errors.get(angle) for angle in ANGLES}
-        return {
-            "material": name,
-            "model": model,
-            "bound": None,
-            "value": None,
-            **sizes,
-            **angles,
-            **cost,
-            **more,
-        }
+        errors, first = report.get("by_view_angle", {}), {"bound": None, "value": None}
+        numbers = {key: report.get(key) for key in SIZES}
+        numbers |= {f"error_{angle}": errors.get(angle) for angle in ANGLES}
+        return {"material": name, "model": model, **first, **numbers, **cost, **more}
 
     fits, options = [], {"threads": run.threads, "tolerance": TOLERANCE}
     for model in table.MODELS:
         path, report = run.fit(measurement, model, **options)
-        more = {"views": velour("info", path).get("views")}
-        fits.append(row(model, report, _cost(run, f"{name}, {model}", path), **more))
+        views = velour("info", path).get("views")
+        fits.append(row(model, report, _cost(run, f"{name}, {model}", path), views=views))
     peers = {peer: run.compare_peer(measurement, peer) for peer in PEERS}
-    noise = peers["ggx"]["noise_by_view_angle"]
+    noise = {"by_view_angle": peers["ggx"]["noise_by_view_angle"]}
     raw = {"bytes": measurement.stat().st_size}
-    rows = [
-        row("noise", {"by_view_angle": noise}),
-        row("measurement", raw, _cost(run, name, measurement)),
-        *fits,
-    ]
+    rows = [row("noise", noise), row("measurement", raw, _cost(run, name, measurement)), *fits]
     for peer, report in peers.items():
         more = {"alpha": report["ggx"]["alpha"][0]} if peer == "ggx" else {}
         rows.append(row(peer, report, _cost(run, f"{name}, {peer}", measurement, peer), **more))
@@ -118,105 +103,70 @@ def met(row: Mapping, noise: Mapping = {}) -> int:
     return sum(meets(row, angle, noise) for angle in ANGLES)
 
 
-def write(run: Run, found: dict) -> None:
-    rows, conditions = found["rows"], found["conditions"]
-    floor = next((row for row in rows if row["model"] == "floor"), {})
+def values(found: dict) -> dict:
+    materials = _by_material(found)
+    floor = next((row for row in found["rows"] if row["model"] == "floor"), {})
+    return {
+        "count": len(materials),
+        "busy": project.busy(found["conditions"]["load"]),
+        "floors": [floor] if floor.get("f") is not None else [],
+        "summary": _summary(materials),
+        "errors": [_errors(own) for own in materials.values()],
+        "angles": [{"material": name, "cells": _angles(own)} for name, own in materials.items()],
+    }
+
+
+def _by_material(found: dict) -> dict[str, dict[str, dict]]:
+    """The rows without a bound, by material and model."""
     materials: dict[str, dict[str, dict]] = {}
-    for row in rows:
+    for row in found["rows"]:
         if row["material"] and not row["bound"]:
             materials.setdefault(row["material"], {})[row["model"]] = row
-    values = {
-        "count": len(materials),
-        "summary": _summary(materials) + TARGETS,
-        "angles": _angles(materials),
-        "errors": _errors(materials),
-        "neighbors": _neighbors(float(conditions["load"])),
-        "floor": _floor(floor),
-    }
-    page.write(run.output, "models.md", page.text("models", conditions | values))
-    _draw(run.output / "models", rows, materials)
+    return materials
 
 
-def _models(own: Mapping) -> list[dict]:
-    """The rows of the models of a material, with and without peers."""
-    return [row for model, row in own.items() if model not in ("noise", "measurement", UNTURNED)]
-
-
-_COST_TITLES = " | ".join(COSTS.values())
-_COST_CELLS = " | ".join(f"{{{name}:.0f}}" for name in COSTS)
-
-
-def _summary(materials: Mapping) -> str:
-    def of(model: str) -> dict:
-        rows = [own[model] for own in materials.values()]
-        numbers = ("relative_l2", "parameter_bytes", "seconds", *COSTS)
-        medians = {
-            name: statistics.median(row[name] for row in rows)
-            for name in numbers
-            if all(row.get(name) is not None for row in rows)
-        }
+def _summary(materials: Mapping) -> list[dict]:
+    """A row per model: medians over the materials, and how many views meet their target."""
+    models = [m for m in next(iter(materials.values())) if m not in ("noise", "measurement", UNTURNED)]
+    summary = []
+    for model in models:
+        rows, found = [own[model] for own in materials.values()], dict.fromkeys(COSTS)
+        for name in ("relative_l2", "parameter_bytes", "seconds", *COSTS):
+            if all(row.get(name) is not None for row in rows):
+                found[name] = statistics.median(row[name] for row in rows)
         covered = sum(row[f"error_{angle}"] is not None for row in rows for angle in ANGLES)
         good = sum(met(own[model], own["noise"]) for own in materials.values())
-        counts = {"met": f"{good} of {covered}", "plain": sum(map(met, rows))}
-        return dict.fromkeys(COSTS) | medians | counts | {"model": model}
-
-    first = next(iter(materials.values()))
-    return page.table(
-        (of(row["model"]) for row in _models(first)),
-        f"model | relative_l2 | met | without noise | parameter bytes | seconds | {_COST_TITLES}",
-        f"{{model}} | {{relative_l2:.4f}} | {{met}} | {{plain}} | {{parameter_bytes:.0f}} | "
-        f"{{seconds:.2f}} | {_COST_CELLS}",
-    )
+        summary.append(
+            found | {"model": model, "good": good, "covered": covered, "plain": sum(map(met, rows))}
+        )
+    return summary
 
 
-def _angles(materials: Mapping) -> str:
-    """Errors of the default model beside the noise of the measurement."""
-
-    def cell(row: Mapping, noise: Mapping, angle: str) -> str:
-        error, own = ("-" if (e := of[f"error_{angle}"]) is None else f"{e:.4f}" for of in (row, noise))
-        return f"**{error}** / {own}" if meets(row, angle, noise) else f"{error} / {own}"
-
-    rows = [
-        {"material": name, "cells": " | ".join(cell(own["parametric"], own["noise"], a) for a in ANGLES)}
-        for name, own in materials.items()
-    ]
-    return page.table(rows, f"material | {' | '.join(f'{a}°' for a in ANGLES)}", "{material} | {cells}")
+def _errors(own: Mapping) -> dict:
+    """Errors of every model of a material, and alpha of its GGX lobe."""
+    errors = {model: row["relative_l2"] for model, row in own.items()}
+    return own["ggx"] | errors | {"unturned": errors[UNTURNED]}
 
 
-def _errors(materials: Mapping) -> str:
-    """Errors of every model, and alpha of the GGX lobe."""
-    names = (*table.MODELS, UNTURNED, *PEERS)
-    rows = [
-        own["ggx"] | {"errors": [own[name]["relative_l2"] for name in names]} for own in materials.values()
-    ]
-    cells = " | ".join(f"{{errors[{k}]:.4f}}" for k in range(len(names)))
-    return page.table(
-        rows,
-        f"material | {' | '.join(names)} | alpha",
-        f"{{material}} | {cells} | {{alpha:.3f}}",
-    )
+def _angles(own: Mapping) -> str:
+    """Errors of the default model beside the noise of the measurement, bold where they meet the target."""
+
+    def cell(angle: str) -> str:
+        values = (own[model][f"error_{angle}"] for model in ("parametric", "noise"))
+        error, noise = ("-" if value is None else f"{value:.4f}" for value in values)
+        return f"{f'**{error}**' if meets(own['parametric'], angle, own['noise']) else error} / {noise}"
+
+    return " | ".join(map(cell, ANGLES))
 
 
-def _neighbors(load: float) -> str:
-    if load < 0.2:
-        return ""
-    return f"; **other programs kept {load:.1f} processors busy**, so they are too many"
-
-
-def _floor(floor: Mapping) -> str:
-    if floor.get("f") is None:
-        return "They need `evaluation_cost`, which was not built."
-    one, many = ([f"{floor[key + n]:.1f}" for key in ("f", "sample_pdf")] for n in ("", "_16"))
-    return f"The calls alone, without\narithmetic, take {' and '.join(one)} ns, {' and '.join(many)} with 16."
-
-
-def _draw(folder: Path, rows: list[dict], materials: Mapping) -> None:
+def draw(output: Path, found: dict) -> None:
+    materials = _by_material(found)
     for name, bound, x in (
         ("error_by_lobes", "max-lobes", "lobes (scattered: a view)"),
         ("error_by_bytes", "bytes", "bytes"),
     ):
         panels = {material: {} for material in materials}
-        for row in rows:
+        for row in found["rows"]:
             if row["bound"] == bound:
                 size = row["value"] if bound == "max-lobes" else row["bytes"]
                 panels[row["material"]].setdefault(row["model"], []).append((size, row["relative_l2"]))
@@ -224,4 +174,5 @@ def _draw(folder: Path, rows: list[dict], materials: Mapping) -> None:
             for peer, lobes in PEERS.items():
                 size = lobes if bound == "max-lobes" else own[peer]["parameter_bytes"]
                 panels[material][peer] = [(size, own[peer]["relative_l2"])]
-        charts.curves(folder / f"{name}.png", [*panels.items()], x, "relative L2", levels=[TOLERANCE])
+        path = output / f"models/{name}.png"
+        charts.curves(path, [*panels.items()], x, "relative L2", levels=[TOLERANCE])

@@ -6,12 +6,13 @@ from pathlib import Path
 
 import numpy as np
 
-from .. import charts, data_files, flip_metric, page
+from .. import charts, flip_metric, project
 from ..reference import silhouette
 from ..run import Run
-from ..scenes import STUDIO, SUNSET, Scene, made, write_sphere
+from ..scenes import STUDIO, SUNSET, Scene, write_sphere
 
 CSV = "perceptual/perceptual.csv"
+PAGES = {"perceptual.md": "perceptual"}
 SETTINGS = {
     "size": ((200, 150), (64, 48)),
     "spp": (96, 16),
@@ -27,13 +28,10 @@ THRESHOLDS = (1.0, 2.3)
 
 
 def measure(run: Run) -> dict:
-    own, data = run.settings, run.data
+    own, subjects = run.settings, run.materials()
     mean, percentile = map(flip_metric.of_lightness, THRESHOLDS)
-    meshes = {
-        "sphere": (made(run.kept / "sphere.obj", write_sphere), "z"),
-        "bunny": (data_files.mesh(data, "bunny"), "y"),
-    }
-    subjects = data_files.materials(data)[: own.materials]
+    bunny = project.mesh(run.data, "bunny")
+    meshes = {"sphere": (run.made("sphere.obj", write_sphere), "z"), "bunny": (bunny, "y")}
     orders = [*((tolerance, DEFAULT[1]) for tolerance in own.tolerances), FEW]
     count = len(subjects) * len(meshes) * len(own.worlds) * (2 * len(orders) + 1)
     run.expect(own.spp, count=count)
@@ -43,8 +41,7 @@ def measure(run: Run) -> dict:
         for order in orders:
             model, fit = run.fit(measurement, "parametric", tolerance=order[0], max_lobes=order[1])
             for mesh, world in ((mesh, world) for mesh in meshes for world in own.worlds):
-                file = data_files.world(data, world)
-                scene = Scene(f"{mesh}, {name}, {world}", *meshes[mesh], file, model)
+                scene = Scene(f"{mesh}, {name}, {world}", *meshes[mesh], run.world(world), model)
                 if mesh not in silhouettes:
                     silhouettes[mesh] = silhouette(run, scene, own.size)
                 about = {"material": name, "scene": f"{mesh}, {world}", "tolerance": order[0]}
@@ -62,30 +59,25 @@ def _seen(run: Run, scene: Scene, measurement: Path, where: np.ndarray, with_noi
         return run.render(of, run.settings.spp, seed=seed, strategy="product").pixels
 
     reference = picture(scene.measured(measurement))
-    found = dict(zip(("flip_mean", "flip_99"), flips(reference, picture(scene), where), strict=True))
+    found = dict(
+        zip(("flip_mean", "flip_99"), flip_metric.of_object(reference, picture(scene), where), strict=True)
+    )
     if with_noise:
         other = picture(scene.measured(measurement), run.seed + 1)
-        found |= dict(zip(("noise_mean", "noise_99"), flips(reference, other, where), strict=True))
+        found |= dict(
+            zip(("noise_mean", "noise_99"), flip_metric.of_object(reference, other, where), strict=True)
+        )
     return found
 
 
-def flips(reference: np.ndarray, test: np.ndarray, where: np.ndarray) -> tuple[float, float]:
-    """Mean and 99th percentile of FLIP over the pixels that show the object."""
-    scale = flip_metric.exposure(reference, where)
-    pictures = (charts.display(scale * picture) for picture in (reference, test))
-    values = flip_metric.flip_map(*pictures)[::-1][where]
-    return float(values.mean()), float(np.percentile(values, 99))
-
-
-def write(run: Run, found: dict) -> None:
-    rows, conditions = found["rows"], found["conditions"]
-    mean, percentile = (float(conditions[f"{name}_threshold"]) for name in ("mean", "percentile"))
+def values(found: dict) -> dict:
+    rows, (mean, percentile) = found["rows"], _thresholds(found)
     orders: dict[tuple, list[dict]] = {}
     for row in rows:
         row["is_below"] = row["flip_mean"] < mean and row["flip_99"] < percentile
         orders.setdefault((row["tolerance"], row["max_lobes"]), []).append(row)
     at = orders[DEFAULT]
-    parts = {
+    return {
         "mean_threshold": mean,
         "percentile_threshold": percentile,
         "materials_measured": len({row["material"] for row in rows}),
@@ -93,27 +85,24 @@ def write(run: Run, found: dict) -> None:
         "below": sum(row["is_below"] for row in at),
         "at_default": len(at),
         "means_below": sum(row["flip_mean"] < mean for row in at),
-        "by_tolerance": page.table(
-            (_of_order(*item) for item in orders.items()),
-            "tolerance | error, median | error, largest | mean, median | mean, largest | "
-            "99th percentile, median | largest | below the threshold",
-            "{order} | {relative_l2[0]:.4f} | {relative_l2[1]:.4f} | {flip_mean[0]:.4f} | "
-            "{flip_mean[1]:.4f} | {flip_99[0]:.4f} | {flip_99[1]:.4f} | {below} of {count}",
-        ),
-        "default_table": page.table(
-            (row for row in at if not row["is_below"]),
-            "material | scene | error | mean | 99th percentile",
-            "{material} | {scene} | {relative_l2:.4f} | {flip_mean:.4f} | {flip_99:.4f}",
-        ),
+        "orders": [_of_order(*item) for item in orders.items()],
+        "above": [row for row in at if not row["is_below"]],
     }
-    page.write(run.output, "perceptual.md", page.text("perceptual", conditions | parts))
-    names = {"mean": "flip_mean", "99th percentile": "flip_99"}
-    panels = [
-        (material, {name: _worst(rows, material, value) for name, value in names.items()})
-        for material in dict.fromkeys(row["material"] for row in rows)
-    ]
-    chart, axes = run.output / "perceptual/flip_by_error.png", ("relative L2 of the fit", "FLIP")
-    charts.curves(chart, panels, *axes, levels=[mean, percentile])
+
+
+def _thresholds(found: dict) -> list[float]:
+    return [float(found["conditions"][f"{name}_threshold"]) for name in ("mean", "percentile")]
+
+
+def draw(output: Path, found: dict) -> None:
+    rows, panels = found["rows"], []
+    for material in dict.fromkeys(row["material"] for row in rows):
+        own = [row for row in rows if row["material"] == material]
+        panels.append(
+            (material, {"mean": _worst(own, "flip_mean"), "99th percentile": _worst(own, "flip_99")})
+        )
+    chart, axes = output / "perceptual/flip_by_error.png", ("relative L2 of the fit", "FLIP")
+    charts.curves(chart, panels, *axes, levels=_thresholds(found))
 
 
 def _of_order(order: tuple[float, int], rows: list[dict]) -> dict:
@@ -126,9 +115,7 @@ def _of_order(order: tuple[float, int], rows: list[dict]) -> dict:
     return found | {"below": sum(row["is_below"] for row in rows), "count": len(rows)}
 
 
-def _worst(rows: list[dict], material: str, value: str) -> list[tuple[float, float]]:
+def _worst(rows: list[dict], value: str) -> list[tuple[float, float]]:
     """The worst scene of each fit of a material: (error of the fit, value)."""
-    worst: dict[float, float] = {}
-    for row in (row for row in rows if row["material"] == material):
-        worst[row["relative_l2"]] = max(row[value], worst.get(row["relative_l2"], 0.0))
-    return sorted(worst.items())
+    errors = sorted({row["relative_l2"] for row in rows})
+    return [(error, max(row[value] for row in rows if row["relative_l2"] == error)) for error in errors]

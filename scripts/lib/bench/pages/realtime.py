@@ -5,8 +5,6 @@ The third picture shows ten times their difference about gray. scripts/viewport 
 
 from __future__ import annotations
 
-import json
-
 import numpy as np
 
 from .. import blender, charts
@@ -19,19 +17,13 @@ _SHOWN = 0.82  # share of the height: above it is the shell's hem, which has no 
 
 def measure(run: Run) -> dict:
     folder = run.work / "blender"
-    blender.in_window(blender.INSIDE / "realtime.py", {}, folder, run.settings.screen_size)
+    found = blender.in_window("bench.inside.realtime", {}, folder, run.settings.screen_size)
+    print(f"relative L2 {found['relative_l2']:.4f}")
     traced, drawn = np.load(folder / "net.npy")[..., :3]
     white, rows = np.percentile(traced, 99.5), round(_SHOWN * traced.shape[0])
-    pictures = {
-        "ray traced": traced / white,
-        "real time": drawn / white,
-        f"{_TIMES} times the difference": _GRAY + _TIMES * (drawn - traced) / white,
-    }
-    cells = [(title, charts.display(pixels[:rows])) for title, pixels in pictures.items()]
+    difference = _GRAY + _TIMES * (drawn - traced) / white
+    titles = ("ray traced", "real time", f"{_TIMES} times the difference")
+    pictures = (traced / white, drawn / white, difference)
+    cells = [(title, charts.display(pixels[:rows])) for title, pixels in zip(titles, pictures, strict=True)]
     charts.sheet(run.output / "images/realtime.png", [cells], (2.9, 2.9 * rows / traced.shape[1] + 0.25))
-    result = json.loads((folder / "result.json").read_text())
-    return {"conditions": run.conditions(), **result}
-
-
-def write(run: Run, found: dict) -> None:
-    print(f"relative L2 {found['relative_l2']:.4f}")
+    return {"conditions": run.conditions(), **found}

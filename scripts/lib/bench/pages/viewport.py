@@ -6,10 +6,9 @@ Only a run of all scenes writes the page.
 
 from __future__ import annotations
 
-import json
 import statistics
 
-from .. import blender, page, provenance
+from .. import blender, project
 from ..run import Run
 
 SCENES = {
@@ -22,6 +21,7 @@ SETTINGS = {
     "blender": ("blender", "blender"),  # path
     "scenes": (tuple(SCENES), ("monkey",)),
 }
+PAGES = {"viewport.md": "viewport"}
 SEEN, EXPORT, HELD = 0.2, 3.0, 0.05  # targets in seconds
 SCREEN = (1400, 1000)
 
@@ -30,52 +30,45 @@ def measure(run: Run) -> dict:
     own = run.settings
     if len(own.scenes) < len(SCENES):
         run.output = run.work / "part"  # it must not replace the page
-    load, results = provenance.busy_threads(), {}
+    load, results = project.busy_threads(), {}
     for scene in own.scenes:
         print(f"{scene} ...", flush=True)
-        results[scene] = _measured(run, scene)
+        task = {"scene": scene, "restarts": own.restarts if scene == "monkey" else 0}
+        how = (task, run.work / scene, SCREEN, own.blender)
+        results[scene] = blender.in_window("bench.inside.viewport", *how)
     return {"conditions": run.conditions(load=load, seed=0), "results": results}
 
 
-def _measured(run: Run, scene: str) -> dict:
-    folder = run.work / scene
-    task = {"scene": scene, "restarts": run.settings.restarts if scene == "monkey" else 0}
-    blender.in_window(blender.INSIDE / "viewport.py", task, folder, SCREEN, run.settings.blender)
-    return json.loads((folder / "result.json").read_text())
-
-
-def write(run: Run, found: dict) -> None:
-    results, conditions = found["results"], found["conditions"]
-    first, load = next(iter(results.values())), conditions["load"]
-    values = {
-        "blender": first["blender"],
-        "size": first["size"],
-        "samples": first["samples"],
-        "busy": "" if load < 0.2 else f" **Other programs kept {load:.1f} processors busy.**",
+def values(found: dict) -> dict:
+    results = found["results"]
+    first = next(iter(results.values()))
+    restarts, real_time = (
+        [result[key] for result in results.values() if key in result] for key in ("restarts", "real_time")
+    )
+    for each in restarts:
+        each["memory"] = ", ".join(f"{mib:.0f}" for mib in each["mib"])
+    for each in real_time:
+        seconds = statistics.median(each["seconds"])
+        each |= {"milliseconds": 1000 * seconds, "rate": 1 / seconds}
+    return {key: first[key] for key in ("blender", "size", "samples")} | {
+        "busy": project.busy(found["conditions"]["load"]),
         "seen": SEEN,
         "export": EXPORT,
-        "held": f"{1000 * HELD:.0f}",
+        "held": 1000 * HELD,
         "scenes": "\n".join(f"- {scene}: {SCENES[scene]}" for scene in results),
-        "changes": _changes(results),
-        "more": "".join(map(_more, results.values())),
+        "names": " | ".join(results),
+        "changes": _changes(list(results.values())),
+        "restarts": restarts,
+        "real_time": real_time,
     }
-    part = page.text("viewport", conditions | values)
-    page.write_parts(run.output, "viewport.md", "viewport", measured=part)
 
 
-def _changes(results: dict[str, dict]) -> str:
-    """A row per change and a column per scene; then images a second, and memory."""
-    rows = [
-        {"change": name, "cells": " | ".join(_cell(result["changes"][name]) for result in results.values())}
-        for name in next(iter(results.values()))["changes"]
-    ]
-    for name, key, form in (
-        ("images a second while an object moves", "dragged", ".1f"),
-        ("memory of Blender, MiB", "mib", ".0f"),
-    ):
-        cells = " | ".join(f"{result[key]:{form}}" for result in results.values())
-        rows.append({"change": name, "cells": cells})
-    return page.table(rows, f"change | {' | '.join(results)}", "{change} | {cells}")
+def _changes(results: list[dict]) -> list[dict]:
+    """A row per change with a cell per scene; then images a second, and memory."""
+    rows = {name: [_cell(result["changes"][name]) for result in results] for name in results[0]["changes"]}
+    rows["images a second while an object moves"] = [f"{result['dragged']:.1f}" for result in results]
+    rows["memory of Blender, MiB"] = [f"{result['mib']:.0f}" for result in results]
+    return [{"name": name, "cells": " | ".join(cells)} for name, cells in rows.items()]
 
 
 def _cell(runs: list[dict]) -> str:
@@ -87,23 +80,6 @@ def _cell(runs: list[dict]) -> str:
         _marked(f"{1000 * held:.0f}", held > HELD),
     )
     return " / ".join(parts)
-
-
-def _more(result: dict) -> str:
-    text = ""
-    if "restarts" in result:
-        count = result["restarts"]["count"]
-        memory = ", ".join(f"{mib:.0f}" for mib in result["restarts"]["mib"])
-        text += f"\nSwitched off and on {count} times; MiB after each tenth of them: {memory}.\n"
-    if "real_time" in result:
-        seconds = statistics.median(result["real_time"]["seconds"])
-        width, height = result["real_time"]["size"]
-        text += f"""
-In real time ([realtime.md](../engine/realtime.md)) an image of {width} x {height} takes
-{1000 * seconds:.0f} ms, {1 / seconds:.1f} a second, reading it back included; the target is 30 on a
-modest graphics processor.
-"""
-    return text
 
 
 def _marked(text: str, is_missed: bool) -> str:

@@ -5,7 +5,6 @@ from __future__ import annotations
 import contextlib
 import math
 from collections.abc import Iterator
-from itertools import starmap
 from pathlib import Path
 from typing import NamedTuple
 
@@ -13,9 +12,9 @@ import numpy as np
 from scipy import ndimage
 from velour.native import Measurement, Model, Scene, Tile, fit_job, microsurface_job, render_job
 
-from .. import charts, page, tiles
+from .. import charts, tiles
 from ..run import Run
-from ..shapes import Cloth, Cylinder, Sphere, Surface, smooth_mesh, structured_mesh
+from ..tiles import Cloth, Cylinder, Sphere, Surface, smooth_mesh, structured_mesh
 
 SETTINGS = {
     "tiles": (("net", "chainmail", "weave", "gravel"), ("net",)),
@@ -25,6 +24,8 @@ SETTINGS = {
     "rays": (40_000_000, 4_000_000),  # of the goniometer
     "texels": (64, 16),  # per side of the BTFs
 }
+CSV = "votf_numbers.csv"
+PAGES = {"votf_numbers.md": "votf"}
 _HEIGHT = 0.06  # height of the shell over the sphere's radius
 _MOST_SIDE = 2048  # maximum side of a picture, in pixels
 _DIRECTIONS = 81  # views and lights each, the directions of the Bonn BTFs
@@ -73,12 +74,11 @@ class Shot(NamedTuple):
         mesh, info = tile.mesh()._asdict(), tile.info()
         with Scene() as scene:
             number, _ = scene.add_mesh(**structured_mesh(self.surface, mesh, info["period"][0]))
-            own = ({name: m[name] for name in m if name != "name"} for m in info["materials"])
-            slots = (
-                [scene.add_model_material(material)]
-                if material
-                else [scene.add_principled_material(**values) for values in own]
-            )
+            if material:
+                slots = [scene.add_model_material(material)]
+            else:
+                own = ({name: m[name] for name in m if name != "name"} for m in info["materials"])
+                slots = [scene.add_principled_material(**values) for values in own]
             scene.add_instance(number, tiles.UNMOVED, slots)
             return self.picture(scene)
 
@@ -147,13 +147,14 @@ def _rows(run: Run, name: str, tile: Tile, look: Look) -> list[dict]:
                 pictures = [truth, shot.of_model(look.smooth), shot.of_model(look.shell)]
             row = {"tile": name, "look": look.name, "surface": surface_name, "tile_pixels": pixels}
             for way, picture in zip(_WAYS, pictures, strict=True):
-                row[way] = {"seconds": picture.seconds, "bytes": picture.bytes}
+                found = {"seconds": picture.seconds, "bytes": picture.bytes}
                 if picture is not truth:
-                    row[way] |= shell_errors(picture.pixels, truth.pixels)._asdict()
+                    found |= shell_errors(picture.pixels, truth.pixels)._asdict()
+                row |= {f"{way}_{name}": number for name, number in found.items()}
             rows.append(row)
             if pixels == max(own.tile_pixels):
                 sheet += _pictures(surface_name, [picture.pixels for picture in pictures])
-    path = run.output / "images" / _sheet_name(name, look.name)
+    path = run.output / "images" / f"{_stem(name, look.name)}.png"
     charts.sheet(path, sheet, (3.0, 3.25), few_colors=True)
     return rows
 
@@ -163,11 +164,8 @@ def _surfaces(tile: Tile) -> dict[str, Surface]:
     period, (low, high) = info["period"][0], info["heights"]
     radius = (high - low) / _HEIGHT
     rows, across = (max(2, round(length / period)) for length in (math.pi * radius, 2 * radius))
-    return {
-        "sphere": Sphere(rows, period),
-        "cylinder": Cylinder(2 * rows, across, period),
-        "cloth": Cloth(across, period),
-    }
+    tube = Cylinder(2 * rows, across, period)
+    return {"sphere": Sphere(rows, period), "cylinder": tube, "cloth": Cloth(across, period)}
 
 
 def _pictures(surface: str, pictures: list[np.ndarray]) -> list:
@@ -191,9 +189,7 @@ def _edge(picture: np.ndarray, alpha: np.ndarray) -> np.ndarray:
 class ShellErrors(NamedTuple):
     outline: float  # soft intersection over union of alpha, with holes filled
     alpha: float  # likewise, with holes
-    light: (
-        float | None
-    )  # root mean square of the difference over that of the truth, where both show the object
+    light: float | None  # RMS of the difference over that of the truth, where both show the object
 
 
 def soft_iou(a: np.ndarray, b: np.ndarray) -> float:
@@ -217,44 +213,22 @@ def shell_errors(picture: np.ndarray, truth: np.ndarray) -> ShellErrors:
     return ShellErrors(outline, soft_iou(a, b), light and float(light))
 
 
-def write(run: Run, found: dict) -> None:
+def values(found: dict) -> dict:
     looks = {look: [row for row in found["rows"] if row["look"] == look] for look in ("BTF", "BRDF")}
-    both = list(starmap(_numbers, zip(looks["BTF"], looks["BRDF"], strict=True)))
-    page.write_rows(run.output / "votf_numbers.csv", both, found["conditions"])
-    largest = max(row["tile_pixels"] for row in both)
-    table = page.table(
-        (row for row in both if row["tile_pixels"] == largest),
-        "tile | surface | outline: smooth / shell | alpha: smooth / shell | light, BTF: smooth / shell | "
-        "light, BRDF: smooth / shell | seconds: geometry / smooth / shell | MB: geometry / shell",
-        "{tile} | {surface} | {outline_smooth:.3f} / {outline_shell:.3f} | "
-        "{alpha_smooth:.3f} / {alpha_shell:.3f} | {btf_smooth:.2f} / {btf_shell:.2f} | "
-        "{brdf_smooth:.2f} / {brdf_shell:.2f} | "
-        "{seconds_geometry:.1f} / {seconds_smooth:.1f} / {seconds_shell:.1f} | "
-        "{mb_geometry:.1f} / {mb_shell:.1f}",
-    )
-    sheets = [
-        f"![{name}, {look}](images/{_sheet_name(name, look)})\n"
-        for look in looks
-        for name in dict.fromkeys(row["tile"] for row in both)
-    ]
-    values = {"largest": largest, "rows": table, "sheets": "\n".join(sheets)}
-    values |= {f"{look}_ratios": _ratios(rows) for look, rows in looks.items()}
-    page.write(run.output, "votf_numbers.md", page.text("votf", found["conditions"] | values))
+    largest = max(row["tile_pixels"] for row in looks["BTF"])
+    names = dict.fromkeys(row["tile"] for row in looks["BTF"])
+    brdf = ({f"{way}_brdf": row[f"{way}_light"] for way in _WAYS[1:]} for row in looks["BRDF"])
+    both = [own | other for own, other in zip(looks["BTF"], brdf, strict=True)]
+    shown = [row for row in both if row["tile_pixels"] == largest]
+    sheets = [{"tile": n, "look": look, "stem": _stem(n, look)} for look in looks for n in names]
+    return {"largest": largest, "rows": shown, "sheets": sheets} | {
+        f"{look}_ratios": _ratios(rows) for look, rows in looks.items()
+    }
 
 
-def _numbers(btf: dict, brdf: dict) -> dict:
-    """A row of the CSV: errors and costs of a picture; light with both looks."""
-    row = {name: btf[name] for name in ("tile", "surface", "tile_pixels")}
-    for error in ("outline", "alpha"):
-        row |= {f"{error}_{way}": btf[way][error] for way in _WAYS[1:]}
-    for name, look in (("btf", btf), ("brdf", brdf)):
-        row |= {f"{name}_{way}": look[way]["light"] for way in _WAYS[1:]}
-    row |= {f"seconds_{way}": btf[way]["seconds"] for way in _WAYS}
-    return row | {f"mb_{way}": btf[way]["bytes"] / 1e6 for way in (_WAYS[0], _WAYS[2])}
-
-
-def _sheet_name(tile: str, look: str) -> str:
-    return f"votf_{tile}.png" if look == "BRDF" else f"votf_{tile}_{look.lower()}.png"
+def _stem(tile: str, look: str) -> str:
+    """File of a sheet, without its suffix."""
+    return f"votf_{tile}" if look == "BRDF" else f"votf_{tile}_{look.lower()}"
 
 
 def _ratios(rows: list[dict]) -> str:
@@ -262,6 +236,6 @@ def _ratios(rows: list[dict]) -> str:
     parts = []
     for pixels in dict.fromkeys(row["tile_pixels"] for row in rows):
         own = [row for row in rows if row["tile_pixels"] == pixels]
-        ratios = [row["shell"]["seconds"] / row["smooth"]["seconds"] for row in own]
+        ratios = [row["shell_seconds"] / row["smooth_seconds"] for row in own]
         parts.append(f"{min(ratios):.1f} to {max(ratios):.1f} with {pixels} pixels a tile")
     return ", ".join(parts)

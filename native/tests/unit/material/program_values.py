@@ -9,7 +9,7 @@ from pathlib import Path
 import bpy
 import numpy as np
 
-sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "addon"))
+sys.path.insert(0, str(Path(__file__).resolve().parents[4] / "addon"))
 from velour.native import table  # found by the line above
 
 VERSION = bpy.app.version
