@@ -20,8 +20,16 @@ def error_path(path: Path) -> Path:
 
 def write(path: Path, estimate: Estimate) -> None:
     # The error first: a mean without one would be taken for a single render.
-    images.write(error_path(path), _rounded(np.sqrt(estimate.variance), _ERROR_BITS))
-    images.write(path, _rounded(estimate.mean, _MEAN_BITS))
+    images.write(error_path(path), rounded_error(estimate))
+    images.write(path, rounded_mean(estimate))
+
+
+def rounded_mean(estimate: Estimate) -> np.ndarray:
+    return _rounded(estimate.mean, _MEAN_BITS)
+
+
+def rounded_error(estimate: Estimate) -> np.ndarray:
+    return _rounded(np.sqrt(estimate.variance), _ERROR_BITS)
 
 
 def read(path: Path, renders: Estimate) -> Estimate:

@@ -1,0 +1,266 @@
+"""What has changed between a render and its reference, told from their passes by tests with stated levels.
+
+Each test asks only what the ones before leave open: shape, then texture coordinates, then albedo, then
+light. So a moved object is no changed material, and a shifted UV map no changed texture.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from support.judge import BLOCK, WHOLE, Estimate, Scores, scores, z_limit
+
+from .comparison import COLOR, has_worlds
+from .passes import MIXED, NOTHING, Labels, Passes
+
+LEVEL = 1e-3  # chance that the tests for one kind of cause name anything that has not changed
+_EXPLAINED = 0.01  # chance that a common factor, or a change of one material only, is not taken for one
+_FEWEST = 16  # pixels of an object or a material that is judged
+_MOST_NAMES = 3
+
+
+class Cause(NamedTuple):
+    kind: str  # "geometry", "material", "world", "exposure", "light" or "unknown"
+    sentence: str  # with the names of what has changed
+    names: tuple[str, ...] = ()
+
+    def __str__(self) -> str:
+        return f"{self.kind}: {self.sentence}"
+
+
+class _Sides(NamedTuple):
+    picture: tuple[Estimate, Estimate]  # colors; ours, the reference's
+    ours: Passes
+    known: Passes
+
+    def stays(self, kind: str) -> np.ndarray:
+        """[height x width] bool: pixels that show the same object or material in both."""
+        labels = getattr(self.ours, kind), getattr(self.known, kind)
+        numbers = np.array([MIXED, NOTHING, *(_number(labels[0], name) for name in labels[1].names)])
+        return (numbers[labels[1].numbers + 1] == labels[0].numbers) & (labels[0].numbers != MIXED)
+
+
+def find(ours: Estimate, reference: Estimate, passes: tuple[Passes, Passes]) -> list[Cause]:
+    """The causes of a difference; never empty. `ours`, `reference`: RGB or RGBA."""
+    sides = _Sides((ours.channels(COLOR), reference.channels(COLOR)), *passes)
+    thinned, explained = _transparency(sides)
+    causes, of_shape = _geometry(sides, ~explained)
+    explained |= of_shape
+    materials, of_materials = _materials(sides, ~explained)
+    materials += thinned
+    causes += materials + _world(passes)
+    if not causes:
+        causes = _light(sides)
+    elif materials and len(causes) == len(materials):
+        causes += _exposure(sides, ~explained & ~of_materials)
+    return causes or [Cause("unknown", "the difference is too small, or too close to edges, to name")]
+
+
+def _transparency(sides: _Sides) -> tuple[list[Cause], np.ndarray]:
+    """Materials that fill most of their pixels in one of the two only; and the pixels of their objects."""
+    causes, explained = [], np.zeros(sides.known.objects.numbers.shape, bool)
+    for kind in (sides.known.materials, sides.ours.materials):
+        other = sides.ours.materials if kind is sides.known.materials else sides.known.materials
+        for name in kind.names:
+            mask = kind.where(name)
+            mixed = np.count_nonzero(mask & (other.numbers == MIXED))
+            if mixed >= _FEWEST and 2 * mixed > np.count_nonzero(mask):
+                causes.append(Cause("material", f"'{name}', its transparency", (name,)))
+                explained |= mask
+    return causes, explained
+
+
+def _geometry(sides: _Sides, usable: np.ndarray) -> tuple[list[Cause], np.ndarray]:
+    """The causes, and the pixels [height x width] that show them."""
+    causes, stays = [], sides.stays("objects") & usable
+    moved = _changed(sides, "objects", "shape", stays)
+    explained = _covered(sides, "objects", moved)
+    both = (sides.ours.objects.numbers != MIXED) & (sides.known.objects.numbers != MIXED)
+    relabeled = ~stays & both & usable
+    if not moved and not relabeled.any():
+        relabeled = _changed_blocks(sides, usable)
+    if moved or relabeled.any():
+        names = moved or _names_in(sides, relabeled)
+        seen = set(sides.known.objects.names)
+        all_of_them = len(seen) > 1 and seen <= set(names)
+        sentence = f"shape or place of {_listed('object', names)}"
+        if all_of_them:
+            sentence = "all visible objects, or the camera"
+        causes.append(Cause("geometry", sentence, tuple(names)))
+        explained |= relabeled
+    shifted = _changed(sides, "objects", "coordinates", stays & ~explained)
+    if shifted:
+        causes.append(Cause("geometry", f"UV map of {_listed('object', shifted)}", tuple(shifted)))
+        explained |= _covered(sides, "objects", shifted)
+    return causes, explained
+
+
+def _changed_blocks(sides: _Sides, usable: np.ndarray) -> np.ndarray:
+    """Pixels of the blocks whose shapes differ, edges included; none where something explains them."""
+    found = scores(sides.ours.shape, sides.known.shape)
+    blocks = (found.z > z_limit(found.z.size, LEVEL)).any(axis=2)
+    height, width = usable.shape
+    return blocks.repeat(BLOCK, axis=0).repeat(BLOCK, axis=1)[:height, :width] & usable.all()
+
+
+def _materials(sides: _Sides, usable: np.ndarray) -> tuple[list[Cause], np.ndarray]:
+    stays = sides.stays("materials") & sides.stays("objects") & usable
+    names = _changed(sides, "materials", "albedo", stays)
+    causes = [Cause("material", f"'{name}', {_albedo(sides, name, stays)}", (name,)) for name in names]
+    exchanged = (
+        usable & sides.stays("objects") & ~sides.stays("materials")
+        & (sides.ours.materials.numbers != MIXED) & (sides.known.materials.numbers != MIXED)
+    )  # fmt: skip
+    if np.count_nonzero(exchanged) >= _FEWEST:
+        others = _names_in(sides, exchanged, "materials")
+        causes.append(Cause("material", f"{_listed('material', others)} exchanged", tuple(others)))
+    covered = _covered(sides, "materials", names)
+    return causes, covered | exchanged
+
+
+def _albedo(sides: _Sides, name: str, stays: np.ndarray) -> str:
+    """How the albedo of a material differs."""
+    mask = stays & sides.known.materials.where(name)
+    found = scores(sides.ours.albedo, sides.known.albedo, WHOLE, mask)
+    if found.z.max() <= z_limit(found.z.size, LEVEL):
+        return "its texture: the mean albedo is the same"
+    mean = found.first.sum() / max(found.second.sum(), 1e-30)
+    return f"mean albedo times {mean:.4g}"
+
+
+def _world(passes: tuple[Passes, Passes]) -> list[Cause]:
+    ours, known = (side.world for side in passes)
+    if (ours is None) != (known is None):
+        return [Cause("world", "only one of both has a world")]
+    if not has_worlds(passes):
+        return []
+    blocks, whole = (scores(ours, known, block) for block in (BLOCK, WHOLE))
+    if max(blocks.z.max(), whole.z.max()) <= z_limit(blocks.z.size + whole.z.size, LEVEL):
+        return []
+    factor = _Factor.of([blocks])
+    if factor.differs and factor.explains:
+        return [Cause("world", f"its light times {factor}")]
+    return [Cause("world", "its directions or colors (turned, or another picture)")]
+
+
+def _light(sides: _Sides) -> list[Cause]:
+    """The picture alone differs: by a common factor, on one material, on the background, or anywhere."""
+    everything = np.ones(sides.known.objects.numbers.shape, bool)
+    found = _exposure(sides, everything)
+    if found:
+        return found
+    regions = _regions(sides)
+    tested = {name: _both(sides.picture, mask) for name, mask in regions.items()}
+    count = sum(each.z.size for pair in tested.values() for each in pair)
+    differ = [name for name, pair in tested.items() if _z(pair) > z_limit(count, LEVEL)]
+    doubtful = [name for name, pair in tested.items() if _z(pair) > z_limit(count, _EXPLAINED)]
+    if not differ:
+        return []
+    if differ == doubtful == [""]:
+        return [Cause("world", "the background")]
+    if len(differ) == 1 and doubtful == differ and len(tested) > 1:
+        sentence = f"'{differ[0]}', with the same albedo (or light that reaches it alone)"
+        return [Cause("material", sentence, (differ[0],))]
+    surfaces = [f"'{name}'" if name else "the background" for name in differ]
+    return [Cause("light", f"lamps, shadows or indirect light, on {_shortened(surfaces)}")]
+
+
+def _exposure(sides: _Sides, mask: np.ndarray) -> list[Cause]:
+    if np.count_nonzero(mask) < _FEWEST:
+        return []
+    factor = _Factor.of([scores(*sides.picture, BLOCK, mask)])
+    if factor.differs and factor.explains:
+        return [Cause("exposure", f"all colors times {factor} (or the power of all lights alike)")]
+    return []
+
+
+class _Factor(NamedTuple):
+    """Of two pictures: by weighted least squares over blocks and channels, which share it."""
+
+    value: float
+    error: float
+    explains: bool  # whether blocks agree with it, at the level _EXPLAINED
+
+    @classmethod
+    def of(cls, found: list[Scores]) -> _Factor:
+        first, second, variance = (
+            np.concatenate([getattr(each, name)[each.pixels > 0] for each in found])
+            for name in ("first", "second", "variance")
+        )
+        weight = (second**2 / variance).sum()
+        if weight == 0:
+            return cls(1.0, np.inf, False)
+        value = (first * second / variance).sum() / weight
+        z = max(each.z_at_factor(value).max() for each in found)
+        # The channels of a render share its light, and so most of their errors.
+        return cls(float(value), float(np.sqrt(3 / weight)), bool(z <= z_limit(first.size, _EXPLAINED)))
+
+    @property
+    def differs(self) -> bool:
+        return abs(self.value - 1) > z_limit(1, LEVEL) * self.error
+
+    def __str__(self) -> str:
+        return f"{self.value:.4f} +- {self.error:.4f}"
+
+
+def _changed(sides: _Sides, kind: str, measured: str, usable: np.ndarray) -> list[str]:
+    """Names of the objects or materials whose pass `measured` differs where both show them, worst first."""
+    first, second, tested = getattr(sides.ours, measured), getattr(sides.known, measured), {}
+    labels = getattr(sides.known, kind)
+    for name in labels.names:
+        mask = usable & labels.where(name)
+        if np.count_nonzero(mask) >= _FEWEST:
+            tested[name] = _both((first, second), mask)
+    count = sum(each.z.size for pair in tested.values() for each in pair)
+    z = {name: _z(pair) for name, pair in tested.items()}
+    return sorted((name for name in z if z[name] > z_limit(count, LEVEL)), key=lambda name: -z[name])
+
+
+def _regions(sides: _Sides) -> dict[str, np.ndarray]:
+    """Pixels by material; "": the background."""
+    labels, stays = sides.known.materials, sides.stays("materials")
+    found = {name: stays & labels.where(name) for name in labels.names}
+    found[""] = stays & (labels.numbers == NOTHING)
+    return {name: mask for name, mask in found.items() if np.count_nonzero(mask) >= _FEWEST}
+
+
+def _both(pair: tuple[Estimate, Estimate], mask: np.ndarray) -> tuple[Scores, Scores]:
+    """By blocks, and all pixels of the mask together."""
+    return scores(*pair, BLOCK, mask), scores(*pair, WHOLE, mask)
+
+
+def _z(pair: tuple[Scores, Scores]) -> float:
+    return max(float(each.z.max()) for each in pair)
+
+
+def _covered(sides: _Sides, kind: str, names: list[str]) -> np.ndarray:
+    """Pixels that show one of `names` in either."""
+    labels = getattr(sides.ours, kind), getattr(sides.known, kind)
+    covered = np.zeros(labels[1].numbers.shape, bool)
+    for name in names:
+        covered |= labels[0].where(name) | labels[1].where(name)
+    return covered
+
+
+def _names_in(sides: _Sides, mask: np.ndarray, kind: str = "objects") -> list[str]:
+    """Names that cover pixels of `mask` in either, those in one of the two only first."""
+    ours, known = getattr(sides.ours, kind), getattr(sides.known, kind)
+    names = [name for labels in (known, ours) for name in labels.names if (mask & labels.where(name)).any()]
+    return sorted(dict.fromkeys(names), key=lambda name: (name in ours.names) + (name in known.names))
+
+
+def _number(labels: Labels, name: str) -> int:
+    return 1 + labels.names.index(name) if name in labels.names else -2
+
+
+def _listed(noun: str, names: list[str]) -> str:
+    quoted = [f"'{name}'" for name in names]
+    return f"{noun}{'s' if len(names) > 1 else ''} {_shortened(quoted)}"
+
+
+def _shortened(texts: list[str]) -> str:
+    if len(texts) > _MOST_NAMES:
+        texts = [*texts[:_MOST_NAMES], f"{len(texts) - _MOST_NAMES} more"]
+    return " and ".join([", ".join(texts[:-1]), texts[-1]] if len(texts) > 1 else texts)
