@@ -1,4 +1,4 @@
-"""What velour-check names as the cause of a difference, on simulated renders of a scene of three materials."""
+"""What velour-check names as the cause of a difference, on simulated renders of three materials."""
 
 from __future__ import annotations
 
@@ -36,13 +36,16 @@ class Scene:
         self.materials = self.objects.copy()
         random = np.random.default_rng(1)
         surface = (self.objects != NOTHING)[..., None]
-        self.shape = surface * np.dstack([np.sin(rows / 9), np.cos(columns / 7), 0.5 + rows / 99, 0.1 + rows / 999])
+        normal = surface * np.dstack([np.sin(rows / 9), np.cos(columns / 7), 0.5 + rows / 99])
+        nearness = np.choose(self.objects.clip(0), [10, 1, 0.6, 0.7])
+        self.shape = np.dstack([normal, nearness * (0.1 + rows / 999)])
         self.coordinates = surface * np.dstack([rows / 7 % 1, columns / 5 % 1])
         tiles = 0.5 + 0.4 * np.sin(rows)[..., None] * np.cos(columns)[..., None]
         self.albedo = surface * tiles * np.array([0.8, 0.6, 0.4])
         light = 0.5 + columns[..., None] / WIDTH
         sky = np.array([0.3, 0.5, 0.9]) * (1 + 0.3 * np.sin(columns / 5)[..., None])
-        self.picture = np.dstack([np.where(surface, light * self.albedo + 0.05, sky), np.ones((HEIGHT, WIDTH))])
+        colors = np.where(surface, light * self.albedo + 0.05, sky)
+        self.picture = np.dstack([colors, np.ones((HEIGHT, WIDTH))])
         self.world = random.uniform(0.1, 1.0, (WORLD, WORLD, 3))
 
     def where(self, name):
@@ -101,14 +104,16 @@ def _moved(scene):
 
 
 def _silhouette(scene):
-    """Two columns of the box, whose front stays where it was."""
-    scene.objects[12:30, 56:58] = scene.materials[12:30, 56:58] = 3
+    """Two more columns of the box, whose front stays where it was."""
+    for name in (*CHANNELS, "objects", "materials"):
+        values = getattr(scene, name)
+        values[12:30, 56:58] = values[12:30, 54:56]
 
 
 def _edge(scene):
-    """Less than a pixel of an edge."""
+    """Less than a pixel of the edge of the box."""
     edges = scene.objects == MIXED
-    edges[:, :36] = False
+    edges[:, :36] = edges[32:] = False
     scene.shape[edges] *= 0.5
 
 
@@ -136,7 +141,9 @@ def _emission(scene):
 
 
 def _exchanged(scene):
-    scene.materials[scene.where("Box")] = 1
+    mask = scene.where("Box")
+    scene.materials[mask] = 1
+    scene.picture[mask, :3] *= 0.8
 
 
 def _transparent(scene):
@@ -159,11 +166,18 @@ CHANGES = {
     _texture: ("material", ("Box",)),
     _refit: ("material", ("Ball",)),
     _emission: ("material", ("Box",)),
-    _exchanged: ("material", ("Box",)),
+    _exchanged: ("material", ("Box", "Floor")),
     _transparent: ("material", ("Box",)),
 }
-WORDS = {_uv: "UV map of object 'Ball'", _texture: "texture", _exposure: "times 1.0", _brighter_world: "light times 1.0",
-         _refit: "mean albedo times 1.0", _exchanged: "exchanged", _transparent: "transparency"}  # fmt: skip
+WORDS = {
+    _uv: "UV map of object 'Ball'",
+    _texture: "texture",
+    _exposure: "times 1.0",
+    _brighter_world: "light times 1.0",
+    _refit: "mean albedo times 1.0",
+    _exchanged: "exchanged",
+    _transparent: "transparency",
+}
 
 
 def known():
@@ -185,7 +199,7 @@ def test_change_is_found_and_named(change):
         comparison, found = judged(scene, seed)
         assert not comparison.agrees
         assert [cause.kind for cause in found] == [kind], found
-        assert found[0].names[:1] == names[:1]
+        assert set(found[0].names[:2]) == set(names)
         assert WORDS.get(change, "") in str(found[0])
 
 
@@ -214,8 +228,9 @@ def test_camera_is_named_where_everything_moves():
 
 def test_no_cause_is_made_up():
     """Control: without a change the tests name nothing, at their level of one in a thousand each."""
-    named = [cause for seed in range(100) for cause in judged(Scene(), 100 + seed)[1] if cause.kind != "unknown"]
-    assert len(named) <= 2  # 100 pictures with eight tests at 1e-3 each: 3 or more in one of 600 runs
+    found = [cause for seed in range(60) for cause in judged(Scene(), 100 + seed)[1]]
+    # 60 pictures with eight tests at 1e-3 each: 3 or more in one of 80 cases.
+    assert sum(cause.kind != "unknown" for cause in found) <= 2
 
 
 def false_alarms(runs, pictures=50, errors=1.0):

@@ -19,6 +19,7 @@ LEVEL = 1e-3  # chance that the tests for one kind of cause name anything that h
 _EXPLAINED = 0.01  # chance that a common factor, or a change of one material only, is not taken for one
 _FEWEST = 16  # pixels of an object or a material that is judged
 _MOST_NAMES = 3
+_DISTANCE = 3  # channel of "shape": grows with the distance
 
 
 class Cause(NamedTuple):
@@ -79,10 +80,10 @@ def _geometry(sides: _Sides, usable: np.ndarray) -> tuple[list[Cause], np.ndarra
     explained = _covered(sides, "objects", moved)
     both = (sides.ours.objects.numbers != MIXED) & (sides.known.objects.numbers != MIXED)
     relabeled = ~stays & both & usable
-    if not moved and not relabeled.any():
-        relabeled = _changed_blocks(sides, usable)
-    if moved or relabeled.any():
-        names = moved or _names_in(sides, relabeled)
+    names = moved or _in_front(sides, relabeled)
+    if not names and usable.all():
+        names = _on_edges(sides)
+    if names:
         seen = set(sides.known.objects.names)
         all_of_them = len(seen) > 1 and seen <= set(names)
         sentence = f"shape or place of {_listed('object', names)}"
@@ -97,12 +98,29 @@ def _geometry(sides: _Sides, usable: np.ndarray) -> tuple[list[Cause], np.ndarra
     return causes, explained
 
 
-def _changed_blocks(sides: _Sides, usable: np.ndarray) -> np.ndarray:
-    """Pixels of the blocks whose shapes differ, edges included; none where something explains them."""
+def _in_front(sides: _Sides, relabeled: np.ndarray) -> list[str]:
+    """Of the two objects that a pixel shows, the nearer one has come or gone."""
+    ours, known = (side.shape.mean[..., _DISTANCE] for side in (sides.ours, sides.known))
+    names = [
+        name
+        for labels, nearer in ((sides.known.objects, known <= ours), (sides.ours.objects, ours < known))
+        for name in labels.names
+        if (relabeled & nearer & labels.where(name)).any()
+    ]
+    return list(dict.fromkeys(names))
+
+
+def _on_edges(sides: _Sides) -> list[str]:
+    """The nearest object in each block whose edges alone have changed."""
     found = scores(sides.ours.shape, sides.known.shape)
-    blocks = (found.z > z_limit(found.z.size, LEVEL)).any(axis=2)
-    height, width = usable.shape
-    return blocks.repeat(BLOCK, axis=0).repeat(BLOCK, axis=1)[:height, :width] & usable.all()
+    distance = np.where(sides.known.objects.numbers > NOTHING, sides.known.shape.mean[..., _DISTANCE], np.inf)
+    names = []
+    for row, column in np.argwhere((found.z > z_limit(found.z.size, LEVEL)).any(axis=2)):
+        block = slice(BLOCK * row, BLOCK * (row + 1)), slice(BLOCK * column, BLOCK * (column + 1))
+        nearest = np.unravel_index(np.argmin(distance[block]), distance[block].shape)
+        number = sides.known.objects.numbers[block][nearest]
+        names += [sides.known.objects.names[number - 1]] if number > NOTHING else []
+    return list(dict.fromkeys(names))
 
 
 def _materials(sides: _Sides, usable: np.ndarray) -> tuple[list[Cause], np.ndarray]:
@@ -114,7 +132,7 @@ def _materials(sides: _Sides, usable: np.ndarray) -> tuple[list[Cause], np.ndarr
         & (sides.ours.materials.numbers != MIXED) & (sides.known.materials.numbers != MIXED)
     )  # fmt: skip
     if np.count_nonzero(exchanged) >= _FEWEST:
-        others = _names_in(sides, exchanged, "materials")
+        others = _materials_in(sides, exchanged)
         causes.append(Cause("material", f"{_listed('material', others)} exchanged", tuple(others)))
     covered = _covered(sides, "materials", names)
     return causes, covered | exchanged
@@ -244,11 +262,11 @@ def _covered(sides: _Sides, kind: str, names: list[str]) -> np.ndarray:
     return covered
 
 
-def _names_in(sides: _Sides, mask: np.ndarray, kind: str = "objects") -> list[str]:
-    """Names that cover pixels of `mask` in either, those in one of the two only first."""
-    ours, known = getattr(sides.ours, kind), getattr(sides.known, kind)
-    names = [name for labels in (known, ours) for name in labels.names if (mask & labels.where(name)).any()]
-    return sorted(dict.fromkeys(names), key=lambda name: (name in ours.names) + (name in known.names))
+def _materials_in(sides: _Sides, mask: np.ndarray) -> list[str]:
+    """That cover pixels of `mask` in either, those of the reference first."""
+    both = sides.known.materials, sides.ours.materials
+    names = [name for labels in both for name in labels.names if (mask & labels.where(name)).any()]
+    return list(dict.fromkeys(names))
 
 
 def _number(labels: Labels, name: str) -> int:

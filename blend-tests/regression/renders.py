@@ -80,8 +80,8 @@ class _Agreement:
         self._names |= names
 
     def labels(self) -> Labels:
-        found, numbers = np.unique(np.where(self._whole, self._ids, 0), return_inverse=True)
-        numbers = 1 + numbers.reshape(self._ids.shape).astype(np.int32)
-        numbers[~self._whole] = MIXED
+        found, places = np.unique(self._ids[self._whole], return_inverse=True)
+        numbers = np.full(self._ids.shape, MIXED, np.int32)
         numbers[self._none] = NOTHING
+        numbers[self._whole] = 1 + places
         return Labels(numbers, tuple(self._names.get(int(each), f"{int(each):08x}") for each in found))
