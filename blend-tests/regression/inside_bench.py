@@ -1,6 +1,6 @@
 """Runs inside Blender: variants of a scene for run_check_bench, and planted changes of them.
 
-The task: "blend" (to open), "save" (paths by variant, or by change), "models" (folder of model files), "report".
+The task: "blend" (to open), "save" (paths by variant or by change), "models" (folder of models), "report".
 """
 
 import math
@@ -38,7 +38,7 @@ def _variant(change):
 
 
 def _dress_up(scene, models):
-    """A sky where the world is one color, a textured ball and a measured cube in the lower corners of the picture."""
+    """A sky where the world is one color, a textured ball and a measured cube in the picture."""
     if scene.world is None or not _mapping(scene):
         _add_sky(scene)
     camera = scene.camera
@@ -49,11 +49,12 @@ def _dress_up(scene, models):
     left, right = (side(corner.x for corner in frame) for side in (min, max))
     bottom, top = (side(corner.y for corner in frame) for side in (min, max))
     size = 0.28 * (top - bottom)
-    for name, x in ((BALL, left + 0.15 * (right - left)), (CUBE, right - 0.15 * (right - left))):
+    for name, share in ((BALL, 0.35), (CUBE, 0.65)):
         obj = _ball(size / 2) if name == BALL else _cube(0.7 * size)
         obj.name, obj.parent = name, camera
         obj.matrix_parent_inverse = Matrix()
-        obj.location, obj.rotation_euler = (x, bottom + 0.2 * (top - bottom), -distance), (0.5, 0.6, 0.2)
+        x, y = left + share * (right - left), bottom + 0.3 * (top - bottom)
+        obj.location, obj.rotation_euler = (x, y, -distance), (0.5, 0.6, 0.2)
     _put(BALL, _tiles(0))
     _put(CUBE, _plastic(models / "plastic.velour"))
 
@@ -111,7 +112,8 @@ def _add_sky(scene):
         color, strength = tuple(inputs["Color"].default_value)[:3], inputs["Strength"].default_value
     rows, columns = np.mgrid[0:64, 0:128]
     clouds = 1 + 0.4 * np.sin(columns * math.pi / 8) * np.cos(rows / 5)
-    sky = np.where((rows > 32 + 4 * np.sin(columns * math.pi / 16))[..., None], (1.0, 1.2, 1.6), (0.5, 0.45, 0.3))
+    above = rows > 32 + 4 * np.sin(columns * math.pi / 16)
+    sky = np.where(above[..., None], (1.0, 1.2, 1.6), (0.5, 0.45, 0.3))
     world = scenes.set_world(strength=strength)
     scene.world, tree = world, world.node_tree
     source, place, picture = (
@@ -160,8 +162,10 @@ def _turn_world(scene, _models):
 
 
 def _swap_texture(_scene, _models):
-    nodes = bpy.data.materials[TILES].node_tree.nodes
-    next(node for node in nodes if node.type == "TEX_IMAGE").image = _tiles(1).node_tree.nodes["Image Texture"].image
+    texture, other = (
+        material.node_tree.nodes["Image Texture"] for material in (bpy.data.materials[TILES], _tiles(1))
+    )
+    texture.image = other.image
 
 
 def _refit(_scene, models):
