@@ -251,7 +251,7 @@ def false_alarms(runs, pictures=50, errors=1.0):
 
 
 def test_chance_seldom_fails_a_run():
-    """Of ten runs of 50 scenes none, in 99 of 100 cases at a level of 0.001."""
+    """Ten runs of 50 scenes: none fails in 99 of 100 cases at a level of 0.001."""
     assert false_alarms(10) == 0
 
 

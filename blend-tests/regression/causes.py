@@ -99,7 +99,7 @@ def _geometry(sides: _Sides, usable: np.ndarray) -> tuple[list[Cause], np.ndarra
 
 
 def _in_front(sides: _Sides, relabeled: np.ndarray) -> list[str]:
-    """Of the two objects that a pixel shows, the nearer one has come or gone."""
+    """The nearer one of the two objects that a pixel shows: it has come or gone."""
     ours, known = (side.shape.mean[..., _DISTANCE] for side in (sides.ours, sides.known))
     names = [
         name
@@ -195,7 +195,7 @@ def _exposure(sides: _Sides, mask: np.ndarray) -> list[Cause]:
 
 
 class _Factor(NamedTuple):
-    """Of two pictures: by weighted least squares over blocks and channels, which share it."""
+    """Factor between two pictures: weighted least squares over blocks and channels, which share it."""
 
     value: float
     error: float

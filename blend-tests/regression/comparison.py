@@ -86,7 +86,7 @@ def smallest_factor(ours: Estimate, reference: Estimate, limit: float) -> float:
 
 
 def comparisons(shape: tuple[int, ...]) -> int:
-    """Of a picture [height x width x channels], by blocks and as a whole."""
+    """Number of comparisons of a picture [height x width x channels], by blocks and as a whole."""
     height, width, channels = shape
     return (-(-height // BLOCK) * -(-width // BLOCK) + 1) * channels
 

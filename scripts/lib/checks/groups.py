@@ -124,7 +124,10 @@ def _in_blender(run: Run, name: str, before: Sequence[str | Path], *options: str
 
 def scenes(run: Run) -> list[Case]:
     update = ["--update"] if run.update else []
-    return _scenes(run, "scenes", [], *update, *run.scenes)
+    found = _scenes(run, "scenes", [], *update, *run.scenes)
+    if run.long and not run.scenes and not run.update:
+        found.append(check(run, "check-bench", PYTHON, ROOT / "blend-tests/run_check_bench", "--afresh"))
+    return found
 
 
 def _scenes(run: Run, name: str, before: Sequence[str | Path], *options: str | Path) -> list[Case]:
