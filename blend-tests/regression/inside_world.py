@@ -35,7 +35,7 @@ class MirrorBall:
 
 def _ball():
     mesh = bpy.data.meshes.new("Mirror ball")
-    rings, segments = 64, 128
+    rings, segments = 32, 64
     points = [(0.0, 0.0, 1.0)]
     for ring in range(1, rings):
         theta = math.pi * ring / rings
