@@ -34,9 +34,8 @@ def staged(tmp_path, path):
 
 
 def contents(path):
-    return [
-        place(path).read_bytes() for place in (lambda p: p, reference.error_path, passes_file.passes_path)
-    ]
+    files_of_it = path, reference.error_path(path), passes_file.passes_path(path)
+    return [file.read_bytes() for file in files_of_it]
 
 
 def test_without_a_terminal_nothing_is_replaced(staged, path, monkeypatch, capsys):
