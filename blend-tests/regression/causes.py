@@ -10,14 +10,12 @@ from typing import NamedTuple
 
 import numpy as np
 
-from support.judge import BLOCK, WHOLE, Estimate, Scores, scores, z_limit
+from support.judge import BLOCK, WHOLE, Estimate, scores, z_limit
 
 from .comparison import COLOR, has_worlds
-from .passes import MIXED, NOTHING, Labels, Passes
+from .passes import MIXED, NOTHING, Passes
+from .regions import EXPLAINED, FEWEST, LEVEL, Factor, Sides, both, changed, covered, largest, regions
 
-LEVEL = 1e-3  # chance that the tests for one kind of cause name anything that has not changed
-_EXPLAINED = 0.01  # chance that a common factor, or a change of one material only, is not taken for one
-_FEWEST = 16  # pixels of an object or a material that is judged
 _MOST_NAMES = 3
 _DISTANCE = 3  # channel of "shape": grows with the distance
 
@@ -31,21 +29,9 @@ class Cause(NamedTuple):
         return f"{self.kind}: {self.sentence}"
 
 
-class _Sides(NamedTuple):
-    picture: tuple[Estimate, Estimate]  # colors; ours, the reference's
-    ours: Passes
-    known: Passes
-
-    def stays(self, kind: str) -> np.ndarray:
-        """[height x width] bool: pixels that show the same object or material in both."""
-        labels = getattr(self.ours, kind), getattr(self.known, kind)
-        numbers = np.array([MIXED, NOTHING, *(_number(labels[0], name) for name in labels[1].names)])
-        return (numbers[labels[1].numbers + 1] == labels[0].numbers) & (labels[0].numbers != MIXED)
-
-
 def find(ours: Estimate, reference: Estimate, passes: tuple[Passes, Passes]) -> list[Cause]:
     """The causes of a difference; never empty. `ours`, `reference`: RGB or RGBA."""
-    sides = _Sides((ours.channels(COLOR), reference.channels(COLOR)), *passes)
+    sides = Sides((ours.channels(COLOR), reference.channels(COLOR)), *passes)
     thinned, explained = _transparency(sides)
     causes, of_shape = _geometry(sides, ~explained)
     explained |= of_shape
@@ -59,7 +45,7 @@ def find(ours: Estimate, reference: Estimate, passes: tuple[Passes, Passes]) -> 
     return causes or [Cause("unknown", "the difference is too small, or too close to edges, to name")]
 
 
-def _transparency(sides: _Sides) -> tuple[list[Cause], np.ndarray]:
+def _transparency(sides: Sides) -> tuple[list[Cause], np.ndarray]:
     """Materials that fill most of their pixels in one of the two only; and the pixels of their objects."""
     causes, explained = [], np.zeros(sides.known.objects.numbers.shape, bool)
     for kind in (sides.known.materials, sides.ours.materials):
@@ -67,19 +53,19 @@ def _transparency(sides: _Sides) -> tuple[list[Cause], np.ndarray]:
         for name in kind.names:
             mask = kind.where(name)
             mixed = np.count_nonzero(mask & (other.numbers == MIXED))
-            if mixed >= _FEWEST and 2 * mixed > np.count_nonzero(mask):
+            if mixed >= FEWEST and 2 * mixed > np.count_nonzero(mask):
                 causes.append(Cause("material", f"'{name}', its transparency", (name,)))
                 explained |= mask
     return causes, explained
 
 
-def _geometry(sides: _Sides, usable: np.ndarray) -> tuple[list[Cause], np.ndarray]:
+def _geometry(sides: Sides, usable: np.ndarray) -> tuple[list[Cause], np.ndarray]:
     """The causes, and the pixels [height x width] that show them."""
     causes, stays = [], sides.stays("objects") & usable
-    moved = _changed(sides, "objects", "shape", stays)
-    explained = _covered(sides, "objects", moved)
-    both = (sides.ours.objects.numbers != MIXED) & (sides.known.objects.numbers != MIXED)
-    relabeled = ~stays & both & usable
+    moved = changed(sides, "objects", "shape", stays)
+    explained = covered(sides, "objects", moved)
+    clear = (sides.ours.objects.numbers != MIXED) & (sides.known.objects.numbers != MIXED)
+    relabeled = ~stays & clear & usable
     names = moved or _in_front(sides, relabeled)
     if not names and usable.all():
         names = _on_edges(sides)
@@ -91,14 +77,14 @@ def _geometry(sides: _Sides, usable: np.ndarray) -> tuple[list[Cause], np.ndarra
             sentence = "all visible objects, or the camera"
         causes.append(Cause("geometry", sentence, tuple(names)))
         explained |= relabeled
-    shifted = _changed(sides, "objects", "coordinates", stays & ~explained)
+    shifted = changed(sides, "objects", "coordinates", stays & ~explained)
     if shifted:
         causes.append(Cause("geometry", f"UV map of {_listed('object', shifted)}", tuple(shifted)))
-        explained |= _covered(sides, "objects", shifted)
+        explained |= covered(sides, "objects", shifted)
     return causes, explained
 
 
-def _in_front(sides: _Sides, relabeled: np.ndarray) -> list[str]:
+def _in_front(sides: Sides, relabeled: np.ndarray) -> list[str]:
     """The nearer one of the two objects that a pixel shows: it has come or gone."""
     ours, known = (side.shape.mean[..., _DISTANCE] for side in (sides.ours, sides.known))
     names = [
@@ -110,7 +96,7 @@ def _in_front(sides: _Sides, relabeled: np.ndarray) -> list[str]:
     return list(dict.fromkeys(names))
 
 
-def _on_edges(sides: _Sides) -> list[str]:
+def _on_edges(sides: Sides) -> list[str]:
     """The nearest object in each block whose edges alone have changed."""
     found = scores(sides.ours.shape, sides.known.shape)
     distance = np.where(sides.known.objects.numbers > NOTHING, sides.known.shape.mean[..., _DISTANCE], np.inf)
@@ -123,22 +109,21 @@ def _on_edges(sides: _Sides) -> list[str]:
     return list(dict.fromkeys(names))
 
 
-def _materials(sides: _Sides, usable: np.ndarray) -> tuple[list[Cause], np.ndarray]:
+def _materials(sides: Sides, usable: np.ndarray) -> tuple[list[Cause], np.ndarray]:
     stays = sides.stays("materials") & sides.stays("objects") & usable
-    names = _changed(sides, "materials", "albedo", stays)
+    names = changed(sides, "materials", "albedo", stays)
     causes = [Cause("material", f"'{name}', {_albedo(sides, name, stays)}", (name,)) for name in names]
     exchanged = (
         usable & sides.stays("objects") & ~sides.stays("materials")
         & (sides.ours.materials.numbers != MIXED) & (sides.known.materials.numbers != MIXED)
     )  # fmt: skip
-    if np.count_nonzero(exchanged) >= _FEWEST:
+    if np.count_nonzero(exchanged) >= FEWEST:
         others = _materials_in(sides, exchanged)
         causes.append(Cause("material", f"{_listed('material', others)} exchanged", tuple(others)))
-    covered = _covered(sides, "materials", names)
-    return causes, covered | exchanged
+    return causes, covered(sides, "materials", names) | exchanged
 
 
-def _albedo(sides: _Sides, name: str, stays: np.ndarray) -> str:
+def _albedo(sides: Sides, name: str, stays: np.ndarray) -> str:
     """How the albedo of a material differs."""
     mask = stays & sides.known.materials.where(name)
     found = scores(sides.ours.albedo, sides.known.albedo, WHOLE, mask)
@@ -157,23 +142,22 @@ def _world(passes: tuple[Passes, Passes]) -> list[Cause]:
     blocks, whole = (scores(ours, known, block) for block in (BLOCK, WHOLE))
     if max(blocks.z.max(), whole.z.max()) <= z_limit(blocks.z.size + whole.z.size, LEVEL):
         return []
-    factor = _Factor.of([blocks])
+    factor = Factor.of([blocks])
     if factor.differs and factor.explains:
         return [Cause("world", f"its light times {factor}")]
     return [Cause("world", "its directions or colors (turned, or another picture)")]
 
 
-def _light(sides: _Sides) -> list[Cause]:
+def _light(sides: Sides) -> list[Cause]:
     """The picture alone differs: by a common factor, on one material, on the background, or anywhere."""
     everything = np.ones(sides.known.objects.numbers.shape, bool)
     found = _exposure(sides, everything)
     if found:
         return found
-    regions = _regions(sides)
-    tested = {name: _both(sides.picture, mask) for name, mask in regions.items()}
+    tested = {name: both(sides.picture, mask) for name, mask in regions(sides).items()}
     count = sum(each.z.size for pair in tested.values() for each in pair)
-    differ = [name for name, pair in tested.items() if _z(pair) > z_limit(count, LEVEL)]
-    doubtful = [name for name, pair in tested.items() if _z(pair) > z_limit(count, _EXPLAINED)]
+    differ = [name for name, pair in tested.items() if largest(pair) > z_limit(count, LEVEL)]
+    doubtful = [name for name, pair in tested.items() if largest(pair) > z_limit(count, EXPLAINED)]
     if not differ:
         return []
     if differ == doubtful == [""]:
@@ -185,92 +169,20 @@ def _light(sides: _Sides) -> list[Cause]:
     return [Cause("light", f"lamps, shadows or indirect light, on {_shortened(surfaces)}")]
 
 
-def _exposure(sides: _Sides, mask: np.ndarray) -> list[Cause]:
-    if np.count_nonzero(mask) < _FEWEST:
+def _exposure(sides: Sides, mask: np.ndarray) -> list[Cause]:
+    if np.count_nonzero(mask) < FEWEST:
         return []
-    factor = _Factor.of([scores(*sides.picture, BLOCK, mask)])
+    factor = Factor.of([scores(*sides.picture, BLOCK, mask)])
     if factor.differs and factor.explains:
         return [Cause("exposure", f"all colors times {factor} (or the power of all lights alike)")]
     return []
 
 
-class _Factor(NamedTuple):
-    """Factor between two pictures: weighted least squares over blocks and channels, which share it."""
-
-    value: float
-    error: float
-    explains: bool  # whether blocks agree with it, at the level _EXPLAINED
-
-    @classmethod
-    def of(cls, found: list[Scores]) -> _Factor:
-        first, second, variance = (
-            np.concatenate([getattr(each, name)[each.pixels > 0] for each in found])
-            for name in ("first", "second", "variance")
-        )
-        weight = (second**2 / variance).sum()
-        if weight == 0:
-            return cls(1.0, np.inf, False)
-        value = (first * second / variance).sum() / weight
-        z = max(each.z_at_factor(value).max() for each in found)
-        # The channels of a render share its light, and so most of their errors.
-        return cls(float(value), float(np.sqrt(3 / weight)), bool(z <= z_limit(first.size, _EXPLAINED)))
-
-    @property
-    def differs(self) -> bool:
-        return abs(self.value - 1) > z_limit(1, LEVEL) * self.error
-
-    def __str__(self) -> str:
-        return f"{self.value:.4f} +- {self.error:.4f}"
-
-
-def _changed(sides: _Sides, kind: str, measured: str, usable: np.ndarray) -> list[str]:
-    """Names of the objects or materials whose pass `measured` differs where both show them, worst first."""
-    first, second, tested = getattr(sides.ours, measured), getattr(sides.known, measured), {}
-    labels = getattr(sides.known, kind)
-    for name in labels.names:
-        mask = usable & labels.where(name)
-        if np.count_nonzero(mask) >= _FEWEST:
-            tested[name] = _both((first, second), mask)
-    count = sum(each.z.size for pair in tested.values() for each in pair)
-    z = {name: _z(pair) for name, pair in tested.items()}
-    return sorted((name for name in z if z[name] > z_limit(count, LEVEL)), key=lambda name: -z[name])
-
-
-def _regions(sides: _Sides) -> dict[str, np.ndarray]:
-    """Pixels by material; "": the background."""
-    labels, stays = sides.known.materials, sides.stays("materials")
-    found = {name: stays & labels.where(name) for name in labels.names}
-    found[""] = stays & (labels.numbers == NOTHING)
-    return {name: mask for name, mask in found.items() if np.count_nonzero(mask) >= _FEWEST}
-
-
-def _both(pair: tuple[Estimate, Estimate], mask: np.ndarray) -> tuple[Scores, Scores]:
-    """By blocks, and all pixels of the mask together."""
-    return scores(*pair, BLOCK, mask), scores(*pair, WHOLE, mask)
-
-
-def _z(pair: tuple[Scores, Scores]) -> float:
-    return max(float(each.z.max()) for each in pair)
-
-
-def _covered(sides: _Sides, kind: str, names: list[str]) -> np.ndarray:
-    """Pixels that show one of `names` in either."""
-    labels = getattr(sides.ours, kind), getattr(sides.known, kind)
-    covered = np.zeros(labels[1].numbers.shape, bool)
-    for name in names:
-        covered |= labels[0].where(name) | labels[1].where(name)
-    return covered
-
-
-def _materials_in(sides: _Sides, mask: np.ndarray) -> list[str]:
+def _materials_in(sides: Sides, mask: np.ndarray) -> list[str]:
     """That cover pixels of `mask` in either, those of the reference first."""
-    both = sides.known.materials, sides.ours.materials
-    names = [name for labels in both for name in labels.names if (mask & labels.where(name)).any()]
+    sides_labels = sides.known.materials, sides.ours.materials
+    names = [name for labels in sides_labels for name in labels.names if (mask & labels.where(name)).any()]
     return list(dict.fromkeys(names))
-
-
-def _number(labels: Labels, name: str) -> int:
-    return 1 + labels.names.index(name) if name in labels.names else -2
 
 
 def _listed(noun: str, names: list[str]) -> str:
