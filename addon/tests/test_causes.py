@@ -171,10 +171,10 @@ CHANGES = {
 }
 WORDS = {
     _uv: "UV map of object 'Ball'",
-    _texture: "texture",
+    _texture: "its texture or model",
     _exposure: "times 1.0",
     _brighter_world: "light times 1.0",
-    _refit: "mean albedo times 1.0",
+    _refit: "albedo times 1.0",
     _exchanged: "exchanged",
     _transparent: "transparency",
 }

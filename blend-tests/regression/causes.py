@@ -126,11 +126,12 @@ def _materials(sides: Sides, usable: np.ndarray) -> tuple[list[Cause], np.ndarra
 def _albedo(sides: Sides, name: str, stays: np.ndarray) -> str:
     """How the albedo of a material differs."""
     mask = stays & sides.known.materials.where(name)
-    found = scores(sides.ours.albedo, sides.known.albedo, WHOLE, mask)
-    if found.z.max() <= z_limit(found.z.size, LEVEL):
-        return "its texture: the mean albedo is the same"
-    mean = found.first.sum() / max(found.second.sum(), 1e-30)
-    return f"mean albedo times {mean:.4g}"
+    found, whole = both((sides.ours.albedo, sides.known.albedo), mask)
+    factor = Factor.of([found])
+    if factor.differs and factor.explains:
+        return f"albedo times {factor}"
+    mean = whole.first.sum() / max(whole.second.sum(), 1e-30)
+    return f"its texture or model: albedo differs by place, times {mean:.4f} on average"
 
 
 def _world(passes: tuple[Passes, Passes]) -> list[Cause]:
