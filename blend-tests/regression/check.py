@@ -1,4 +1,4 @@
-"""A case rendered and judged, or its references made anew. What goes wrong is an outcome, no exception."""
+"""A case rendered and judged, or its references made again. What goes wrong is an outcome, no exception."""
 
 from __future__ import annotations
 
@@ -125,7 +125,7 @@ def describe(comparison: Comparison) -> str:
     alone = " alone, the colors agree" if comparison.picture_agrees else ""
     return (
         f"differs in {comparison.what}{alone}{place}:"
-        f" {numbers}; if the page shows what was meant, make the reference anew with --update"
+        f" {numbers}; if the page shows what was meant, make the reference again with --update"
     )
 
 
