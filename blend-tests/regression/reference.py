@@ -48,7 +48,7 @@ def read(path: Path, renders: Estimate) -> Estimate:
         return estimate_single(mean, renders)
     error = _pixels(error_path(path))
     if error.shape != mean.shape or not np.isfinite(error).all() or (error < 0).any():
-        raise ValueError(f"{error_path(path).name} holds no standard errors of it; take it away, or {_AGAIN}.")
+        raise ValueError(f"{error_path(path).name} holds no standard errors of it; remove it, or {_AGAIN}.")
     return Estimate(mean, error**2, renders.seeds, STORED)
 
 
