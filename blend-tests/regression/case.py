@@ -7,6 +7,7 @@ from pathlib import Path
 
 import numpy as np
 
+from .causes import Cause
 from .comparison import Comparison
 
 CHECK_SEEDS, REFERENCE_SEEDS = 4, 16
@@ -20,6 +21,7 @@ class Settings:
     seeds: int | None = None  # None: CHECK_SEEDS, or REFERENCE_SEEDS of a reference
     samples: int | None = None  # None: as the file says
     scripts: bool = False  # whether those inside of .blend files run
+    passes: bool = False  # whether what differs is told from passes
 
     def seed_list(self, update: bool) -> list[int]:
         first = FIRST_REFERENCE_SEED if update else 1
@@ -49,7 +51,14 @@ class Outcome:
     ours: np.ndarray | None = None  # [height x width x channels], linear, row 0 at the bottom
     reference: np.ndarray | None = None
     notes: list[str] = field(default_factory=list)
+    causes: list[Cause] = field(default_factory=list)  # of a difference, where the reference has passes
+    seconds: float = 0.0
+    to_approve: bool = False  # a new reference that differs from the one until now
+
+    @property
+    def word(self) -> str:
+        return "to approve" if self.to_approve else "ok" if self.passed else "FAILED"
 
     @property
     def line(self) -> str:
-        return f"{'ok' if self.passed else 'FAILED'}: {self.name}: {self.sentence}"
+        return f"{self.word}: {self.name}: {self.sentence}"

@@ -1,29 +1,37 @@
-"""A case rendered and judged, or its references made anew. What goes wrong is an outcome, no exception."""
+"""A case rendered and judged, or its references made again. What goes wrong is an outcome, no exception."""
 
 from __future__ import annotations
 
 import shutil
 from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
 from velour.native import VelourError, images
 
 from support.judge import BLOCK, Estimate, estimate
 
-from . import reference
+from . import causes, passes_file, reference
 from .blender import BlenderError, Installation, notes
 from .case import Case, Outcome, Settings
 from .comparison import Comparison, compare
+from .passes import Passes
+from .renders import read_renders
 
 LEAST_SEEN = 1.0  # per cent of exposure that a comparison should tell
 
 
+class Renders(NamedTuple):
+    picture: Estimate
+    passes: Passes | None  # None: not asked for
+
+
 def check(case: Case, blender: Installation, settings: Settings, pictures: int) -> list[Outcome]:
     """`pictures`: of the whole run, which share one chance of a false alarm."""
-    found = _rendered(case, blender, settings, update=False)
+    found = rendered(case, blender, settings, update=False)
     if isinstance(found, Outcome):
         return [found]
-    outcomes = [_judged(case, frame, renders, pictures) for frame, renders in found.items()]
+    outcomes = [judged(case, frame, renders, pictures) for frame, renders in found.items()]
     if all(outcome.passed for outcome in outcomes):
         shutil.rmtree(case.work, ignore_errors=True)  # what is left is to look into
     return outcomes
@@ -33,14 +41,14 @@ def update(
     case: Case, blender: Installation, settings: Settings, most_bytes: int | None = None
 ) -> list[Outcome]:
     """Writes the references of a case; refuses one of more than `most_bytes`."""
-    found = _rendered(case, blender, settings, update=True)
+    found = rendered(case, blender, settings, update=True)
     if isinstance(found, Outcome):
         return [found]
-    return [_updated(case, frame, renders, most_bytes) for frame, renders in found.items()]
+    return [written(case, frame, renders, most_bytes) for frame, renders in found.items()]
 
 
-def _rendered(case: Case, blender: Installation, settings: Settings, update: bool) -> dict | Outcome:
-    """Estimate by frame, or what is in the way."""
+def rendered(case: Case, blender: Installation, settings: Settings, update: bool) -> dict | Outcome:
+    """Renders by frame, or what is in the way."""
     seeds, pictures = settings.seed_list(update), case.work / "renders"
     try:
         shutil.rmtree(pictures, ignore_errors=True)
@@ -51,32 +59,49 @@ def _rendered(case: Case, blender: Installation, settings: Settings, update: boo
             "frames": list(case.references),
             "seeds": seeds,
             "samples": settings.samples,
+            "passes": settings.passes,
             "folder": str(pictures),
         }
-        blender.run("inside_render.py", task, case.work)
-        return {frame: _estimate(pictures, frame, seeds) for frame in case.references}
+        layer = blender.run("inside_render.py", task, case.work)["layer"]
+        return {frame: read_frame(pictures, frame, seeds, layer) for frame in case.references}
     except (BlenderError, VelourError, OSError, ValueError) as error:
         return _outcome(case, None, False, f"{case.blend.name}: {error}")
 
 
-def _estimate(folder: Path, frame: int | None, seeds: list[int]) -> Estimate:
+def read_frame(folder: Path, frame: int | None, seeds: list[int], layer: str | None) -> Renders:
+    """`layer`: of the passes; None without."""
     name = "own" if frame is None else frame
-    found = estimate(images.read(folder / f"{name}-{seed}.exr") for seed in seeds)
-    if not np.isfinite(found.variance).all():
+    paths = [folder / f"{name}-{seed}.exr" for seed in seeds]
+    if layer is None:
+        found = Renders(estimate(images.read(path) for path in paths), None)
+    else:
+        worlds = [path.with_name(f"world-{path.name}") for path in paths]
+        found = Renders(*read_renders(paths, worlds if worlds[0].is_file() else [], layer))
+    if not np.isfinite(found.picture.variance).all():
         raise ValueError(f"frame {name} has pixels that are not finite; look at its materials and lights.")
     return found
 
 
-def _judged(case: Case, frame: int | None, renders: Estimate, pictures: int) -> Outcome:
-    path = case.references[frame]
+def judged(case: Case, frame: int | None, renders: Renders, pictures: int) -> Outcome:
+    path, remarks = case.references[frame], []
     try:
-        known = reference.read(path, renders)
+        known = reference.read(path, renders.picture)
     except ValueError as error:
         return _outcome(case, frame, False, f"{path.name}: {error}")
-    comparison = compare(renders, known, pictures)
+    both = None
+    if renders.passes:
+        try:
+            both = renders.passes, passes_file.read(path, known.mean.shape[:2])
+        except passes_file.PassesError as error:
+            remarks.append(str(error))
+    comparison = compare(renders.picture, known, pictures, both)
     outcome = _outcome(case, frame, comparison.agrees, describe(comparison))
     outcome.comparison = comparison
-    outcome.ours, outcome.reference = renders.mean, known.mean
+    outcome.ours, outcome.reference = renders.picture.mean, known.mean
+    outcome.notes += remarks
+    if both and not comparison.agrees:
+        outcome.causes = causes.find(renders.picture, known, both)
+        outcome.sentence = f"{'; '.join(map(str, outcome.causes))}. It {outcome.sentence}"
     if comparison.sees > LEAST_SEEN:
         outcome.notes.append(
             f"Too noisy to tell {LEAST_SEEN:g} % of exposure ({comparison.sees:.1f} %):"
@@ -93,24 +118,38 @@ def describe(comparison: Comparison) -> str:
     )
     if comparison.agrees:
         return f"largest block difference {numbers}; sees {comparison.sees:.2f} % of exposure"
-    left, bottom = (index * BLOCK for index in comparison.block)
+    place = ""
+    if comparison.block:
+        left, bottom = (index * BLOCK for index in comparison.block)
+        place = f", most in the block {left} pixels from the left, {bottom} from below"
+    alone = " alone, the colors agree" if comparison.picture_agrees else ""
     return (
-        f"differs in {comparison.what}, most in the block {left} pixels from the left, {bottom} from below:"
-        f" {numbers}; if the page shows what was meant, make the reference anew with --update"
+        f"differs in {comparison.what}{alone}{place}:"
+        f" {numbers}; if the page shows what was meant, make the reference again with --update"
     )
 
 
-def _updated(case: Case, frame: int | None, renders: Estimate, most_bytes: int | None) -> Outcome:
+def write(path: Path, renders: Renders) -> int:
+    """A reference, its passes last: they are bound to the picture. Returns the bytes of its files."""
+    reference.write(path, renders.picture)
+    written = [path, reference.error_path(path)]
+    if renders.passes:
+        passes_file.write(path, renders.passes)
+        written.append(passes_file.passes_path(path))
+    return sum(file.stat().st_size for file in written)
+
+
+def written(case: Case, frame: int | None, renders: Renders, most_bytes: int | None = None) -> Outcome:
+    """Writes a reference."""
     path = case.references[frame]
-    reference.write(path, renders)
-    size = sum(file.stat().st_size for file in (path, reference.error_path(path)))
+    size = write(path, renders)
     if most_bytes and size > most_bytes:
         sentence = (
             f"{path.name} and its error have {size} bytes, more than {most_bytes}; make the picture smaller."
         )
         return _outcome(case, frame, False, sentence)
-    outcome = _outcome(case, frame, True, f"{path.name} and its error written, {size} bytes")
-    outcome.ours = outcome.reference = renders.mean
+    outcome = _outcome(case, frame, True, f"{path.name} written, {size} bytes with its error")
+    outcome.ours = outcome.reference = renders.picture.mean
     return outcome
 
 

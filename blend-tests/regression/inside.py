@@ -9,11 +9,12 @@ import bpy
 
 
 def run(main):
-    """Calls `main(task)` with the task that the command line ends with; its error goes into the report."""
+    """Calls `main(task)` with the task that the command line ends with. The report gets the dictionary that
+    it returns, or its error."""
     task = json.loads(sys.argv[sys.argv.index("--") + 1])
     report = {"error": None}
     try:
-        main(task)
+        report |= main(task) or {}
     except Exception as error:
         report["error"] = sentence(error)
     Path(task["report"]).write_text(json.dumps(report))
@@ -73,7 +74,7 @@ def _curve_lists(action):
 
 def render(scene, path):
     scene.render.filepath = str(path)
-    bpy.ops.render.render(write_still=True)
+    bpy.ops.render.render(write_still=True, scene=scene.name)
     if not path.is_file():
         raise RuntimeError(f"Blender rendered but wrote no picture to {path}.")
 

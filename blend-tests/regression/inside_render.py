@@ -1,8 +1,9 @@
 """Runs inside Blender: renders frames of a .blend with Velour, once for each seed, into EXR files.
 
 The task: "blend", "scripts" (whether its own may run), "frames" (numbers, or [null] for the one that the file
-was saved at), "seeds" (added to the file's), "samples" (null: the file's), "folder" (of the pictures,
-FRAME-SEED.exr, FRAME being "own" for null) and "report".
+was saved at), "seeds" (added to the file's), "samples" (null: the file's), "passes" (whether the files get
+those that name causes, and the world gets files of its own), "folder" (of the pictures, FRAME-SEED.exr and
+world-FRAME-SEED.exr, FRAME being "own" for null) and "report", which gets "layer" (of the passes, or null).
 """
 
 import sys
@@ -13,6 +14,9 @@ import bpy
 sys.path.insert(0, str(Path(__file__).parent))
 
 import inside
+import inside_world
+
+_MIST_METERS = 1000.0  # distances beyond look alike
 
 
 def main(task):
@@ -22,6 +26,8 @@ def main(task):
     inside.show_renders(scene)
     scene.render.engine = "VELOUR"
     _set_samples(scene, task["samples"])
+    ball = inside_world.MirrorBall(scene) if task["passes"] and scene.world else None
+    layer = _show_passes(scene) if task["passes"] else None
     first = scene.velour.seed
     for frame in task["frames"]:
         if frame is not None:
@@ -30,6 +36,9 @@ def main(task):
             scene.velour.seed = (first + seed) % (1 << 31)
             name = f"{'own' if frame is None else frame}-{seed}.exr"
             inside.render(scene, Path(task["folder"]) / name)
+            if ball:
+                ball.render(Path(task["folder"]) / f"world-{name}", scene.frame_current, scene.velour.seed)
+    return {"layer": layer}
 
 
 def _set_samples(scene, samples):
@@ -39,4 +48,30 @@ def _set_samples(scene, samples):
         scene.velour.samples = samples
 
 
-inside.run(main)
+def _show_passes(scene):
+    """Switches on the passes that tell geometry, materials and light apart; the name of their view layer.
+
+    All are means over the camera rays of a pixel: depth and position are those of one ray, whose errors four
+    seeds cannot tell. Mist takes the place of depth: the root of the distance, up to _MIST_METERS.
+    """
+    layer = next((each for each in scene.view_layers if each.use), scene.view_layers[0])
+    layer.use_pass_normal = layer.use_pass_uv = layer.velour.use_pass_albedo = True
+    layer.use_pass_cryptomatte_object = layer.use_pass_cryptomatte_material = True
+    layer.pass_cryptomatte_depth = 2
+    layer.use_pass_mist = True
+    if scene.world is None:
+        scene.world = bpy.data.worlds.new("None")
+        scene.world.color = (0, 0, 0)
+    mist = scene.world.mist_settings
+    mist.start, mist.depth, mist.falloff = 0.0, _MIST_METERS, "INVERSE_QUADRATIC"
+    settings = scene.render.image_settings
+    if hasattr(settings, "media_type"):  # 5.0 and newer
+        settings.media_type = "MULTI_LAYER_IMAGE"
+    settings.file_format, settings.color_depth = "OPEN_EXR_MULTILAYER", "32"
+    if hasattr(settings, "use_exr_interleave"):  # one part in place of one for each pass
+        settings.use_exr_interleave = True
+    return layer.name
+
+
+if __name__ == "__main__":
+    inside.run(main)

@@ -14,7 +14,7 @@ from .case import Outcome
 from .views import GAIN, MAGNIFICATION, MARGIN, crop, views
 
 _TITLES = {"reference": "reference", "new": "new", "difference": f"difference x {GAIN}"}
-_COLUMNS = ("scene", "verdict")
+_COLUMNS = ("scene", "verdict", "causes")
 _NUMBERS = (
     "largest block difference, %",
     "in standard errors",
@@ -78,7 +78,7 @@ class Page:
     def _pictures(self, outcome: Outcome, stem: str) -> list[str]:
         made, caption = views(outcome)
         parts = [f'<div class="whole">{self._figures(made, stem)}</div>']
-        if not outcome.passed:
+        if outcome.comparison and not outcome.comparison.agrees and outcome.comparison.block:
             block = outcome.comparison.block
             parts.append(
                 _tag("p", f"The worst block and {MARGIN} pixels around it, {MAGNIFICATION} times as large:")
@@ -106,13 +106,13 @@ def _number(name: str, text: str) -> str:
 
 
 def _word(outcome: Outcome) -> str:
-    word = "ok" if outcome.passed else "failed"
-    return f'<span class="{word}">{word}</span>'
+    return f'<span class="{"ok" if outcome.passed else "failed"}">{outcome.word.lower()}</span>'
 
 
 def _row(outcome: Outcome, number: int) -> str:
     cells = [_tag("td", f'<a href="#{number}">{html.escape(outcome.name)}</a>'), _tag("td", _word(outcome))]
     found = outcome.comparison
+    cells.append(_tag("td", "<br>".join(html.escape(str(cause)) for cause in outcome.causes)))
     if found:
         texts = (f"{found.percent:.2f}", f"{found.z:.1f}", f"{found.limit:.1f}", f"{found.sees:.2f}")
         cells += [_number("td", text) for text in texts]
@@ -123,4 +123,6 @@ def _row(outcome: Outcome, number: int) -> str:
 
 def _record(outcome: Outcome) -> dict:
     numbers = outcome.comparison._asdict() if outcome.comparison else {}
-    return {"name": outcome.name, "passed": outcome.passed, "sentence": outcome.sentence, **numbers}
+    causes = [cause._asdict() for cause in outcome.causes]
+    record = {"name": outcome.name, "passed": outcome.passed, "sentence": outcome.sentence}
+    return {**record, "seconds": round(outcome.seconds, 2), "causes": causes, **numbers}

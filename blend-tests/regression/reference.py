@@ -10,7 +10,7 @@ from velour.native import VelourError, images
 from support.judge import Estimate, estimate_single
 
 _MEAN_BITS, _ERROR_BITS = 16, 7  # of 23 after the point: what noise makes of the rest cannot be compressed
-_ANEW = "make the reference anew with --update"
+_AGAIN = "make the reference again with --update"
 STORED = 2.0 ** -(_MEAN_BITS + 1) / np.sqrt(3)  # relative standard error that is left by this
 
 
@@ -20,8 +20,16 @@ def error_path(path: Path) -> Path:
 
 def write(path: Path, estimate: Estimate) -> None:
     # The error first: a mean without one would be taken for a single render.
-    images.write(error_path(path), _rounded(np.sqrt(estimate.variance), _ERROR_BITS))
-    images.write(path, _rounded(estimate.mean, _MEAN_BITS))
+    images.write(error_path(path), rounded_error(estimate))
+    images.write(path, rounded_mean(estimate))
+
+
+def rounded_mean(estimate: Estimate) -> np.ndarray:
+    return _rounded(estimate.mean, _MEAN_BITS)
+
+
+def rounded_error(estimate: Estimate) -> np.ndarray:
+    return _rounded(np.sqrt(estimate.variance), _ERROR_BITS)
 
 
 def read(path: Path, renders: Estimate) -> Estimate:
@@ -33,14 +41,14 @@ def read(path: Path, renders: Estimate) -> Estimate:
         renders = renders.channels(slice(0, 3))
     if mean.shape != renders.mean.shape:
         sizes = f"it is {_size(mean)}, the render {_size(renders.mean)}"
-        raise ValueError(f"{sizes}; render at its size, or {_ANEW}.")
+        raise ValueError(f"{sizes}; render at its size, or {_AGAIN}.")
     if not np.isfinite(mean).all():
-        raise ValueError(f"it holds numbers that are not finite; {_ANEW}.")
+        raise ValueError(f"it holds numbers that are not finite; {_AGAIN}.")
     if not error_path(path).is_file():
         return estimate_single(mean, renders)
     error = _pixels(error_path(path))
     if error.shape != mean.shape or not np.isfinite(error).all() or (error < 0).any():
-        raise ValueError(f"{error_path(path).name} holds no standard errors of it; take it away, or {_ANEW}.")
+        raise ValueError(f"{error_path(path).name} holds no standard errors of it; remove it, or {_AGAIN}.")
     return Estimate(mean, error**2, renders.seeds, STORED)
 
 
@@ -49,7 +57,7 @@ def _pixels(path: Path) -> np.ndarray:
         return images.read(path).astype(np.float64)
     except VelourError as error:
         detail = error.sentence.removeprefix(f"{path}: ").rstrip(".")
-        raise ValueError(f"{detail}; {_ANEW}.") from error
+        raise ValueError(f"{detail}; {_AGAIN}.") from error
 
 
 def _rounded(values: np.ndarray, bits: int) -> np.ndarray:

@@ -8,15 +8,24 @@ import shutil
 import signal
 import sys
 import tempfile
+import time
+from collections.abc import Callable, Iterator
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 TESTS = Path(__file__).resolve().parents[1]
 sys.path.insert(0, str(TESTS))
 
 from regression import blender, folder  # noqa: E402
 from regression.case import Case, Outcome, Settings  # noqa: E402
+from support import junit, process, report  # noqa: E402
+
+if TYPE_CHECKING:  # it imports the package, which _installation() finds
+    from regression.update import Staged
 
 STAGE = TESTS.parent / "build/release/blender"
+JOBS = min(2, os.cpu_count() or 1)  # starting and reading keep one core busy
 SECONDS = 900  # that all renders of a .blend may take
 INTERRUPTED = 130
 PAGE_MARK = "report.json"  # in every folder that velour-check made
@@ -42,9 +51,12 @@ def _arguments() -> argparse.Namespace:
     )
     add = parser.add_argument
     add("path", nargs="+", type=Path, metavar="FOLDER", help="with .blend files, or a .blend file")
-    add("--update", action="store_true", help="make the references anew: NAME.exr and NAME.error.exr")
+    add("--update", action="store_true", help="make references; asks before it replaces any")
+    add("--yes", action="store_true", help="with --update: replace references without asking")
     add("--frame", type=int, action="append", metavar="N", help="of references to make; may be repeated")
     add("--output", type=Path, metavar="FOLDER", help="of the page (velour-check in the first FOLDER)")
+    add("--junit", type=Path, metavar="FILE", help="write a JUnit XML report")
+    add("--jobs", type=int, default=JOBS, metavar="N", help=f"Blenders that run at a time ({JOBS})")
     add("--seeds", type=int, metavar="N", help="renders of each picture (4; of a reference 16)")
     add("--samples", type=int, metavar="N", help="directions a pixel (those of the .blend)")
     add(
@@ -59,6 +71,10 @@ def _arguments() -> argparse.Namespace:
     arguments = parser.parse_intermixed_args()
     if arguments.seeds is not None and arguments.seeds < 2:
         parser.error("--seeds: at least 2 are needed to know how noisy they are")
+    if arguments.jobs < 1:
+        parser.error("--jobs: at least 1")
+    if arguments.yes and not arguments.update:
+        parser.error("--yes is for --update")
     if arguments.frame and not arguments.update:
         parser.error("--frame is for --update; frames are checked where there is a reference of them")
     return arguments
@@ -100,36 +116,76 @@ def _installation(arguments: argparse.Namespace) -> blender.Installation:
 def _run(
     arguments: argparse.Namespace, cases: list[Case], installation: blender.Installation, output: Path
 ) -> int:
-    from regression import page  # imports the package
+    from regression import page, update  # they import the package
 
-    settings = Settings(arguments.seeds, arguments.samples, arguments.scripts)
-    shown = page.Page(output, "Velour: renders beside their references")
+    settings = Settings(arguments.seeds, arguments.samples, arguments.scripts, passes=True)
     pictures = sum(len(case.references) for case in cases) or 1
-    passed = failed = 0
-    for number, case in enumerate(cases, 1):
-        print(f"{number} of {len(cases)}: {case.blend}", file=sys.stderr, flush=True)
-        for outcome in _outcomes(case, installation, settings, pictures, arguments.update):
-            print(outcome.line, flush=True)
-            shown.add(outcome)
-            passed, failed = passed + outcome.passed, failed + (not outcome.passed)
+    staged = update.Staged(output / "new") if arguments.update else None
+
+    def work(case: Case) -> list[Outcome]:
+        start = time.monotonic()
+        outcomes = _outcomes(case, installation, settings, pictures, staged)
+        for outcome in outcomes:
+            outcome.seconds = (time.monotonic() - start) / len(outcomes)
+        return outcomes
+
+    names = {"reference": "reference until now"} if staged else {}
+    shown = page.Page(output, "Velour: renders beside their references", names)
+    ended = []
+    for outcome in _in_order(work, cases, arguments.jobs):
+        print(outcome.line, flush=True)
+        shown.add(outcome)
+        ended.append(outcome)
     print(f"page: {shown.finish()}")
-    print(f"{passed} as expected, {failed} not")
+    if arguments.junit:
+        _write_junit(arguments.junit.resolve(), ended)
+    failed = sum(not outcome.passed for outcome in ended)
+    if staged:
+        return max(int(failed > 0), staged.approve(arguments.yes))
+    print(f"{len(ended) - failed} as expected, {failed} not")
     return 1 if failed else 0
 
 
-def _outcomes(
-    case: Case, installation: blender.Installation, settings: Settings, pictures: int, update: bool
-) -> list[Outcome]:
-    from regression import check
+def _in_order(work: Callable[[Case], list[Outcome]], cases: list[Case], jobs: int) -> Iterator[Outcome]:
+    """Outcomes in the order of the cases, whose Blenders run `jobs` at a time."""
+    with ThreadPoolExecutor(jobs) as pool:
+        runs = [pool.submit(work, case) for case in cases]
+        try:
+            for number, (case, run) in enumerate(zip(cases, runs, strict=True), 1):
+                print(f"{number} of {len(cases)}: {case.blend}", file=sys.stderr, flush=True)
+                yield from run.result()
+        except BaseException:
+            pool.shutdown(wait=False, cancel_futures=True)
+            process.stop_all()
+            raise
 
-    if update:
+
+def _outcomes(
+    case: Case, installation: blender.Installation, settings: Settings, pictures: int, staged: Staged | None
+) -> list[Outcome]:
+    from regression import check, update
+
+    if staged is not None:
         if not case.references:
             case.references[None] = folder.own_reference(case.blend)
-        return check.update(case, installation, settings)
+        return update.update(case, installation, settings, pictures, staged)
     if not case.references:
         sentence = f"{case.blend.name} has no reference; make {case.blend.stem}.exr with --update."
         return [Outcome(case.name, False, sentence)]
     return check.check(case, installation, settings, pictures)
+
+
+def _write_junit(path: Path, outcomes: list[Outcome]) -> None:
+    tests = [
+        report.Test(
+            outcome.name,
+            report.PASSED if outcome.passed else report.FAILED,
+            outcome.seconds,
+            reason="" if outcome.passed else outcome.sentence,
+        )
+        for outcome in outcomes
+    ]
+    junit.write(path, {"velour-check": tests})
 
 
 if __name__ == "__main__":

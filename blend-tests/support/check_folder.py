@@ -35,7 +35,7 @@ class CheckFolderTest(BlenderTest):
 
     def references(self, *names):
         """Copies the reference of "shot" to other names."""
-        for ending in (".exr", ".error.exr"):
+        for ending in (".exr", ".error.exr", ".passes.npz"):
             for name in names:
                 shutil.copy(self.shots / f"shot{ending}", self.shots / f"{name}{ending}")
 
@@ -51,5 +51,6 @@ class CheckFolderTest(BlenderTest):
         return done.returncode, done.stdout, {outcome["name"]: outcome for outcome in outcomes}
 
     def update(self, *arguments):
+        """Makes references; nothing is there yet that would need approval."""
         status, said, _ = self.check("--update", *arguments)
         self.assertEqual(status, 0, said)

@@ -14,9 +14,9 @@ ROUNDING = 1e-5  # of the picture's mean: what float32 leaves of a block's mean,
 HALF_ROUNDING = 2**-11 / np.sqrt(3)  # relative standard error of a half float
 
 
-def z_limit(comparisons):
-    """Limit of z: any of so many comparisons exceeds it by chance with probability FAMILY_ERROR."""
-    return NormalDist().inv_cdf(1 - FAMILY_ERROR / comparisons / 2)
+def z_limit(comparisons, level=FAMILY_ERROR):
+    """Limit of z: any of so many comparisons exceeds it by chance with probability `level`."""
+    return NormalDist().inv_cdf(1 - level / max(comparisons, 1) / 2)
 
 
 Z_LIMIT = z_limit(MOST_COMPARISONS)
@@ -90,20 +90,14 @@ def judge(first, second, limit=Z_LIMIT, block=BLOCK):
     The variance of a block's mean is that of its pixels, which are independent. Blocks where few pixels vary
     have few degrees of freedom [Welch-Satterthwaite].
     """
-    count = _blocks(np.ones(first.mean.shape), block)
-    difference = np.abs(_blocks(first.mean - second.mean, block)) / count
-    mean = np.abs(second.mean).mean() or 1.0
-    noise, squares = sum(np.array(_variance(side, count, block)) for side in (first, second))
-    stored = _blocks(second.rounding * np.abs(second.mean), block) / count
-    variance = noise + (ROUNDING * mean) ** 2 + stored**2
-    z = normal_score(difference / np.sqrt(variance), variance**2 / np.maximum(squares, 1e-9 * variance**2))
+    found = scores(first, second, block)
+    mean, z, noisy = found.scale, found.z, found.noise > 0
     worst = np.unravel_index(np.argmax(z), z.shape)
-    noisy = noise > 0
-    values = np.abs(_blocks(second.mean, block)) / count
-    relative = np.sqrt(variance) / np.maximum(values, 1e-3 * mean)  # what is all but black tells no factor
+    # Blocks that are all but black tell no factor.
+    relative = np.sqrt(found.variance) / np.maximum(np.abs(found.second), 1e-3 * mean)
     return Verdict(
         float(z.max()),
-        float(100 * difference.max() / mean),
+        float(100 * np.abs(found.first - found.second).max() / mean),
         (int(worst[1]), int(worst[0]), int(worst[2])),
         float(np.sqrt((z[noisy] ** 2).mean())) if noisy.any() else 0.0,
         float(100 * (limit + POWER) * np.median(relative[noisy] if noisy.any() else relative)),
@@ -111,15 +105,48 @@ def judge(first, second, limit=Z_LIMIT, block=BLOCK):
     )
 
 
+class Scores(NamedTuple):
+    """Blocks of two pictures, arrays [rows x columns x channels]."""
+
+    first: np.ndarray  # means of the pixels
+    second: np.ndarray
+    z: np.ndarray  # of their difference, in standard errors of the normal distribution; never negative
+    variance: np.ndarray  # of the difference
+    noise: np.ndarray  # the part of it that comes from the seeds
+    freedom: np.ndarray  # degrees of freedom of the variance
+    pixels: np.ndarray  # that count
+    scale: float  # mean of the second picture
+
+    def z_at_factor(self, factor):
+        """z after the second picture has been multiplied."""
+        t = np.abs(self.first - factor * self.second) / np.sqrt(self.variance)
+        return normal_score(t, self.freedom)
+
+
+def scores(first, second, block=BLOCK, mask=None):
+    """`mask` [height x width]: the pixels that count; a block without any has z = 0."""
+    weight = np.ones(first.mean.shape) if mask is None else np.repeat(mask[..., None], first.mean.shape[2], 2)
+    pixels = _blocks(weight, block)
+    count = np.maximum(pixels, 1)
+    scale = np.abs(second.mean).mean() or 1.0
+    means = [_blocks(side.mean * weight, block) / count for side in (first, second)]
+    noise, squares = sum(np.array(_variance(side, weight, count, block)) for side in (first, second))
+    stored = _blocks(second.rounding * np.abs(second.mean) * weight, block) / count
+    variance = noise + (ROUNDING * scale) ** 2 + stored**2
+    freedom = variance**2 / np.maximum(squares, 1e-9 * variance**2)
+    z = normal_score(np.abs(means[0] - means[1]) / np.sqrt(variance), freedom)
+    return Scores(*means, z, variance, noise, freedom, pixels, scale)
+
+
 def judge_renders(first, second):
     """`first`, `second`: [seeds x height x width x channels]."""
     return judge(estimate(first), estimate(second))
 
 
-def _variance(side, count, block):
+def _variance(side, weight, count, block):
     """Variance of the means of blocks of `count` pixels, and the denominator of its degrees of freedom."""
     squares = side.variance**2 / (side.seeds - 1)
-    return _blocks(side.variance, block) / count**2, _blocks(squares, block) / count**4
+    return _blocks(side.variance * weight, block) / count**2, _blocks(squares * weight, block) / count**4
 
 
 def normal_score(t, freedom):

@@ -15,7 +15,7 @@ def write(path, files):
             case.set("time", f"{test.seconds:.3f}")
             case.set("processor", f"{test.processor:.3f}")
             if test.outcome == report.FAILED:
-                ElementTree.SubElement(case, "failure")
+                ElementTree.SubElement(case, "failure", {"message": test.reason} if test.reason else {})
             elif test.outcome == report.SKIPPED:
                 ElementTree.SubElement(case, "skipped", message=test.reason)
     path.parent.mkdir(parents=True, exist_ok=True)

@@ -14,7 +14,7 @@ class Test(NamedTuple):
     outcome: str  # PASSED, FAILED or SKIPPED
     seconds: float = 0.0
     processor: float = 0.0  # seconds of all threads, and of child processes that have ended
-    reason: str = ""  # why it was skipped
+    reason: str = ""  # why it was skipped, or failed if that fits a sentence
 
 
 class Clock:

@@ -118,7 +118,10 @@ def _in_blender(run: Run, name: str, *options: str | Path, before: Sequence[str 
 
 
 def scenes(run: Run) -> list[Case]:
-    return _scenes(run, "scenes", *(["--update"] if run.update else []), *run.scenes)
+    found = _scenes(run, "scenes", *(["--update"] if run.update else []), *run.scenes)
+    if run.long and not run.scenes and not run.update:
+        found.append(check(run, "check-bench", PYTHON, ROOT / "blend-tests/run_check_bench", "--afresh"))
+    return found
 
 
 def _scenes(run: Run, name: str, *options: str | Path, before: Sequence[str | Path] = ()) -> list[Case]:

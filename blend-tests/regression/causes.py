@@ -1,0 +1,197 @@
+"""What has changed between a render and its reference, told from their passes by tests with stated levels.
+
+Each test asks only what the ones before leave open: shape, then texture coordinates, then albedo, then
+light. So a moved object is no changed material, and a shifted UV map no changed texture.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from support.judge import BLOCK, WHOLE, Estimate, scores, z_limit
+
+from .comparison import COLOR, has_worlds
+from .passes import MIXED, NOTHING, Passes
+from .regions import EXPLAINED, FEWEST, LEVEL, Factor, Sides, both, changed, covered, largest, regions
+
+_MOST_NAMES = 3
+_DISTANCE = 3  # channel of "shape": grows with the distance
+
+
+class Cause(NamedTuple):
+    kind: str  # "geometry", "material", "world", "exposure", "light" or "unknown"
+    sentence: str  # with the names of what has changed
+    names: tuple[str, ...] = ()
+
+    def __str__(self) -> str:
+        return f"{self.kind}: {self.sentence}"
+
+
+def find(ours: Estimate, reference: Estimate, passes: tuple[Passes, Passes]) -> list[Cause]:
+    """The causes of a difference; never empty. `ours`, `reference`: RGB or RGBA."""
+    sides = Sides((ours.channels(COLOR), reference.channels(COLOR)), *passes)
+    thinned, explained = _transparency(sides)
+    causes, of_shape = _geometry(sides, ~explained)
+    explained |= of_shape
+    materials, of_materials = _materials(sides, ~explained)
+    materials += thinned
+    causes += materials + _world(passes)
+    if not causes:
+        causes = _light(sides)
+    elif materials and len(causes) == len(materials):
+        causes += _exposure(sides, ~explained & ~of_materials)
+    return causes or [Cause("unknown", "the difference is too small, or too close to edges, to name")]
+
+
+def _transparency(sides: Sides) -> tuple[list[Cause], np.ndarray]:
+    """Materials that fill most of their pixels in one of the two only; and the pixels of their objects."""
+    causes, explained = [], np.zeros(sides.known.objects.numbers.shape, bool)
+    for kind in (sides.known.materials, sides.ours.materials):
+        other = sides.ours.materials if kind is sides.known.materials else sides.known.materials
+        for name in kind.names:
+            mask = kind.where(name)
+            mixed = np.count_nonzero(mask & (other.numbers == MIXED))
+            if mixed >= FEWEST and 2 * mixed > np.count_nonzero(mask):
+                causes.append(Cause("material", f"'{name}', its transparency", (name,)))
+                explained |= mask
+    return causes, explained
+
+
+def _geometry(sides: Sides, usable: np.ndarray) -> tuple[list[Cause], np.ndarray]:
+    """The causes, and the pixels [height x width] that show them."""
+    causes, stays = [], sides.stays("objects") & usable
+    moved = changed(sides, "objects", "shape", stays)
+    explained = covered(sides, "objects", moved)
+    clear = (sides.ours.objects.numbers != MIXED) & (sides.known.objects.numbers != MIXED)
+    relabeled = ~stays & clear & usable
+    names = moved or _in_front(sides, relabeled)
+    if not names and usable.all():
+        names = _on_edges(sides)
+    if names:
+        seen = set(sides.known.objects.names)
+        all_of_them = len(seen) > 1 and seen <= set(names)
+        sentence = f"shape or place of {_listed('object', names)}"
+        if all_of_them:
+            sentence = "all visible objects, or the camera"
+        causes.append(Cause("geometry", sentence, tuple(names)))
+        explained |= relabeled
+    shifted = changed(sides, "objects", "coordinates", stays & ~explained)
+    if shifted:
+        causes.append(Cause("geometry", f"UV map of {_listed('object', shifted)}", tuple(shifted)))
+        explained |= covered(sides, "objects", shifted)
+    return causes, explained
+
+
+def _in_front(sides: Sides, relabeled: np.ndarray) -> list[str]:
+    """The nearer one of the two objects that a pixel shows: it has come or gone."""
+    ours, known = (side.shape.mean[..., _DISTANCE] for side in (sides.ours, sides.known))
+    names = [
+        name
+        for labels, nearer in ((sides.known.objects, known <= ours), (sides.ours.objects, ours < known))
+        for name in labels.names
+        if (relabeled & nearer & labels.where(name)).any()
+    ]
+    return list(dict.fromkeys(names))
+
+
+def _on_edges(sides: Sides) -> list[str]:
+    """The nearest object in each block whose edges alone have changed."""
+    found = scores(sides.ours.shape, sides.known.shape)
+    distance = np.where(sides.known.objects.numbers > NOTHING, sides.known.shape.mean[..., _DISTANCE], np.inf)
+    names = []
+    for row, column in np.argwhere((found.z > z_limit(found.z.size, LEVEL)).any(axis=2)):
+        block = slice(BLOCK * row, BLOCK * (row + 1)), slice(BLOCK * column, BLOCK * (column + 1))
+        nearest = np.unravel_index(np.argmin(distance[block]), distance[block].shape)
+        number = sides.known.objects.numbers[block][nearest]
+        names += [sides.known.objects.names[number - 1]] if number > NOTHING else []
+    return list(dict.fromkeys(names))
+
+
+def _materials(sides: Sides, usable: np.ndarray) -> tuple[list[Cause], np.ndarray]:
+    stays = sides.stays("materials") & sides.stays("objects") & usable
+    names = changed(sides, "materials", "albedo", stays)
+    causes = [Cause("material", f"'{name}', {_albedo(sides, name, stays)}", (name,)) for name in names]
+    exchanged = (
+        usable & sides.stays("objects") & ~sides.stays("materials")
+        & (sides.ours.materials.numbers != MIXED) & (sides.known.materials.numbers != MIXED)
+    )  # fmt: skip
+    if np.count_nonzero(exchanged) >= FEWEST:
+        others = _materials_in(sides, exchanged)
+        causes.append(Cause("material", f"{_listed('material', others)} exchanged", tuple(others)))
+    return causes, covered(sides, "materials", names) | exchanged
+
+
+def _albedo(sides: Sides, name: str, stays: np.ndarray) -> str:
+    """How the albedo of a material differs."""
+    mask = stays & sides.known.materials.where(name)
+    found, whole = both((sides.ours.albedo, sides.known.albedo), mask)
+    factor = Factor.of([found])
+    if factor.differs and factor.explains:
+        return f"albedo times {factor}"
+    mean = whole.first.sum() / max(whole.second.sum(), 1e-30)
+    return f"its texture or model: albedo differs by place, times {mean:.4f} on average"
+
+
+def _world(passes: tuple[Passes, Passes]) -> list[Cause]:
+    ours, known = (side.world for side in passes)
+    if (ours is None) != (known is None):
+        return [Cause("world", "only one of both has a world")]
+    if not has_worlds(passes):
+        return []
+    blocks, whole = (scores(ours, known, block) for block in (BLOCK, WHOLE))
+    if max(blocks.z.max(), whole.z.max()) <= z_limit(blocks.z.size + whole.z.size, LEVEL):
+        return []
+    factor = Factor.of([blocks])
+    if factor.differs and factor.explains:
+        return [Cause("world", f"its light times {factor}")]
+    return [Cause("world", "its directions or colors (turned, or another picture)")]
+
+
+def _light(sides: Sides) -> list[Cause]:
+    """The picture alone differs: by a common factor, on one material, on the background, or anywhere."""
+    everything = np.ones(sides.known.objects.numbers.shape, bool)
+    found = _exposure(sides, everything)
+    if found:
+        return found
+    tested = {name: both(sides.picture, mask) for name, mask in regions(sides).items()}
+    count = sum(each.z.size for pair in tested.values() for each in pair)
+    differ = [name for name, pair in tested.items() if largest(pair) > z_limit(count, LEVEL)]
+    doubtful = [name for name, pair in tested.items() if largest(pair) > z_limit(count, EXPLAINED)]
+    if not differ:
+        return []
+    if differ == doubtful == [""]:
+        return [Cause("world", "the background")]
+    if len(differ) == 1 and doubtful == differ and len(tested) > 1:
+        sentence = f"'{differ[0]}', with the same albedo (or light that reaches it alone)"
+        return [Cause("material", sentence, (differ[0],))]
+    surfaces = [f"'{name}'" if name else "the background" for name in differ]
+    return [Cause("light", f"lamps, shadows or indirect light, on {_shortened(surfaces)}")]
+
+
+def _exposure(sides: Sides, mask: np.ndarray) -> list[Cause]:
+    if np.count_nonzero(mask) < FEWEST:
+        return []
+    factor = Factor.of([scores(*sides.picture, BLOCK, mask)])
+    if factor.differs and factor.explains:
+        return [Cause("exposure", f"all colors times {factor} (or the power of all lights alike)")]
+    return []
+
+
+def _materials_in(sides: Sides, mask: np.ndarray) -> list[str]:
+    """That cover pixels of `mask` in either, those of the reference first."""
+    sides_labels = sides.known.materials, sides.ours.materials
+    names = [name for labels in sides_labels for name in labels.names if (mask & labels.where(name)).any()]
+    return list(dict.fromkeys(names))
+
+
+def _listed(noun: str, names: list[str]) -> str:
+    quoted = [f"'{name}'" for name in names]
+    return f"{noun}{'s' if len(names) > 1 else ''} {_shortened(quoted)}"
+
+
+def _shortened(texts: list[str]) -> str:
+    if len(texts) > _MOST_NAMES:
+        texts = [*texts[:_MOST_NAMES], f"{len(texts) - _MOST_NAMES} more"]
+    return " and ".join([", ".join(texts[:-1]), texts[-1]] if len(texts) > 1 else texts)
