@@ -13,7 +13,7 @@ namespace velour {
 namespace {
 
 constexpr int kPictureSide = 80;
-constexpr LightCounts kLightCounts{512, 24, 12, 256};
+constexpr int kParts = 256;  // of the tree of light directions
 constexpr float kGray = 0.18f, kBackdrop = 0.1f;  // of exposed pictures
 
 /// Views that stand for all: polar angles in equal steps, and azimuths unless all materials are isotropic.
@@ -59,7 +59,7 @@ void make_reciprocal(const Measurement& measurement, const Vec3& wv, std::span<c
 
 ViewValues values_of(const Measurement& measurement, const Material& material, Against against, const Vec3& wv,
                      const Surroundings& surroundings) {
-  const WeightedLights lights = close_lights(material, wv, kLightCounts);
+  const WeightedLights lights = error_lights(DirectionTree(reader_of(measurement, wv), wv, kParts), material, wv, 0);
   const size_t count = lights.wl.size();
   std::vector<Rgb> measured(count), shown(count);
   std::vector<uint8_t> covered(count);

@@ -6,7 +6,6 @@
 #include <Eigen/Cholesky>
 
 #include "brdf/fit/parametric/solver.h"
-#include "brdf/fit/view_grid.h"
 
 namespace velour {
 namespace {
@@ -46,14 +45,17 @@ std::vector<MeasuredSlice> slices_of(const Lobes& lobes) {
     for (const float azimuth : {0.0f, 1.0f, 2.5f, 4.5f}) {
       if (brdf.isotropic && azimuth > 0) continue;
       const Vec3 wv = direction(radians_from(degrees), azimuth);
-      const LightGrid grid = light_grid(wv, 16, 16);
-      MeasuredSlice slice{.wv = wv, .samples = {}};
       const auto at_view = lobes_at(brdf, Vec3d(wv));
-      for (size_t i = 0; i < grid.wl.size(); ++i) {
-        Vec3d f(0);
-        for (const WarpedLobe& lobe : at_view)
-          f += lobe.coefficient * warped_kernel(lobe, Vec3d(grid.wl[i]), Vec3d(wv));
-        slice.samples.push_back({grid.wl[i], grid.weight[i], Rgb(f) * grid.wl[i].z});
+      const LightReader read = [&](std::span<const Vec3> wl, std::span<LightValue> values) {
+        for (size_t i = 0; i < wl.size(); ++i) {
+          values[i] = {.f = Rgb(value_of(at_view, Vec3d(wl[i]), Vec3d(wv))), .valid = true};
+        }
+      };
+      MeasuredSlice slice{.wv = wv, .samples = {}};
+      slice.lights = std::make_shared<const DirectionTree>(read, wv, 64);
+      for (const uint32_t leaf : slice.lights->leaves()) {
+        const DirectionTree::Cell& cell = slice.lights->cell(leaf);
+        slice.samples.push_back({cell.wl, static_cast<float>(cell.solid_angle()), cell.value.f * cell.wl.z});
       }
       slices.push_back(std::move(slice));
     }
@@ -69,9 +71,11 @@ class ParametricProblem : public testing::TestWithParam<bool> {
                       progress_};
 };
 
-TEST_P(ParametricProblem, TheTruthHasNoErrorButThePenalty) {
+TEST_P(ParametricProblem, TheTruthHasNoErrorButThePenalties) {
   const double cost = problem_.evaluate(truth_.model, truth_.x);
-  EXPECT_NEAR(cost, truth_.x.dot(smoothness_gradient(truth_.model, truth_.x)), 1e-4);
+  double expected = truth_.x.dot(smoothness_gradient(truth_.model, kSmoothness, truth_.x));
+  for (const FitView& v : problem_.views()) expected += kHiding * v.excess;
+  EXPECT_NEAR(cost, expected, 1e-4);
   for (const FitView& v : problem_.views()) EXPECT_LT(v.error, 1e-4);
 }
 
@@ -212,7 +216,7 @@ TEST_P(ParametricProblem, RefinementFindsTheTruthAgain) {
   const double before = problem_.evaluate(start_.model, start_.x);
   refine(problem_, lobes, 60, 1e-6);
   EXPECT_LT(lobes.cost, 0.01 * before);
-  for (const FitView& v : problem_.views()) EXPECT_LT(v.error, 2e-3);
+  for (const FitView& v : problem_.views()) EXPECT_LT(v.error, 5e-3);
 }
 
 TEST_P(ParametricProblem, RefinementIsNeverWorseThanItsStart) {
