@@ -88,20 +88,46 @@ DirectionTree::DirectionTree(const LightReader& read, const Vec3& wv, int parts,
   }
   const Sums total = sums();
   for (uint32_t root = 0; root < roots_; ++root) join(root, total, parts);
-  leaf_density_.assign(cells_.size(), 0.0f);
   for (uint32_t root = 0; root < roots_; ++root) list_leaves(root);
 
-  const Sums kept = sums();
+  if (!folded_) list_densities();
+}
+
+/// Brightness of a leaf for its density: not much darker than its brightest neighbor, because its one direction may lie
+/// in the tail of a highlight that enters it elsewhere.
+double DirectionTree::brightness(uint32_t leaf) const {
+  constexpr double kOfNeighbor = 0.25;
+  const Cell& c = cells_[leaf];
+  const float side = c.side, beyond = 0.5f * kFinest;
+  double most = std::abs(c.luminance_cos());
+  const Vec2 middle = c.corner + Vec2(0.5f * side);
+  for (const Vec2& towards : {Vec2(-1, 0), Vec2(1, 0), Vec2(0, -1), Vec2(0, 1)}) {
+    const Vec2 place = middle + (0.5f * side + beyond) * towards;
+    if (std::max(std::abs(place.x), std::abs(place.y)) >= 1) continue;
+    most = std::max(most, kOfNeighbor * std::abs(cells_[leaf_of(place)].luminance_cos()));
+  }
+  return most;
+}
+
+/// Probabilities and densities of the leaves.
+void DirectionTree::list_densities() {
+  leaf_density_.assign(cells_.size(), 0.0f);
+  std::vector<double> bright;
+  Sums kept;
+  for (const uint32_t i : leaves_) {
+    const double y = bright.emplace_back(brightness(i)), solid_angle = cells_[i].solid_angle();
+    kept.energy += solid_angle * y * y;
+    kept.light += solid_angle * y;
+  }
   const double by_energy = kept.energy > 0 ? kByEnergy : 0, by_light = kept.light > 0 ? kByLight : 0;
   double running = 0;
-  for (const uint32_t i : leaves_) {
-    const Cell& c = cells_[i];
-    const double y = c.luminance_cos(), solid_angle = c.solid_angle();
+  for (size_t k = 0; k < leaves_.size(); ++k) {
+    const double y = bright[k], solid_angle = cells_[leaves_[k]].solid_angle();
     double probability = kEven * solid_angle / (2 * kPiD);
     if (by_energy > 0) probability += by_energy * solid_angle * y * y / kept.energy;
-    if (by_light > 0) probability += by_light * solid_angle * std::abs(y) / kept.light;
+    if (by_light > 0) probability += by_light * solid_angle * y / kept.light;
     probability /= kEven + by_energy + by_light;
-    leaf_density_[i] = static_cast<float>(probability / solid_angle);
+    leaf_density_[leaves_[k]] = static_cast<float>(probability / solid_angle);
     running_.push_back(running += probability);
   }
 }

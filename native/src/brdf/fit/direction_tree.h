@@ -65,7 +65,8 @@ class DirectionTree {
   /// `count` directions, stratified over the leaves by what they reflect. Sets of different seeds are independent.
   /// Their mean density per solid angle is count x density(). Not for folded trees.
   void sample(size_t count, uint64_t seed, std::vector<Vec3>& out) const;
-  /// Probability density (1/sr) of a direction of sample(): 0.4 by (f cos)^2, 0.4 by f cos, 0.2 uniform.
+  /// Probability density (1/sr) of a direction of sample(): 0.4 by (f cos)^2, 0.4 by f cos, 0.2 uniform; f cos is at
+  /// least a quarter of that of neighboring leaves. Not for folded trees.
   double density(const Vec3& wl) const;
 
  private:
@@ -84,6 +85,8 @@ class DirectionTree {
   void split_neighbors(uint32_t index);
   bool join(uint32_t index, const Sums& sums, int parts);
   void list_leaves(uint32_t index);
+  double brightness(uint32_t leaf) const;
+  void list_densities();
   uint32_t leaf_of(Vec2 place) const;
 
   bool folded_;

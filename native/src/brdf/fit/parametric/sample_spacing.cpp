@@ -8,6 +8,8 @@ namespace {
 
 constexpr double kWideEnough = -100;  // excess of a flat tail
 constexpr double kMinCenterCosine = 1e-3;
+// A lobe on the border of two cells may be far from both samples, and one sample in eight is held out.
+constexpr double kCells = 2;
 
 /// Light direction at the center of the lobe. Half vectors that face away from the view have none, so their cosine with
 /// it is clamped.
@@ -45,7 +47,7 @@ double SampleSpacing::steepness(const WarpedLobe& lobe, const Vec3d& at) const {
 double SampleSpacing::excess(const WarpedShape& shape, double log_cell) const {
   const WarpedLobe lobe = lobe_of(shape);
   const Vec3d center = light_at_center(lobe, wv_);
-  const double narrow = std::log(lobe.bandwidth * warp_jacobian(lobe, center, wv_) / (2 * kPiD)) + log_cell;
+  const double narrow = std::log(kCells * lobe.bandwidth * warp_jacobian(lobe, center, wv_) / (2 * kPiD)) + log_cell;
   if (center.z >= 0) return narrow;
   const double steep = steepness(lobe, horizon_under(center));
   return std::max(narrow, steep > 0 ? std::log(0.5 * steep) + 0.5 * log_cell : kWideEnough);

@@ -17,8 +17,8 @@ class SampleSpacing {
   SampleSpacing(std::shared_ptr<const DirectionTree> lights, const Vec3d& wv) : wv_(wv), lights_(std::move(lights)) {}
 
   /// Excess of the lobe's log bandwidth over what the samples can resolve; negative for lobes that are wide enough. A
-  /// lobe must cover at least the solid angle of the cell at its center. If the center is below the horizon, the tail
-  /// above it must also decay over at least half the spacing of the samples.
+  /// lobe must cover at least twice the solid angle of the cell at its center. If the center is below the horizon, the
+  /// tail above it must also decay over at least half the spacing of the samples.
   double excess(const WarpedShape& shape) const { return excess(shape, log_solid_angle(shape)); }
   /// Derivatives of excess() by the first out.size() parameters of the shape, in the order of fill_warped_slopes,
   /// within the cell at its center.
