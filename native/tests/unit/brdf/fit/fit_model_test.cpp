@@ -56,7 +56,7 @@ TEST(FitModel, TheAutomaticChoiceIsLargerWhereParametricFails) {
 
 TEST(FitModel, OptionsOfOneKindDecide) {
   FitOptions options;
-  options.max_lobes = 1;
+  options.max_lobes = 2;
   options.kernel = Kernel::abel_poisson;
   Progress progress;
   EXPECT_EQ(std::string(model_kind(fit_model(ModelKind::automatic, glossy(), options, progress))), "scattered");

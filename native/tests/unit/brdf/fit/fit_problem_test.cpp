@@ -37,6 +37,8 @@ Lobes two_lobes(bool isotropic, double change) {
   return lobes;
 }
 
+constexpr int kParts = 1024;  // cells that the lobes cover, so that none is in excess
+
 std::vector<MeasuredSlice> slices_of(const Lobes& lobes) {
   P brdf = lobes.model;
   for (const double v : lobes.x) brdf.control.push_back(static_cast<float>(v));
@@ -52,7 +54,7 @@ std::vector<MeasuredSlice> slices_of(const Lobes& lobes) {
         }
       };
       MeasuredSlice slice{.wv = wv, .samples = {}};
-      slice.lights = std::make_shared<const DirectionTree>(read, wv, 64);
+      slice.lights = std::make_shared<const DirectionTree>(read, wv, kParts);
       for (const uint32_t leaf : slice.lights->leaves()) {
         const DirectionTree::Cell& cell = slice.lights->cell(leaf);
         slice.samples.push_back({cell.wl, static_cast<float>(cell.solid_angle()), cell.value.f * cell.wl.z});
@@ -71,11 +73,9 @@ class ParametricProblem : public testing::TestWithParam<bool> {
                       progress_};
 };
 
-TEST_P(ParametricProblem, TheTruthHasNoErrorButThePenalties) {
+TEST_P(ParametricProblem, TheTruthHasNoErrorButThePenalty) {
   const double cost = problem_.evaluate(truth_.model, truth_.x);
-  double expected = truth_.x.dot(smoothness_gradient(truth_.model, kSmoothness, truth_.x));
-  for (const FitView& v : problem_.views()) expected += kHiding * v.excess;
-  EXPECT_NEAR(cost, expected, 1e-4);
+  EXPECT_NEAR(cost, truth_.x.dot(smoothness_gradient(truth_.model, kSmoothness, truth_.x)), 1e-4);
   for (const FitView& v : problem_.views()) EXPECT_LT(v.error, 1e-4);
 }
 
@@ -216,7 +216,7 @@ TEST_P(ParametricProblem, RefinementFindsTheTruthAgain) {
   const double before = problem_.evaluate(start_.model, start_.x);
   refine(problem_, lobes, 60, 1e-6);
   EXPECT_LT(lobes.cost, 0.01 * before);
-  for (const FitView& v : problem_.views()) EXPECT_LT(v.error, 5e-3);
+  for (const FitView& v : problem_.views()) EXPECT_LT(v.error, 2e-3);
 }
 
 TEST_P(ParametricProblem, RefinementIsNeverWorseThanItsStart) {
