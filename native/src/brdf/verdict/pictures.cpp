@@ -13,7 +13,7 @@ namespace velour {
 namespace {
 
 constexpr int kPictureSide = 80;
-constexpr int kParts = 256;  // of the tree of light directions
+constexpr int kParts = 256;                       // of the tree of light directions
 constexpr float kGray = 0.18f, kBackdrop = 0.1f;  // of exposed pictures
 
 /// Views that stand for all: polar angles in equal steps, and azimuths unless all materials are isotropic.

@@ -186,7 +186,7 @@ def _angles(materials: Mapping) -> str:
 
 def _errors(materials: Mapping) -> str:
     """Errors of every model, and alpha of the GGX lobe."""
-    names = (*table.MODELS, UNTURNED, *PEERS)
+    names = (*KINDS, UNTURNED, *PEERS)
     rows = [
         own["ggx"] | {"errors": [own[name]["relative_l2"] for name in names]} for own in materials.values()
     ]
