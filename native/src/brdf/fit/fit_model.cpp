@@ -76,12 +76,12 @@ Model fit_automatically(const Measurement& measurement, const FitOptions& option
     if (kWorthIt * other.fit.relative_l2 < best.fit.relative_l2) best = std::move(other);
   };
   const auto& coarse = std::get<ParametricBrdf>(best.body);
-  const bool can_be_finer = measurement.isotropic() && measurement.samples().empty() && coarse.lobe_count() > 0;
-  if (can_be_finer && worst_miss(best.fit) > kGoodEnough) {
+  const bool table = measurement.samples().empty();  // irregular samples determine no larger model
+  if (table && measurement.isotropic() && coarse.lobe_count() > 0 && worst_miss(best.fit) > kGoodEnough) {
     const Progress::Span span(progress, 0.4, 0.7);
     replace_if_better(fit_finer(measurement, coarse, options, progress));
   }
-  if (worst_miss(best.fit) > kGoodEnough) {
+  if (table && worst_miss(best.fit) > kGoodEnough) {
     const Progress::Span span(progress, 0.7, 1.0);
     replace_if_better(fit_per_view(measurement, options, progress));
   }

@@ -6,7 +6,7 @@
 namespace velour {
 namespace {
 
-constexpr double kWideEnough = -100;  // excess of a flat tail
+constexpr double kMaxRise = 0.5;  // of the brightest place of a tail above the horizon
 constexpr double kMinCenterCosine = 1e-3;
 // A lobe on the border of two cells may be far from both samples, and one sample in eight is held out.
 constexpr double kCells = 2;
@@ -31,12 +31,6 @@ Vec3d horizon_under(const Vec3d& wl) {
 
 }  // namespace
 
-/// Log of the solid angle of the cell at the center, or under it at the horizon.
-double SampleSpacing::log_solid_angle(const WarpedShape& shape) const {
-  const Vec3d center = light_at_center(lobe_of(shape), wv_);
-  return std::log(lights_->leaf_at(Vec3(center.z >= 0 ? center : horizon_under(center))).solid_angle());
-}
-
 /// Decrease of the logarithm of the lobe from the horizon upwards, per radian.
 double SampleSpacing::steepness(const WarpedLobe& lobe, const Vec3d& at) const {
   constexpr double kStep = 1e-4;
@@ -44,13 +38,25 @@ double SampleSpacing::steepness(const WarpedLobe& lobe, const Vec3d& at) const {
   return lobe.bandwidth * glm::dot(warped(lobe, at, wv_) - warped(lobe, above, wv_), lobe.center) / kStep;
 }
 
+/// About where f cos of the lobe is largest: at its center or, if that is below the horizon, where the tail above it
+/// has fallen to 1 / e.
+SampleSpacing::Shown SampleSpacing::shown(const WarpedLobe& lobe) const {
+  const Vec3d center = light_at_center(lobe, wv_);
+  if (center.z >= 0) return {center, 0};
+  const Vec3d horizon = horizon_under(center);
+  const double steep = steepness(lobe, horizon);
+  return {glm::normalize(horizon + Vec3d(0, 0, steep * kMaxRise > 1 ? 1 / steep : kMaxRise)), steep};
+}
+
+double SampleSpacing::log_solid_angle(const WarpedShape& shape) const {
+  return std::log(lights_->leaf_at(Vec3(shown(lobe_of(shape)).wl)).solid_angle());
+}
+
 double SampleSpacing::excess(const WarpedShape& shape, double log_cell) const {
   const WarpedLobe lobe = lobe_of(shape);
-  const Vec3d center = light_at_center(lobe, wv_);
-  const double narrow = std::log(kCells * lobe.bandwidth * warp_jacobian(lobe, center, wv_) / (2 * kPiD)) + log_cell;
-  if (center.z >= 0) return narrow;
-  const double steep = steepness(lobe, horizon_under(center));
-  return std::max(narrow, steep > 0 ? std::log(0.5 * steep) + 0.5 * log_cell : kWideEnough);
+  const Shown at = shown(lobe);
+  const double narrow = std::log(kCells * lobe.bandwidth * warp_jacobian(lobe, at.wl, wv_) / (2 * kPiD)) + log_cell;
+  return at.steep > 0 ? std::max(narrow, std::log(0.5 * at.steep) + 0.5 * log_cell) : narrow;
 }
 
 void SampleSpacing::slopes(const WarpedShape& shape, Eigen::Ref<Eigen::VectorXd> out) const {

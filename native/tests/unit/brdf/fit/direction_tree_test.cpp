@@ -86,21 +86,21 @@ TEST(DirectionTree, WhatIsSmoothTakesFewLeaves) {
   EXPECT_LT(DirectionTree(reading(cosine), wv, 128).leaves().size(), 450u);
 }
 
-constexpr int kSets = 64;
+constexpr int kMeanSets = 64;
 
 /// Mean and standard error of integrals by independent sets.
 struct Mean {
   double value = 0, standard_error = 0;
-  double of_one_set() const { return standard_error * std::sqrt(kSets); }
+  double of_one_set() const { return standard_error * std::sqrt(kMeanSets); }
 };
 Mean mean_of_sets(const DirectionTree& tree, const Value& value) {
   double sum = 0, square = 0;
-  for (uint64_t seed = 0; seed < kSets; ++seed) {
+  for (uint64_t seed = 0; seed < kMeanSets; ++seed) {
     const double x = integral_of_samples(tree, seed, value);
     sum += x, square += x * x;
   }
-  const double mean = sum / kSets;
-  return {mean, std::sqrt(std::max(square / kSets - mean * mean, 0.0) / (kSets - 1))};
+  const double mean = sum / kMeanSets;
+  return {mean, std::sqrt(std::max(square / kMeanSets - mean * mean, 0.0) / (kMeanSets - 1))};
 }
 
 TEST(DirectionTree, FindsHighlightsOfEveryWidthAboutTheMirrorDirectionAndTheView) {
