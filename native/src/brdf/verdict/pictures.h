@@ -25,9 +25,9 @@ enum class Against : uint8_t {
   reciprocal_mean,  // of f(wl, wv) and f(wv, wl), which are equal for a real surface: less noise
 };
 
-/// The ball and the ring in each of the three surroundings. Measurement and material are summed over the same
-/// directions, error_lights() of both, so that what these miss is missed in both. Views are rounded to the middles of
-/// about two degrees. Pairs that the measurement does not cover count in neither picture. The result
+/// The ball and the ring in each of the three surroundings. No random numbers: measurement and material are summed over
+/// the same directions, so that what these miss is missed in both. Views are rounded to the middles of about two
+/// degrees. Pairs that the measurement does not cover count in neither picture. The result
 /// does not depend on `threads` (0: all).
 std::vector<PicturePair> picture_pairs(const Measurement& measurement, const Material& material, Against against,
                                        int threads, Progress& progress);

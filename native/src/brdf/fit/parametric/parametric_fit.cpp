@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <chrono>
-#include <cstdlib>  // EXPERIMENT
 
 #include "brdf/eval/parametric_material.h"
 #include "brdf/fit/error/albedo.h"
@@ -23,7 +22,7 @@ constexpr int kMinLobes = 3;
 
 // Irregular samples are too few to resolve a finer grid.
 SliceGrid grid_for(const Measurement& measurement) {
-  return {.parts = std::getenv("VX_PARTS") ? std::atoi(std::getenv("VX_PARTS")) : 256, .rings = 32, .spokes = 24, .folded = measurement.isotropic()};
+  return {.parts = 320, .rings = 32, .spokes = 24, .folded = measurement.isotropic()};
 }
 
 /// Number of lobes that the irregular samples can determine.
@@ -44,7 +43,7 @@ MeasuredSlices parametric_slices(const Measurement& measurement, const FitOption
 GrowthOptions growth_options_of(const Measurement& measurement, const FitOptions& options) {
   GrowthOptions growth_options;
   growth_options.isotropic = measurement.isotropic();
-  growth_options.cells = measurement.samples().empty() ? (std::getenv("VX_CELLS") ? std::atoi(std::getenv("VX_CELLS")) : kTableCells) : kSampleCells;
+  growth_options.cells = measurement.samples().empty() ? kTableCells : kSampleCells;
   growth_options.max_lobes = options.max_lobes;
   if (!measurement.samples().empty()) {
     growth_options.max_lobes = std::min(growth_options.max_lobes, most_lobes(measurement, growth_options.cells));

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <chrono>
-#include <cstdlib>  // EXPERIMENT
 #include <cmath>
 #include "base/parallel.h"
 #include "brdf/eval/per_view_material.h"
@@ -18,7 +17,7 @@ namespace {
 // Slices are fitted more tightly than required, to leave room for the interpolation error between them.
 constexpr double kSliceGoalShare = 0.8;
 // Half vectors turn with the view, so the lobes of neighboring slices correspond.
-const SliceGrid kGrid{.parts = 0, .rings = std::getenv("VX_RINGS") ? std::atoi(std::getenv("VX_RINGS")) : 96, .spokes = std::getenv("VX_SPOKES") ? std::atoi(std::getenv("VX_SPOKES")) : 64};
+constexpr SliceGrid kGrid{.parts = 0, .rings = 96, .spokes = 64};
 
 std::vector<ViewPath> fit_slices(const std::vector<MeasuredSlice>& slices, const FitOptions& options,
                                  Progress& progress) {

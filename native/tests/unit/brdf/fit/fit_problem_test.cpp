@@ -116,7 +116,7 @@ TEST_P(ParametricProblem, TheGradientIsThatOfTheCost) {
   // Sharp enough to fall between the samples: the bound of the bandwidth speaks as well.
   Eigen::VectorXd x = start_.x;
   for (int node = 0; node < start_.model.spline().node_count(); ++node) {
-    x[static_cast<Eigen::Index>(start_.model.index(node, P::kLogBandwidth, 1))] = 9;
+    x[static_cast<Eigen::Index>(start_.model.index(node, P::kLogBandwidth, 1))] = 12;
   }
   problem_.weigh_for_pictures();
   std::vector<LocalNormal> local;
