@@ -270,6 +270,7 @@ TEST(FitOptions, UnknownModelsAndKernelsAreRefused) {
     wrong.kernel = unknown;
     EXPECT_NE(fit_refusal(measurement, wrong).find("VLR_KERNEL"), std::string::npos);
   }
+  options.model = VLR_MODEL_PARAMETRIC;
   options.kernel = VLR_KERNEL_ABEL_POISSON;
   EXPECT_NE(fit_refusal(measurement, options).find("Gaussian"), std::string::npos);
   options.model = VLR_MODEL_SCATTERED;
