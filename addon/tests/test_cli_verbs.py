@@ -26,7 +26,15 @@ FIT_KEYS = [
     "view_range",
 ]
 ORDER_KEYS = ["lobes", "parameter_bytes", "worst", "relative_l2", "chosen"]
-COMPARE_KEYS = ["relative_l2", "by_view_angle", "log_rms", "noise_by_view_angle", "samples", "narrow_views"]
+COMPARE_KEYS = [
+    "relative_l2",
+    "by_view_angle",
+    "standard_error",
+    "standard_error_by_view_angle",
+    "log_rms",
+    "noise_by_view_angle",
+    "samples",
+]
 RENDER_KEYS = [
     "seconds",
     "rays",
@@ -166,7 +174,8 @@ def test_a_fit_reports_its_error_against_lobes(measurement_file, tmp_path, kind)
     assert order["lobes"] == sorted(order["lobes"])
     assert order["parameter_bytes"][order["chosen"]] == report["parameter_bytes"]
     info = velour("info", path, "--json").json
-    assert (info["model"], info["order"]) == (kind, order)
+    expected = "parametric" if kind == "auto" else kind
+    assert (info["model"], info["order"]) == (expected, order)
 
 
 def test_parametric_models_have_gaussian_lobes_only(measurement_file, tmp_path):

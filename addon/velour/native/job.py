@@ -169,10 +169,10 @@ def plot_job(model: Model, kind: str, measurement: Measurement | None = None, **
 
 
 def fit_job(measurement: Measurement, **options) -> Job:
-    """Options: model ("scattered", "parametric"), kernel (scattered: "gaussian", "abel-poisson"), tolerance,
-    max_lobes, threads, max_bytes, seed, all_data, align_views (scattered), limit_albedo and symmetric
-    (parametric); for_scene (an Observation) and full_model (a Model) make a scene model of a parametric one.
-    The library has defaults for all. Result: result_model()."""
+    """Options: model ("auto", "parametric", "scattered"), kernel (scattered: "gaussian", "abel-poisson"),
+    tolerance, max_lobes, threads, max_bytes, seed, all_data, align_views (scattered), limit_albedo and
+    symmetric (parametric); for_scene (an Observation) and full_model (a Model) make a scene model of a
+    parametric one. The library has defaults for all. Result: result_model()."""
     raw = _defaults(structs.FitOptions, "vlr_fit_options_init")
     for name in {"for_scene", "full_model"} & options.keys():
         options[name] = options[name].pointer

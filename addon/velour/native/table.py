@@ -24,7 +24,7 @@ from .errors import VelourError
 
 JOB_STATES = ("ready", "running", "done", "failed", "cancelled")
 KERNELS = ("gaussian", "abel-poisson")
-MODELS = ("scattered", "parametric")
+MODELS = ("scattered", "parametric", "auto")
 COMPRESS_METHODS = ("svd", "srbf", "tucker", "cta", "kcta", "svd-view")  # in the order of the C enum
 COMPANDINGS = ("none", "root")
 BTF_VALUES = ("automatic", "brdf", "reflectance", "radiance")

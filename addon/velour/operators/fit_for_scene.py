@@ -117,7 +117,7 @@ class VELOUR_OT_fit_for_scene(measured.OfMaterial, BackgroundJob, bpy.types.Oper
 
     def _finish(self):
         with self._job, self._job.result_model() as model:
-            info = model.info()
+            info = model.info() | {"seconds": self._job.poll().seconds}
             smaller = info["parameter_bytes"] < info["scene"]["full_parameter_bytes"]
             if smaller:
                 self._work.keep(model)

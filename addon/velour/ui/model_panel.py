@@ -67,7 +67,6 @@ def _btf_rows(info):
         ("PSNR", f"{info['psnr']:.1f} dB"),
         ("Error", _relative_error(info["relative_l2"])),
         ("Held-out pairs", "not measured" if unseen is None else f"{unseen:.1f} dB"),
-        ("Speed", _evaluations(info["evaluations_per_second"])),
     )
 
 
@@ -112,10 +111,6 @@ def _side_name(side):
 
 def _relative_error(error):
     return "not measured" if error is None else f"{error:.3g}, relative"
-
-
-def _evaluations(rate):
-    return "not measured" if rate is None else f"{rate / 1e6:.2g} million/s on one core"
 
 
 def draw_rows(layout, rows):

@@ -112,17 +112,17 @@ VLR_API vlr_status vlr_model_bytes(vlr_model* model, const void** bytes, uint64_
  * VLR_INVALID_ARGUMENT for models of BTFs. */
 VLR_API vlr_status vlr_model_roughened(const vlr_model* model, float roughness, vlr_model** out);
 /* JSON: kind "model", model "scattered" (per-view) or "parametric", kernel, isotropic, lobes, bytes, parameter_bytes,
- * relative_l2, by_view_angle, albedo_by_view_angle, albedo_max, reciprocity, measured_reciprocity, tolerance, seconds,
- * seed, all_data, warning_codes, order (as of a fit), source {name, format, sha256}. Per-view: also views,
+ * relative_l2, by_view_angle, albedo_by_view_angle, albedo_max, reciprocity, measured_reciprocity, tolerance, seed,
+ * all_data, warning_codes, order (as of a fit), source {name, format, sha256}. Per-view: also views,
  * max_lobes_per_view. Parametric: also cells, symmetric, view_range [from, to] in degrees, spaces {light, half}, the
  * numbers of lobes in each. BTFs (model "factored-btf", "srbf-btf" or "tensor-btf") have instead: method, psnr,
- * psnr_held_out, ser, relative_l2, p99, raw_bytes, evaluations_per_second (one thread; null in older files), seconds,
- * seed, warning_codes, tolerance, order, search, shapes (as of a fit), texels, tile_metres, views, lights, companding;
- * components, or coefficients (of the side that has most) and, for SRBFs, lobes; and sides: view and light ("above",
- * "below"), parameter_bytes, as (null, or the index of the side that serves this one, whose own fields are null) and
- * lobes {tile, texel}, or clusters, members, ranks {texel, view, light, color}, relief (whether there is one),
- * table_bytes and bytes of each part {coefficients, members, relief, factors, cores, scales}, which add up to
- * parameter_bytes. Also scene (as of a fit) for scene models, and shell for models with a VOTF. */
+ * psnr_held_out, ser, relative_l2, p99, raw_bytes, seed, warning_codes, tolerance, order, search, shapes (as of a fit),
+ * texels, tile_metres, views, lights, companding; components, or coefficients (of the side that has most) and, for
+ * SRBFs, lobes; and sides: view and light ("above", "below"), parameter_bytes, as (null, or the index of the side that
+ * serves this one, whose own fields are null) and lobes {tile, texel}, or clusters, members, ranks {texel, view, light,
+ * color}, relief (whether there is one), table_bytes and bytes of each part {coefficients, members, relief, factors,
+ * cores, scales}, which add up to parameter_bytes. Also scene (as of a fit) for scene models, and shell for models with
+ * a VOTF. */
 VLR_API vlr_status vlr_model_info_json(vlr_model* model, const char** json);
 /* Like vlr_measurement_eval; also returns the density of the model's own sampler if `pdf` [count] is not NULL. */
 VLR_API vlr_status vlr_model_eval(const vlr_model* model, const float* wv, uint64_t count, const float* wl, float* f,
@@ -244,8 +244,9 @@ VLR_API void vlr_job_free(vlr_job* job);
 
 enum { VLR_KERNEL_GAUSSIAN = 0, VLR_KERNEL_ABEL_POISSON = 1 };
 enum {
-  VLR_MODEL_SCATTERED = 0, /* per-view model: lobes of each sampled view, mixed at run time */
-  VLR_MODEL_PARAMETRIC = 1 /* few lobes for all views, whose parameters are splines of the view; Gaussian only */
+  VLR_MODEL_SCATTERED = 0,  /* per-view model: lobes of each sampled view, mixed at run time */
+  VLR_MODEL_PARAMETRIC = 1, /* few lobes for all views, whose parameters are splines of the view; Gaussian only */
+  VLR_MODEL_AUTO = 2 /* parametric, or a larger model of either kind where that misses the tolerance several times */
 };
 
 typedef struct vlr_fit_options {
@@ -258,7 +259,7 @@ typedef struct vlr_fit_options {
   uint64_t seed;
   int32_t all_data;     /* 1: hold out no data (production); recorded in the model */
   int32_t align_views;  /* per-view, 1: rotate neighboring slices to the query's mirror direction before mixing */
-  int32_t model;        /* VLR_MODEL_* */
+  int32_t model;        /* VLR_MODEL_*; VLR_MODEL_AUTO */
   int32_t limit_albedo; /* parametric, 1: reduce the model where more light would leave than arrives */
   int32_t symmetric;    /* parametric, 1: f is the mean of both orders of a pair, hence reciprocal; slower */
   int32_t pad;
@@ -280,7 +281,8 @@ VLR_API void vlr_fit_options_init(vlr_fit_options* options);
 VLR_API vlr_status vlr_fit_create_job(const vlr_measurement* measurement, const vlr_fit_options* options,
                                       vlr_job** out);
 
-/* JSON: relative_l2, by_view_angle, log_rms, noise_by_view_angle, samples, narrow_views, and verdict as of a fit. */
+/* JSON: relative_l2, by_view_angle, standard_error, standard_error_by_view_angle, log_rms, noise_by_view_angle,
+ * samples, and verdict as of a fit. Standard errors say how far other directions would move the errors. */
 VLR_API vlr_status vlr_compare_create_job(const vlr_measurement* measurement, const vlr_model* model, vlr_job** out);
 /* Analytic materials to compare with: the GGX lobe over a diffuse base that the strategies `ggx` and `mis-ggx` sample
  * from, and Blender's Principled material: all of it, or without coat and specular tint, which differ before Blender

@@ -25,7 +25,7 @@ namespace velour {
   X(few_samples, "samples judged held_out") /* held_out 1: errors are measured on held-out samples; 0: on fitted */   \
   X(anisotropic_samples, "pairs factor same_azimuth_factor")                                                          \
   X(noise_exceeds_tolerance, "count worst difference") /* worst: the view with the largest noise */                   \
-  X(narrow_highlight, "views share") /* share: of the energy, captured by the usual light directions */               \
+  X(narrow_highlight, "views share") /* only in older files; share: of the energy, captured by even directions */     \
   X(partial_coverage, "views share") /* share: of the light directions, at the view with the smallest */              \
   X(no_view_covered, "")                                                                                              \
   X(black_measurement, "")                                                                                            \

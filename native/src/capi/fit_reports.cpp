@@ -14,17 +14,14 @@ namespace {
 
 Json verdict_or_null(const std::optional<Verdict>& verdict) { return verdict ? verdict_json(*verdict) : Json(nullptr); }
 
-Json narrow_views(const Comparison& comparison) {
-  Json json = Json::array();
-  for (const auto& [degrees, share] : comparison.narrow_views) json.push_back(degrees);
-  return json;
-}
-
 Json errors_of(const Comparison& comparison) {
-  return {
-      {"relative_l2", comparison.relative_l2}, {"by_view_angle", by_view_angle(comparison.by_view_angle)},
-      {"log_rms", comparison.log_rms},         {"noise_by_view_angle", by_view_angle(comparison.noise_by_view_angle)},
-      {"samples", comparison.samples},         {"narrow_views", narrow_views(comparison)}};
+  return {{"relative_l2", comparison.relative_l2},
+          {"by_view_angle", by_view_angle(comparison.by_view_angle)},
+          {"standard_error", comparison.standard_error},
+          {"standard_error_by_view_angle", by_view_angle(comparison.standard_error_by_view_angle)},
+          {"log_rms", comparison.log_rms},
+          {"noise_by_view_angle", by_view_angle(comparison.noise_by_view_angle)},
+          {"samples", comparison.samples}};
 }
 
 Json peer_of(const GgxParameters& p) {
@@ -232,7 +229,6 @@ Json record_json(const FitRecord& fit) {
           {"reciprocity", fit.reciprocity},
           {"measured_reciprocity", or_null(fit.measured_reciprocity)},
           {"tolerance", fit.tolerance},
-          {"seconds", fit.seconds},
           {"seed", fit.seed},
           {"all_data", fit.all_data},
           {"verdict", verdict_or_null(fit.verdict)},
@@ -242,7 +238,6 @@ Json record_json(const FitRecord& fit) {
 
 /// Results of the fit of a BTF.
 Json record_json(const BtfRecord& btf) {
-  const bool timed = btf.evaluations_per_second > 0;  // not in files of earlier versions
   const bool measured = btf.relative_l2 > 0;
   return {{"method", btf.method},
           {"psnr", btf.psnr},
@@ -250,8 +245,6 @@ Json record_json(const BtfRecord& btf) {
           {"ser", btf.ser},
           {"p99", btf.p99},
           {"raw_bytes", btf.raw_bytes},
-          {"evaluations_per_second", timed ? Json(btf.evaluations_per_second) : Json()},
-          {"seconds", btf.seconds},
           {"seed", btf.seed},
           {"warning_codes", warnings_json(btf.warnings)},
           {"relative_l2", measured ? Json(btf.relative_l2) : Json()},

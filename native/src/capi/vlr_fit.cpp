@@ -29,7 +29,7 @@ void vlr_fit_options_init(vlr_fit_options* options) {
 namespace {
 
 ModelKind kind_of(const vlr_fit_options& given) {
-  if (given.model != VLR_MODEL_SCATTERED && given.model != VLR_MODEL_PARAMETRIC) {
+  if (given.model < VLR_MODEL_SCATTERED || given.model > VLR_MODEL_AUTO) {
     throw Error(Status::invalid_argument,
                 "vlr_fit_options.model is " + std::to_string(given.model) + ", not a VLR_MODEL value.");
   }

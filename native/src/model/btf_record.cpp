@@ -70,14 +70,8 @@ nlohmann::ordered_json trials_json(const std::vector<SizeTrial>& trials) {
 }
 
 std::string btf_record_json(const BtfRecord& record) {
-  Json json = {{"method", record.method},
-               {"psnr", record.psnr},
-               {"ser", record.ser},
-               {"p99", record.p99},
-               {"raw_bytes", record.raw_bytes},
-               {"seconds", record.seconds},
-               {"evaluations_per_second", record.evaluations_per_second},
-               {"seed", record.seed}};
+  Json json = {{"method", record.method}, {"psnr", record.psnr},           {"ser", record.ser},
+               {"p99", record.p99},       {"raw_bytes", record.raw_bytes}, {"seed", record.seed}};
   put_warnings(record.warnings, json);
   if (record.psnr_held_out) json["psnr_held_out"] = *record.psnr_held_out;
   json["relative_l2"] = record.relative_l2;
@@ -99,8 +93,6 @@ BtfRecord parse_btf_record(const std::string& text, const std::string& where) {
   record.ser = fields.number("ser");
   record.p99 = fields.number("p99");
   record.raw_bytes = fields.whole("raw_bytes", uint64_t{1} << 53);
-  record.seconds = fields.number("seconds");
-  if (fields.has("evaluations_per_second")) record.evaluations_per_second = fields.number("evaluations_per_second");
   record.seed = fields.whole("seed", ~uint64_t{0});
   if (fields.has("psnr_held_out")) record.psnr_held_out = fields.number("psnr_held_out");
   if (fields.has("relative_l2")) record.relative_l2 = fields.number("relative_l2");

@@ -84,7 +84,6 @@ std::string fit_record_json(const FitRecord& record) {
                {"reciprocity", record.reciprocity},
                {"measured_reciprocity", number_json(record.measured_reciprocity)},
                {"tolerance", record.tolerance},
-               {"seconds", record.seconds},
                {"seed", record.seed},
                {"all_data", record.all_data}};
   put_warnings(record.warnings, json);
@@ -105,7 +104,6 @@ FitRecord parse_fit_record(const std::string& text, const std::string& where) {
   reader.number("reciprocity", record.reciprocity);
   reader.number_or_null("measured_reciprocity", record.measured_reciprocity);
   reader.number("tolerance", record.tolerance);
-  reader.number("seconds", record.seconds);
   reader.integer("seed", record.seed);
   reader.boolean("all_data", record.all_data);
   record.warnings = parse_warnings(json, where);

@@ -261,8 +261,8 @@ TEST(FitOptions, UnknownModelsAndKernelsAreRefused) {
   ASSERT_EQ(VLR_OK, vlr_measurement_load(write_merl_file(scratch_folder()).c_str(), &measurement)) << vlr_last_error();
   vlr_fit_options options;
   vlr_fit_options_init(&options);
-  EXPECT_EQ(options.model, VLR_MODEL_PARAMETRIC);
-  for (const int32_t unknown : {-1, 2}) {
+  EXPECT_EQ(options.model, VLR_MODEL_AUTO);
+  for (const int32_t unknown : {-1, 3}) {
     vlr_fit_options wrong = options;
     wrong.model = unknown;
     EXPECT_NE(fit_refusal(measurement, wrong).find("VLR_MODEL"), std::string::npos);
@@ -270,6 +270,7 @@ TEST(FitOptions, UnknownModelsAndKernelsAreRefused) {
     wrong.kernel = unknown;
     EXPECT_NE(fit_refusal(measurement, wrong).find("VLR_KERNEL"), std::string::npos);
   }
+  options.model = VLR_MODEL_PARAMETRIC;
   options.kernel = VLR_KERNEL_ABEL_POISSON;
   EXPECT_NE(fit_refusal(measurement, options).find("Gaussian"), std::string::npos);
   options.model = VLR_MODEL_SCATTERED;

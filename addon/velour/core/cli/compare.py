@@ -18,7 +18,15 @@ from ...native import (
 from ...native.errors import refuse
 from . import output
 
-KEYS = ("relative_l2", "by_view_angle", "log_rms", "noise_by_view_angle", "samples", "narrow_views")
+KEYS = (
+    "relative_l2",
+    "by_view_angle",
+    "standard_error",
+    "standard_error_by_view_angle",
+    "log_rms",
+    "noise_by_view_angle",
+    "samples",
+)
 PEER_KEYS = ("seconds", "parameter_bytes")
 
 

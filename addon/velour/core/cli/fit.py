@@ -34,7 +34,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--model",
         choices=table.MODELS,
-        help="parametric: few lobes for all views (default); scattered: separate lobes per view",
+        help="parametric: few lobes for all views; scattered: separate lobes per view; auto: parametric, or a"
+        " larger model of either kind where it misses the maximum error several times over (default)",
     )
     parser.add_argument(
         "--kernel", choices=table.KERNELS, help="shape of the lobes of a per-view model (default: gaussian)"

@@ -1,8 +1,11 @@
 #include "brdf/fit/fit_model.h"
 
 #include <algorithm>
+#include <chrono>
+#include <optional>
 
 #include "base/error.h"
+#include "brdf/fit/fit_report.h"
 #include "brdf/fit/parametric/parametric_fit.h"
 #include "brdf/fit/per_view/per_view_fit.h"
 #include "brdf/fit/scene_fit.h"
@@ -42,6 +45,51 @@ Model bounded_parametric(const Measurement& measurement, FitOptions options, Pro
   }
 }
 
+// A model is kept if no reported view misses its tolerance by more than this factor; another must have a mean error
+// smaller by the second.
+constexpr double kGoodEnough = 5, kWorthIt = 1.5;
+
+/// Largest error of the reported views in units of their tolerances.
+double worst_miss(const FitRecord& record) {
+  double worst = 0;
+  for (const auto& [degrees, error] : record.by_view_angle) {
+    if (error) worst = std::max(worst, *error / tolerance_at(record.tolerance, radians_from(std::stod(degrees))));
+  }
+  return worst;
+}
+
+/// Options that only one of the kinds has decide. Nothing if any kind will do.
+std::optional<ModelKind> required_kind(const FitOptions& options) {
+  if (options.kernel != Kernel::gaussian) return ModelKind::per_view;
+  const bool parametric = options.for_scene || options.limit_albedo || options.symmetric || options.max_bytes > 0;
+  return parametric ? std::optional(ModelKind::parametric) : std::nullopt;
+}
+
+Model fit_automatically(const Measurement& measurement, const FitOptions& options, Progress& progress) {
+  const auto start = std::chrono::steady_clock::now();
+  Model best;
+  {
+    const Progress::Span span(progress, 0.0, 0.4);
+    best = fit_parametric(measurement, options, progress);
+  }
+  const auto replace_if_better = [&](Model other) {
+    if (kWorthIt * other.fit.relative_l2 < best.fit.relative_l2) best = std::move(other);
+  };
+  const auto& coarse = std::get<ParametricBrdf>(best.body);
+  const bool table = measurement.samples().empty();  // irregular samples determine no larger model
+  if (table && measurement.isotropic() && coarse.lobe_count() > 0 && worst_miss(best.fit) > kGoodEnough) {
+    const Progress::Span span(progress, 0.4, 0.7);
+    replace_if_better(fit_finer(measurement, coarse, options, progress));
+  }
+  if (table && worst_miss(best.fit) > kGoodEnough) {
+    const Progress::Span span(progress, 0.7, 1.0);
+    replace_if_better(fit_per_view(measurement, options, progress));
+  }
+  best.fit.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  progress.stage("checking the model", 1.0, 1.0);
+  return best;
+}
+
 void refuse_contradictions(ModelKind kind, const FitOptions& options) {
   const auto refuse = [](const char* sentence) { throw Error(Status::invalid_argument, sentence); };
   if (kind != ModelKind::parametric) {
@@ -58,6 +106,11 @@ void refuse_contradictions(ModelKind kind, const FitOptions& options) {
 }  // namespace
 
 Model fit_model(ModelKind kind, const Measurement& measurement, const FitOptions& options, Progress& progress) {
+  if (kind == ModelKind::automatic) {
+    const std::optional<ModelKind> required = required_kind(options);
+    if (!required) return fit_automatically(measurement, options, progress);
+    kind = *required;
+  }
   refuse_contradictions(kind, options);
   if (options.for_scene) return bounded_for_scene(measurement, options, progress);
   if (kind == ModelKind::parametric) return bounded_parametric(measurement, options, progress);

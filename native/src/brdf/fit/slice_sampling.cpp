@@ -17,8 +17,6 @@ constexpr size_t kMinSamples = 8;
 // Maximum value: keeps squares within the range of float; a model file holds no larger coefficients.
 constexpr float kLargestValue = 1e12f;
 
-bool usable(const Rgb& f) { return std::isfinite(f.r) && std::isfinite(f.g) && std::isfinite(f.b); }
-
 void check_size(const Measurement& source, const Rgb& f) {
   const float largest = std::max({std::abs(f.r), std::abs(f.g), std::abs(f.b)});
   if (largest <= kLargestValue) return;
@@ -37,115 +35,126 @@ void keep_one_side(LightGrid& grid) {
   grid = std::move(half);
 }
 
-/// Measured f of lights and of their mirror images.
-struct MirrorPairs {
-  std::vector<Rgb> f, image;
-  std::vector<uint8_t> valid, image_valid;
+using Image = std::function<Vec3(const Vec3&)>;
+
+/// The mean over `images` of each of `wl`, where valid.
+void read_mean(const LightReader& read, std::span<const Image> images, std::span<const Vec3> wl,
+               std::span<LightValue> values) {
+  std::vector<double> count(wl.size(), 0), square(wl.size(), 0);
+  std::vector<Vec3d> sum(wl.size(), Vec3d(0));
+  std::vector<Vec3> moved(wl.size());
+  std::vector<LightValue> found(wl.size());
+  for (const auto& image : images) {
+    std::ranges::transform(wl, moved.begin(), image);
+    std::ranges::fill(found, LightValue());
+    read(moved, found);
+    for (size_t i = 0; i < wl.size(); ++i) {
+      if (!found[i].valid) continue;
+      const double y = luminance(found[i].f);
+      sum[i] += Vec3d(found[i].f);
+      square[i] += y * y;
+      count[i] += 1;
+    }
+  }
+  for (size_t i = 0; i < wl.size(); ++i) {
+    if (count[i] == 0) continue;
+    const Rgb mean(sum[i] / count[i]);
+    const double y = luminance(mean);
+    values[i] = {.f = mean, .spread = static_cast<float>(std::max(square[i] / count[i] - y * y, 0.0)), .valid = true};
+  }
+}
+
+/// Means over the lights that are equivalent for an isotropic surface and a view on the meridian.
+LightReader folded(LightReader read, const Vec3& wv) {
+  std::vector<Image> images;
+  if (wv.x == 0) {  // along the normal, f depends on theta_l alone
+    constexpr int kTurns = 8;
+    for (int k = 0; k < kTurns; ++k) {
+      const float angle = 2 * kPi * static_cast<float>(k) / kTurns, c = std::cos(angle), s = std::sin(angle);
+      images.emplace_back([c, s](const Vec3& w) { return Vec3(c * w.x - s * w.y, s * w.x + c * w.y, w.z); });
+    }
+  } else {
+    images.emplace_back([](const Vec3& w) { return w; });
+    images.emplace_back([](const Vec3& w) { return Vec3(w.x, -w.y, w.z); });
+  }
+  return [read = std::move(read), images = std::move(images)](std::span<const Vec3> wl, std::span<LightValue> values) {
+    read_mean(read, images, wl, values);
+  };
+}
+
+/// The lights of a view and their values. A ring of a tree is a run of neighboring leaves.
+struct MeasuredLights {
+  LightGrid grid;
+  std::vector<LightValue> values;
+  std::shared_ptr<const DirectionTree> tree;  // of tables
 };
 
-/// f of `lights` for a view on the meridian: the mean of the light and its mirror image, where valid.
-MirrorPairs eval_folded(const Measurement& source, const Vec3& wv, const std::vector<Vec3>& lights, std::vector<Rgb>& f,
-                        std::vector<uint8_t>& valid) {
-  std::vector<Vec3> mirrored = lights;
-  for (Vec3& wl : mirrored) wl.y = -wl.y;
-  const std::vector<Rgb> nothing(f.size(), Rgb(0));
-  const std::vector<uint8_t> none(f.size(), 0);
-  MirrorPairs measured{nothing, nothing, none, none};
-  source.eval(wv, lights, measured.f, measured.valid);
-  source.eval(wv, mirrored, measured.image, measured.image_valid);
-  for (size_t i = 0; i < f.size(); ++i) {
-    measured.valid[i] &= usable(measured.f[i]);
-    measured.image_valid[i] &= usable(measured.image[i]);
-    valid[i] = measured.valid[i] | measured.image_valid[i];
-    if (measured.valid[i]) f[i] = measured.f[i];
-    if (measured.image_valid[i]) f[i] = measured.valid[i] ? 0.5f * (f[i] + measured.image[i]) : measured.image[i];
+MeasuredLights measured_lights(const Measurement& source, const Vec3& wv, const SliceGrid& size) {
+  constexpr uint32_t kRun = 16;
+  const LightReader read = size.folded ? folded(reader_of(source, wv), wv) : reader_of(source, wv);
+  MeasuredLights out;
+  if (size.parts == 0 || !source.samples().empty()) {
+    out.grid = light_grid(wv, size.rings, size.spokes);
+    if (size.folded) keep_one_side(out.grid);
+    out.values.resize(out.grid.wl.size());
+    read(out.grid.wl, out.values);
+    return out;
   }
-  return measured;
+  out.tree = std::make_shared<const DirectionTree>(read, wv, size.parts, size.folded);
+  const auto sides = size.folded ? 2.0f : 1.0f;
+  for (const uint32_t leaf : out.tree->leaves()) {
+    const DirectionTree::Cell& cell = out.tree->cell(leaf);
+    out.grid.ring.push_back(static_cast<uint32_t>(out.grid.wl.size()) / kRun);
+    out.grid.wl.push_back(cell.wl);
+    out.grid.weight.push_back(sides * static_cast<float>(cell.solid_angle()));
+    out.values.push_back(cell.value);
+  }
+  return out;
 }
 
-/// Replaces f by the mean of its ring: for a view along the normal, where an isotropic f depends on theta_l alone.
-void average_rings(const LightGrid& grid, std::vector<Rgb>& f, std::span<const uint8_t> valid) {
-  for (size_t begin = 0, end = 0; begin < f.size(); begin = end) {
-    Vec3d sum(0);
-    size_t count = 0;
-    for (; end < f.size() && grid.ring[end] == grid.ring[begin]; ++end) {
-      if (valid[end] && usable(f[end])) sum += Vec3d(f[end]), ++count;
-    }
-    for (size_t i = begin; i < end && count > 0; ++i) f[i] = Rgb(sum / static_cast<double>(count));
-  }
-}
-
-/// Relative L2 difference between the measured and the folded `f`.
-double fold_of(const LightGrid& grid, const MirrorPairs& measured, const std::vector<Rgb>& f) {
+/// Relative L2 difference between the measured values and their means.
+double fold_of(const MeasuredLights& lights) {
   double hidden = 0, energy = 0;
-  const auto add = [&](size_t i, const Rgb& value) {
-    const double y = luminance(value) * grid.wl[i].z, folded = luminance(f[i]) * grid.wl[i].z;
-    hidden += static_cast<double>(grid.weight[i]) * (y - folded) * (y - folded);
-    energy += static_cast<double>(grid.weight[i]) * y * y;
-  };
-  for (size_t i = 0; i < f.size(); ++i) {
-    if (measured.valid[i]) add(i, measured.f[i]);
-    if (measured.image_valid[i]) add(i, measured.image[i]);
+  for (size_t i = 0; i < lights.values.size(); ++i) {
+    const LightValue& value = lights.values[i];
+    if (!value.valid) continue;
+    const double y = luminance(value.f), cosine = lights.grid.wl[i].z;
+    const double weight = static_cast<double>(lights.grid.weight[i]) * cosine * cosine, spread = value.spread;
+    hidden += weight * spread;
+    energy += weight * (y * y + spread);
   }
   return energy > 0 ? std::sqrt(hidden / energy) : 0;
 }
 
-/// Sum of weight x luminance(f cos)^2.
-double energy_of(const Measurement& source, const Vec3& wv, const std::vector<Vec3>& wl,
-                 const std::function<double(size_t)>& weight) {
-  std::vector<Rgb> f(wl.size(), Rgb(0));
-  std::vector<uint8_t> valid(wl.size(), 0);
-  source.eval(wv, wl, f, valid);
-  double sum = 0;
-  for (size_t i = 0; i < wl.size(); ++i) {
-    if (!valid[i] || !usable(f[i])) continue;
-    const double value = static_cast<double>(luminance(f[i]) * wl[i].z);
-    sum += weight(i) * value * value;
+/// Takes the samples in steps, so that every block of SliceSamples::kPadding covers the whole view: the search for
+/// lobes reads some of the blocks only (brdf/fit/parametric/lobe_search.h).
+std::vector<SliceSample> interleaved(const std::vector<SliceSample>& samples) {
+  const size_t step = (samples.size() + SliceSamples::kPadding - 1) / SliceSamples::kPadding;
+  std::vector<SliceSample> out;
+  for (size_t first = 0; first < step; ++first) {
+    for (size_t i = first; i < samples.size(); i += step) out.push_back(samples[i]);
   }
-  return sum;
-}
-
-/// Whether `grid` misjudges the energy about the view's own direction. False for irregular samples, whose interpolation
-/// is slow and which are fitted directly.
-bool hides_retro_reflection(const Measurement& source, const Vec3& wv, const LightGrid& grid) {
-  constexpr double kHidden = 0.02;      // share of the view's energy
-  constexpr float kNearNormal = 0.97f;  // cos(theta_v); above it the mirror direction, where the grid is fine, is close
-  if (!source.samples().empty() || wv.z > kNearNormal) return false;
-  const CloseRings rings = retro_rings(wv);
-  std::vector<Vec3> close;
-  rings.append(close);
-  const auto near = [&](size_t i) { return rings.density(grid.wl[i]) > 0 ? static_cast<double>(grid.weight[i]) : 0.0; };
-  const double all = energy_of(source, wv, grid.wl, [&](size_t i) { return static_cast<double>(grid.weight[i]); });
-  const double seen = energy_of(source, wv, grid.wl, near);
-  const double there = energy_of(source, wv, close, [&](size_t i) { return 1 / rings.density(close[i]); });
-  return std::abs(there - seen) > kHidden * std::max(all, there);
+  return out;
 }
 
 MeasuredSlice sample_slice(const Measurement& source, const Vec3& wv, const SliceGrid& size, bool hold_out) {
-  LightGrid grid = light_grid(wv, size.rings, size.spokes);
-  if (hides_retro_reflection(source, wv, grid)) join_retro_rings(grid, wv, size.rings, size.spokes);
-  if (size.folded) keep_one_side(grid);
-  const size_t n = grid.wl.size();
-  std::vector<uint8_t> kept(n, 1), valid(n, 0);
+  MeasuredLights lights = measured_lights(source, wv, size);
+  const size_t n = lights.grid.wl.size();
+  std::vector<uint8_t> kept(n, 1);
   if (hold_out) {
     for (size_t i = 0; i < n; ++i) kept[i] = !held_out_light(i);
-    redistribute_weights(grid, kept);
+    redistribute_weights(lights.grid, kept);
   }
-  std::vector<Rgb> f(n, Rgb(0));
-  MeasuredSlice slice{.wv = wv, .samples = {}};
-  if (size.folded) {
-    const MirrorPairs measured = eval_folded(source, wv, grid.wl, f, valid);
-    if (wv.x == 0) average_rings(grid, f, valid);
-    slice.fold = fold_of(grid, measured, f);
-  } else {
-    source.eval(wv, grid.wl, f, valid);
-  }
+  MeasuredSlice slice{.wv = wv, .samples = {}, .lights = lights.tree};
+  if (size.folded) slice.fold = fold_of(lights);
   for (size_t i = 0; i < n; ++i) {
-    if (!kept[i] || !valid[i] || !usable(f[i])) continue;
-    check_size(source, f[i]);
-    slice.samples.push_back({grid.wl[i], grid.weight[i], f[i] * grid.wl[i].z});
-    slice.out_of_gamut += std::min({f[i].r, f[i].g, f[i].b}) < 0;
+    if (!kept[i] || !lights.values[i].valid) continue;
+    const Rgb& f = lights.values[i].f;
+    check_size(source, f);
+    slice.samples.push_back({lights.grid.wl[i], lights.grid.weight[i], f * lights.grid.wl[i].z});
+    slice.out_of_gamut += std::min({f.r, f.g, f.b}) < 0;
   }
+  if (lights.tree) slice.samples = interleaved(slice.samples);
   return slice;
 }
 

@@ -1,9 +1,11 @@
 // Samples a measurement at the slices that are fitted.
 #pragma once
 
+#include <memory>
 #include <vector>
 
 #include "base/progress.h"
+#include "brdf/fit/direction_tree.h"
 #include "brdf/fit/slice_samples.h"
 #include "brdf/measure/measurement.h"
 
@@ -17,7 +19,8 @@ struct MeasuredSlice {
   double energy = 0;          // sum of weight x luminance(f cos)^2 that errors are relative to; 0: that of the samples
   double fold = 0;            // relative L2 error of folding (SliceGrid::folded)
   bool interpolated = false;  // from irregular samples, which the fit also reads directly
-  size_t out_of_gamut = 0;    // samples with a negative channel: kept, although no model of ours can follow them
+  std::shared_ptr<const DirectionTree> lights = nullptr;  // of tables: the cells that the samples represent
+  size_t out_of_gamut = 0;  // samples with a negative channel: kept, although no model of ours can follow them
 };
 
 struct MeasuredSlices {
@@ -25,16 +28,17 @@ struct MeasuredSlices {
   std::vector<Vec3> uncovered;        // views left out because the measurement does not cover them
 };
 
-/// The light grid of a view (brdf/fit/view_grid.h).
+/// Light directions of a view.
 struct SliceGrid {
-  int rings, spokes;
+  int parts;          // of a DirectionTree; 0, or irregular samples, whose interpolation is slow: a light grid
+  int rings, spokes;  // of the light grid (brdf/fit/view_grid.h)
   /// Isotropic data: only lights on one side of the plane of incidence, each with the mean of its value and that of its
-  /// mirror image (for a view along the normal, the mean of its ring). For models that are symmetric about that plane,
-  /// which get the same fit from half the samples.
+  /// mirror image (for a view along the normal, the mean over azimuths). For models that are symmetric about that
+  /// plane, which get the same fit from half the samples.
   bool folded = false;
 };
 
-/// Samples every view that `source` covers at its light grid. `hold_out` leaves out the held-out views and one light in
+/// Samples every view that `source` covers at its own lights. `hold_out` leaves out the held-out views and one light in
 /// eight. Pairs that the measurement does not cover are left out, never taken for black. `threads` 0: all.
 MeasuredSlices sample_slices(const Measurement& source, const SliceGrid& grid, bool hold_out, int threads,
                              Progress& progress);

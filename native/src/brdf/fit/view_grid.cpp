@@ -4,7 +4,6 @@
 #include <cmath>
 #include "brdf/measure/held_out.h"
 #include "math/sphere/directions.h"
-#include "math/sphere/frame.h"
 
 namespace velour {
 
@@ -31,14 +30,6 @@ double ring_edge(int i, int rings) { return 0.5 * kPiD * i * i / (rings * rings)
 double half_vector_cell(int i, int rings, int spokes) {
   const double begin = ring_edge(i, rings), end = ring_edge(i + 1, rings);
   return 2 * std::sin(0.5 * (begin + end)) * std::sin(0.5 * (end - begin)) * 2 * kPiD / spokes;
-}
-
-/// Density of the lights of light_grid(wv, rings, spokes) at `wl`, 1/sr.
-double grid_density(const Vec3& wv, const Vec3& wl, int rings, int spokes) {
-  const Vec3d h = glm::normalize(Vec3d(wv) + Vec3d(wl));
-  const double theta = std::acos(std::clamp(h.z, -1.0, 1.0));
-  const int ring = std::min(static_cast<int>(rings * std::sqrt(theta / (0.5 * kPiD))), rings - 1);
-  return 1 / (4 * glm::dot(Vec3d(wv), h) * half_vector_cell(ring, rings, spokes));
 }
 
 }  // namespace
@@ -92,28 +83,6 @@ LightGrid light_grid(const Vec3& wv, int rings, int spokes) {
   return grid;
 }
 
-CloseRings retro_rings(const Vec3& wv) {
-  constexpr int kRings = 24, kSpokes = 24;
-  return {wv, radians_from(0.1), radians_from(20.0), kRings, kSpokes};
-}
-
-void join_retro_rings(LightGrid& grid, const Vec3& wv, int rings, int spokes) {
-  const CloseRings retro = retro_rings(wv);
-  for (size_t i = 0; i < grid.wl.size(); ++i) {
-    grid.weight[i] = static_cast<float>(1 / (1 / static_cast<double>(grid.weight[i]) + retro.density(grid.wl[i])));
-  }
-  std::vector<Vec3> close;
-  retro.append(close);
-  const uint32_t first = grid.ring.empty() ? 0 : grid.ring.back() + 1;
-  for (size_t i = 0; i < close.size(); ++i) {
-    if (close[i].z <= 0) continue;
-    grid.wl.push_back(close[i]);
-    grid.weight.push_back(
-        static_cast<float>(1 / (retro.density(close[i]) + grid_density(wv, close[i], rings, spokes))));
-    grid.ring.push_back(first + static_cast<uint32_t>(i / retro.spokes()));
-  }
-}
-
 void redistribute_weights(LightGrid& grid, std::span<const uint8_t> kept) {
   const size_t rings = grid.ring.empty() ? 0 : grid.ring.back() + size_t{1};  // rings are in ascending order
   std::vector<double> all(rings, 0.0), left(rings, 0.0);
@@ -126,31 +95,5 @@ void redistribute_weights(LightGrid& grid, std::span<const uint8_t> kept) {
     if (left[r] > 0) grid.weight[i] = static_cast<float>(grid.weight[i] * all[r] / left[r]);
   }
 }
-
-void CloseRings::append(std::vector<Vec3>& out) const {
-  for (int i = 0; i < rings_; ++i) {
-    const double angle = i == 0 ? inner_ / std::sqrt(2.0) : std::sqrt(edge(i) * edge(i + 1));
-    const double turn = kGoldenRatio * i;  // neighboring rings do not line up
-    for (int k = 0; k < spokes_; ++k) {
-      const double phi = 2 * kPiD * (k + turn) / spokes_;
-      const Vec3d local(std::sin(angle) * std::cos(phi), std::sin(angle) * std::sin(phi), std::cos(angle));
-      out.push_back(glm::normalize(frame_.to_world(Vec3(local))));
-    }
-  }
-}
-
-double CloseRings::density(const Vec3& w) const {
-  const double angle = 2 * std::asin(std::min(1.0, 0.5 * glm::length(Vec3d(w) - Vec3d(axis_))));
-  if (angle >= edge(rings_)) return 0;
-  const double ring = angle < inner_ ? 0 : 1 + std::log(angle / inner_) / log_step();
-  const int i = std::min(static_cast<int>(ring), rings_ - 1);
-  const double begin = i == 0 ? 0 : edge(i), end = edge(i + 1);
-  // cos(begin) - cos(end) without cancellation.
-  return spokes_ / (4 * kPiD * std::sin(0.5 * (begin + end)) * std::sin(0.5 * (end - begin)));
-}
-
-double CloseRings::log_step() const { return std::log(outer_ / inner_) / (rings_ - 1); }
-
-double CloseRings::edge(int i) const { return inner_ * std::exp((i - 1) * log_step()); }
 
 }  // namespace velour

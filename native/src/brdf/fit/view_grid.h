@@ -5,35 +5,8 @@
 #include <span>
 #include <vector>
 #include "brdf/fit/slice_samples.h"
-#include "math/sphere/frame.h"
 
 namespace velour {
-
-// Directions that become denser towards an axis.
-
-/// Rings about an axis: the cap within `inner` radians, then cells of equal width on a logarithmic scale up to `outer`.
-class CloseRings {
- public:
-  CloseRings(const Vec3& axis, double inner, double outer, int rings, int spokes)
-      : axis_(axis), frame_(Frame::about(axis)), inner_(inner), outer_(outer), rings_(rings), spokes_(spokes) {}
-
-  size_t spokes() const { return static_cast<size_t>(spokes_); }
-
-  /// Appends one direction per cell, ring by ring from the inside.
-  void append(std::vector<Vec3>& out) const;
-  /// Directions per steradian at `w`; 0 beyond the last ring.
-  double density(const Vec3& w) const;
-
- private:
-  double log_step() const;
-  /// Inner radius of ring i > 0, radians.
-  double edge(int i) const;
-
-  Vec3 axis_;
-  Frame frame_;
-  double inner_, outer_;
-  int rings_, spokes_;
-};
 
 /// Views of a fit, unit. Isotropic: on the meridian phi_v = 0, sorted by theta_v, in steps of about two degrees.
 /// Otherwise an equal-area lattice over the hemisphere. None lies within kHeldOutMargin of a held-out view's polar
@@ -50,12 +23,6 @@ struct LightGrid {
   std::vector<uint32_t> ring;  // index of the light's ring, which has equal theta_h
 };
 LightGrid light_grid(const Vec3& wv, int rings = 96, int spokes = 64);
-
-/// Rings about `wv` itself, from 0.1 to 20 degrees. The grid is fine about the mirror direction and resolves
-/// retro-reflection only by chance.
-CloseRings retro_rings(const Vec3& wv);
-/// Adds the lights of retro_rings(wv) to `grid`, made by light_grid(wv, rings, spokes), by the balance heuristic.
-void join_retro_rings(LightGrid& grid, const Vec3& wv, int rings, int spokes);
 
 /// Distributes the solid angle of the lights that are not `kept` to the kept ones of their ring.
 void redistribute_weights(LightGrid& grid, std::span<const uint8_t> kept);

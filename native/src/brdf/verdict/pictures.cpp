@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include "base/parallel.h"
-#include "brdf/fit/error/compare.h"
+#include "brdf/fit/direction_tree.h"
 #include "brdf/fit/error/evaluate.h"
 #include "brdf/verdict/shapes.h"
 #include "brdf/verdict/surroundings.h"
@@ -13,7 +13,7 @@ namespace velour {
 namespace {
 
 constexpr int kPictureSide = 80;
-constexpr LightCounts kLightCounts{512, 24, 12, 256};
+constexpr int kParts = 256, kOwnLights = 256;     // of the tree of light directions; of the material's own sampler
 constexpr float kGray = 0.18f, kBackdrop = 0.1f;  // of exposed pictures
 
 /// Views that stand for all: polar angles in equal steps, and azimuths unless all materials are isotropic.
@@ -57,9 +57,34 @@ void make_reciprocal(const Measurement& measurement, const Vec3& wv, std::span<c
   }
 }
 
+/// A direction in each leaf of the measurement's tree and directions from the material's own sampler, which find its
+/// narrow lobes anywhere, joined by the balance heuristic [VG95] as a quadrature.
+WeightedLights lights_of(const Measurement& measurement, const Material& material, const Vec3& wv) {
+  const DirectionTree tree(reader_of(measurement, wv), wv, kParts);
+  ScratchArena arena;
+  const PreparedBrdf* const point = material.prepare(wv, arena);
+  std::vector<Vec3> all;
+  for (const uint32_t leaf : tree.leaves()) all.push_back(tree.cell(leaf).wl);
+  const size_t leaves = all.size();
+  for (int i = 0; i < kOwnLights; ++i) {
+    const double v = kGoldenRatio * i;
+    all.push_back(point->sample_one(Vec2((i + 0.5) / kOwnLights, v - std::floor(v))));
+  }
+  std::vector<float> own(all.size());
+  evaluate(material, wv, all, {}, own);
+  WeightedLights lights;
+  for (size_t i = 0; i < all.size(); ++i) {
+    const bool sampled = i < leaves || own[i] > 0.0f;
+    if (all[i].z <= 0 || !sampled) continue;
+    lights.wl.push_back(all[i]);
+    lights.weight.push_back(1 / (1 / tree.leaf_at(all[i]).solid_angle() + kOwnLights * static_cast<double>(own[i])));
+  }
+  return lights;
+}
+
 ViewValues values_of(const Measurement& measurement, const Material& material, Against against, const Vec3& wv,
                      const Surroundings& surroundings) {
-  const WeightedLights lights = close_lights(material, wv, kLightCounts);
+  const WeightedLights lights = lights_of(measurement, material, wv);
   const size_t count = lights.wl.size();
   std::vector<Rgb> measured(count), shown(count);
   std::vector<uint8_t> covered(count);

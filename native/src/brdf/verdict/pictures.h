@@ -26,8 +26,8 @@ enum class Against : uint8_t {
 };
 
 /// The ball and the ring in each of the three surroundings. No random numbers: measurement and material are summed over
-/// the same directions, close_lights() of `material`, so that what these miss is missed in both. Views are rounded to
-/// the middles of about two degrees. Pairs that the measurement does not cover count in neither picture. The result
+/// the same directions, so that what these miss is missed in both. Views are rounded to the middles of about two
+/// degrees. Pairs that the measurement does not cover count in neither picture. The result
 /// does not depend on `threads` (0: all).
 std::vector<PicturePair> picture_pairs(const Measurement& measurement, const Material& material, Against against,
                                        int threads, Progress& progress);

@@ -22,7 +22,6 @@ inline Model example_record() {
                .reciprocity = 0.05,
                .measured_reciprocity = 0.125,
                .tolerance = 0.02,
-               .seconds = 1.25,
                .seed = 12345678901234567ull,
                .all_data = true,
                .order = {},

@@ -85,7 +85,6 @@ TEST(FactoredModel, KeepsItsRecord) {
   EXPECT_EQ(record.psnr_held_out, 21.25);
   EXPECT_EQ(record.p99, 0.5);
   EXPECT_EQ(record.raw_bytes, 123456u);
-  EXPECT_EQ(record.evaluations_per_second, 2e6);
   EXPECT_EQ(record.seed, 42u);
   EXPECT_EQ(record.warnings, written.warnings);
 }

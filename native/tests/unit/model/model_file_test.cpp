@@ -30,7 +30,6 @@ void expect_same_record(const Model& a, const Model& b) {
   EXPECT_EQ(a.fit.reciprocity, b.fit.reciprocity);
   EXPECT_EQ(a.fit.measured_reciprocity, b.fit.measured_reciprocity);
   EXPECT_EQ(a.fit.tolerance, b.fit.tolerance);
-  EXPECT_EQ(a.fit.seconds, b.fit.seconds);
   EXPECT_EQ(a.fit.seed, b.fit.seed);
   EXPECT_EQ(a.fit.all_data, b.fit.all_data);
   EXPECT_EQ(a.fit.order, b.fit.order);

@@ -6,7 +6,7 @@ import statistics
 from collections.abc import Mapping
 from pathlib import Path
 
-from velour.native import Measurement, fit_job, table
+from velour.native import Measurement, fit_job
 
 from .. import charts, project
 from ..project import BUILT, velour
@@ -20,6 +20,7 @@ SETTINGS = {
     "bytes": ((3000, 4000, 5000, 6000, 8000, 12000, 16000, 24000, 32000), (2000, 8000)),
 }
 PEERS = {"ggx": 1, "principled": 2}  # and their lobes, comparable to those of a fit
+KINDS = ("scattered", "parametric")
 TOLERANCE, UNBOUND = 0.02, 1e-6  # the latter is met by no fit, so that only the requested bound stops it
 UNTURNED = "scattered, unturned"  # the per-view fit that mixes slices without aligning them
 ANGLES = ("5", "30", "60", "75", "85")
@@ -30,7 +31,7 @@ COSTS = ("f", "sample_pdf", "f_16", "sample_pdf_16")
 def measure(run: Run) -> dict:
     conditions, subjects = run.conditions(load=project.busy_threads()), run.materials()
     points = len(run.settings.lobes) + len(run.settings.bytes)
-    each = 2 + len(table.MODELS) * (points + 2) + 2 * len(PEERS)
+    each = 2 + len(KINDS) * (points + 2) + 2 * len(PEERS)
     run.progress.expect(1, 1 + len(subjects) * each)
     floor, values = _cost(run, "nothing", "floor"), {}
     rows = [{"material": None, "model": "floor", **floor}] if floor else []
@@ -50,7 +51,7 @@ def _rows(run: Run, name: str, measurement: Path) -> tuple[list[dict], dict]:
         return {"material": name, "model": model, **first, **numbers, **cost, **more}
 
     fits, options = [], {"threads": run.threads, "tolerance": TOLERANCE}
-    for model in table.MODELS:
+    for model in KINDS:
         path, report = run.fit(measurement, model, **options)
         views = velour("info", path).get("views")
         fits.append(row(model, report, _cost(run, f"{name}, {model}", path), views=views))
@@ -63,7 +64,7 @@ def _rows(run: Run, name: str, measurement: Path) -> tuple[list[dict], dict]:
         rows.append(row(peer, report, _cost(run, f"{name}, {peer}", measurement, peer), **more))
     rows.append(row(UNTURNED, _unturned(run, name, measurement)))
     for bound, values in (("max-lobes", run.settings.lobes), ("bytes", run.settings.bytes)):
-        for model in table.MODELS:
+        for model in KINDS:
             for value in values:
                 bounded = options | {bound: value} | ({"tolerance": UNBOUND} if bound == "max-lobes" else {})
                 report = run.fit(measurement, model, **bounded)[1]

@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 #include "base/aligned_array.h"
-#include "brdf/fit/error/compare.h"
+#include "brdf/fit/direction_tree.h"
 #include "math/sphere/vec.h"
 
 namespace velour {

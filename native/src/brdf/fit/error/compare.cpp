@@ -5,82 +5,109 @@
 #include <cmath>
 #include <memory>
 #include "brdf/fit/error/evaluate.h"
-#include "brdf/fit/view_grid.h"
 #include "brdf/measure/held_out.h"
 #include "math/sphere/directions.h"
+#include "math/sphere/random.h"
 
 namespace velour {
 
 namespace {
 
-constexpr int kComparedLights = 4096;
-constexpr uint64_t kMinLights = 64;  // minimum number of covered lights; fewer say nothing about a view
-// Lights that capture less than half or more than twice the energy miss a highlight or take one direction for all of
-// it. If fewer than two lights carry the captured energy, the error is that of a single direction.
-constexpr double kEnergyFactor = 2, kMinCarriers = 2;
-// For measured materials the error on close lights is 0.7 to 1.1 times that on even lights. Beyond these bounds a
-// narrow lobe of the model falls between the even lights.
-constexpr double kErrorFactor = 1.5, kErrorSum = 0.01;
+constexpr int kParts = 256;                             // of the tree of a view
+constexpr size_t kTreeLights = 1200, kOwnLights = 400;  // of a set
+constexpr double kMinCovered = 1.0 / 64;                // less says nothing about a view
+// Sets of directions of a view. Several azimuths know as much together with fewer each.
+constexpr size_t kFirstSets = 4, kFirstAzimuthSets = 2, kMaxSets = 16;
+constexpr double kKnown = 0.05, kKnownError = 1e-3;
 
 std::string key_of(int degrees) { return std::to_string(degrees); }
 
-/// Errors of one reported view, one entry per azimuth.
-using AzimuthErrors = std::vector<ViewError>;
+/// One azimuth of a reported view.
+class JudgedView {
+ public:
+  JudgedView(const Measurement& measurement, const Material& material, const Vec3& wv)
+      : measurement_(measurement), material_(material), wv_(wv), tree_(reader_of(measurement, wv), wv, kParts) {}
 
-/// Mean over the azimuths with at least `least` directions; nothing if there are none.
-std::optional<double> mean_error(const AzimuthErrors& errors, uint64_t least) {
-  double sum = 0;
-  int covered = 0;
-  for (const ViewError& e : errors) {
-    if (e.count() < least) continue;
-    sum += e.relative_l2();
-    ++covered;
+  void judge(size_t sets, const Progress& progress) {
+    while (sets_.size() < sets) {
+      progress.check();
+      const WeightedLights lights = error_lights(tree_, material_, wv_, sets_.size());
+      const size_t n = lights.wl.size();
+      std::vector<Rgb> measured(n), model(n);
+      std::vector<uint8_t> valid(n);
+      measurement_.eval(wv_, lights.wl, measured, valid);
+      evaluate(material_, wv_, lights.wl, model);
+      ViewError error;
+      for (size_t i = 0; i < n; ++i) {
+        all_ += lights.weight[i];
+        if (valid[i]) error.add(lights.weight[i], measured[i], model[i], lights.wl[i].z);
+      }
+      sum_.add(error);
+      sets_.push_back(error);
+    }
   }
-  return covered > 0 ? std::optional(sum / covered) : std::nullopt;
+
+  double covered() const { return sum_.solid_angle() / all_; }
+  const ViewError& sum() const { return sum_; }
+  ErrorEstimate estimate() const { return error_estimate(sets_); }
+
+ private:
+  const Measurement& measurement_;
+  const Material& material_;
+  Vec3 wv_;
+  DirectionTree tree_;
+  std::vector<ViewError> sets_;
+  ViewError sum_;
+  double all_ = 0;  // solid angle of all directions
+};
+
+/// The error of a reported view; nothing if it is hardly covered.
+struct ReportedView {
+  std::optional<ErrorEstimate> estimate;
+  ViewError sum;
+};
+
+/// Mean over the covered azimuths.
+std::optional<ErrorEstimate> mean_of(std::span<const JudgedView> azimuths) {
+  double error = 0, variance = 0, count = 0;
+  for (const JudgedView& view : azimuths) {
+    if (view.covered() < kMinCovered) continue;
+    const ErrorEstimate e = view.estimate();
+    error += e.error;
+    variance += e.standard_error * e.standard_error;
+    ++count;
+  }
+  if (count == 0) return std::nullopt;
+  return ErrorEstimate{error / count, std::sqrt(variance) / count};
 }
 
-ViewError error_of_view(const Measurement& measurement, const Material& material, const Vec3& wv,
-                        const WeightedLights& lights, Progress& progress) {
-  const size_t n = lights.wl.size();
-  std::vector<Rgb> measured(n), model(n);
-  std::vector<uint8_t> valid(n);
-  measurement.eval(wv, lights.wl, measured, valid);
-  progress.check();
-  evaluate(material, wv, lights.wl, model);
-  ViewError error;
-  for (size_t i = 0; i < n; ++i) {
-    if (valid[i]) error.add(lights.weight[i], measured[i], model[i], lights.wl[i].z);
-  }
-  return error;
-}
+bool is_known(const ErrorEstimate& e) { return e.standard_error <= kKnown * std::max(e.error, kKnownError); }
 
-/// Errors of one reported view on even lights, or on close_lights() if the even ones misjudge energy or error. Writes
-/// covered_share and narrow_views of `out`.
-AzimuthErrors table_errors(const Measurement& measurement, const Material& material, int degrees, Progress& progress,
-                           Comparison& out) {
-  const WeightedLights even{hemisphere_fibonacci(kComparedLights),
-                            std::vector<double>(kComparedLights, 2 * kPiD / kComparedLights)};
-  AzimuthErrors errors, close_errors;
-  double seen = 0, energy = 0, covered = 0, carriers = kComparedLights;
+ReportedView table_error(const Measurement& measurement, const Material& material, int degrees,
+                         const Progress& progress, Comparison& out) {
+  std::vector<JudgedView> azimuths;
   for (const Vec3& wv : reported_views(degrees, measurement.isotropic())) {
-    errors.push_back(error_of_view(measurement, material, wv, even, progress));
-    close_errors.push_back(error_of_view(measurement, material, wv, close_lights(material, wv), progress));
-    covered += static_cast<double>(errors.back().count()) / kComparedLights;
-    seen += errors.back().energy();
-    carriers = std::min(carriers, errors.back().carriers());
-    energy += close_errors.back().energy();
+    azimuths.emplace_back(measurement, material, wv);
   }
-  out.covered_share[degrees] = covered / static_cast<double>(errors.size());
-  const bool even_see_all = seen * kEnergyFactor >= energy && seen <= kEnergyFactor * energy;
-  const bool understated =
-      mean_error(close_errors, 1).value_or(0) > kErrorFactor * mean_error(errors, 1).value_or(0) + kErrorSum;
-  if (energy == 0 || (even_see_all && carriers >= kMinCarriers && !understated)) return errors;
-  out.narrow_views[degrees] = seen / energy;
-  return close_errors;
+  ReportedView view;
+  for (size_t sets = azimuths.size() > 1 ? kFirstAzimuthSets : kFirstSets; sets <= kMaxSets; sets *= 2) {
+    for (JudgedView& azimuth : azimuths) azimuth.judge(sets, progress);
+    view.estimate = mean_of(azimuths);
+    if (!view.estimate || is_known(*view.estimate)) break;
+  }
+  double covered = 0;
+  for (const JudgedView& azimuth : azimuths) {
+    view.sum.add(azimuth.sum());
+    covered += azimuth.covered() / static_cast<double>(azimuths.size());
+  }
+  out.covered_share[degrees] = covered;
+  return view;
 }
 
-AzimuthErrors sample_errors(const Measurement& measurement, const Material& material, int degrees, Progress& progress) {
-  ViewError error;
+ReportedView sample_error(const Measurement& measurement, const Material& material, int degrees,
+                          const Progress& progress) {
+  std::vector<ViewError> errors;
+  ReportedView view;
   const auto samples = measurement.samples();
   for (size_t i = 0; i < samples.size(); ++i) {
     if (i % 1024 == 0) progress.check();
@@ -88,65 +115,104 @@ AzimuthErrors sample_errors(const Measurement& measurement, const Material& mate
     if (!held_out_sample(i) || reported_view_of(s.wv) != degrees) continue;
     Rgb model;
     evaluate(material, s.wv, {&s.wl, 1}, {&model, 1});
-    error.add(1, s.f, model, s.wl.z);
+    errors.emplace_back().add(1, s.f, model, s.wl.z);
+    view.sum.add(errors.back());
   }
-  return {error};
+  if (!errors.empty()) view.estimate = error_estimate(errors);
+  return view;
 }
 
 }  // namespace
 
+ErrorEstimate error_estimate(std::span<const ViewError> sets) {
+  ViewError sum;
+  for (const ViewError& set : sets) sum.add(set);
+  ErrorEstimate out{sum.relative_l2(), 0};
+  if (!(sum.energy() > 0) || !(out.error > 0)) return out;
+  const double ratio = out.error * out.error, count = static_cast<double>(sets.size());
+  double variance = 0;
+  for (const ViewError& set : sets) variance += set.beyond(ratio) * set.beyond(ratio);
+  const double of_ratio = std::sqrt(variance * count / std::max(count - 1, 1.0)) / sum.energy();
+  out.standard_error = of_ratio / (2 * out.error);
+  return out;
+}
+
 Comparison compare(const Measurement& measurement, const Material& material, Progress& progress) {
   Comparison out;
-  double weighted = 0, weights = 0, log_sq = 0;
+  double weighted = 0, weights = 0, variance = 0, log_sq = 0, solid_angle = 0;
   int done = 0;
   for (const int degrees : kHeldOutViews) {
-    std::optional<double>& entry = out.by_view_angle[key_of(degrees)];
+    ReportedView view;
     if (measurement.covers_view(static_cast<float>(radians_from(static_cast<double>(degrees))))) {
-      const bool irregular = !measurement.samples().empty();
-      const auto errors = irregular ? sample_errors(measurement, material, degrees, progress)
-                                    : table_errors(measurement, material, degrees, progress, out);
-      entry = mean_error(errors, irregular ? 1 : kMinLights);
-      if (!entry) out.narrow_views.erase(degrees);
-      for (const ViewError& e : errors) {
-        log_sq += e.log_sq_sum();
-        out.samples += e.count();
-      }
+      view = measurement.samples().empty() ? table_error(measurement, material, degrees, progress, out)
+                                           : sample_error(measurement, material, degrees, progress);
     }
-    if (entry) {
+    log_sq += view.sum.log_sq_sum();
+    solid_angle += view.sum.solid_angle();
+    out.samples += view.sum.count();
+    std::optional<double>& error = out.by_view_angle[key_of(degrees)];
+    std::optional<double>& standard_error = out.standard_error_by_view_angle[key_of(degrees)];
+    if (view.estimate) {
+      error = view.estimate->error;
+      standard_error = view.estimate->standard_error;
       const double weight = std::cos(radians_from(static_cast<double>(degrees)));
-      weighted += weight * *entry;
+      weighted += weight * *error;
       weights += weight;
+      variance += weight * weight * *standard_error * *standard_error;
     }
-    out.noise_by_view_angle[key_of(degrees)] = entry ? noise_of_view(measurement, degrees, progress) : std::nullopt;
+    out.noise_by_view_angle[key_of(degrees)] = error ? noise_of_view(measurement, degrees, progress) : std::nullopt;
     progress.update(++done / static_cast<double>(kHeldOutViews.size()));
   }
   // If no view can be judged, an error of 1 is reported rather than a good one.
   out.relative_l2 = weights > 0 ? weighted / weights : 1.0;
-  if (out.samples > 0) out.log_rms = std::sqrt(log_sq / static_cast<double>(out.samples));
+  if (weights > 0) out.standard_error = std::sqrt(variance) / weights;
+  if (solid_angle > 0) out.log_rms = std::sqrt(log_sq / solid_angle);
   return out;
+}
+
+WeightedLights error_lights(const DirectionTree& tree, const Material& material, const Vec3& wv, uint64_t set) {
+  constexpr uint64_t kStream = 0x0e44;
+  ScratchArena arena;
+  const PreparedBrdf* const point = material.prepare(wv, arena);
+  std::vector<Vec3> all;
+  tree.sample(kTreeLights, set, all);
+  RandomStream random(set, kStream, 0);
+  const auto turned = [](double x) { return x - std::floor(x); };
+  const double shift = static_cast<double>(random.next()), turn = static_cast<double>(random.next());
+  for (size_t i = 0; i < kOwnLights; ++i) {
+    const auto at = static_cast<double>(i);
+    all.push_back(point->sample_one(Vec2(turned((at + 0.5) / kOwnLights + shift), turned(kGoldenRatio * at + turn))));
+  }
+  std::vector<float> own(all.size());
+  evaluate(material, wv, all, {}, own);
+  WeightedLights lights;
+  for (size_t i = 0; i < all.size(); ++i) {
+    const bool sampled = i < kTreeLights || own[i] > 0.0f;
+    if (all[i].z <= 0 || !sampled) continue;
+    lights.wl.push_back(all[i]);
+    lights.weight.push_back(1 / (kTreeLights * tree.density(all[i]) + kOwnLights * static_cast<double>(own[i])));
+  }
+  return lights;
 }
 
 namespace {
 
-constexpr int kNoiseLights = 4096;
 constexpr double kPairDistance = kPiD / 180;  // radians; maximum difference per angle of a pair of irregular samples
 
 /// Sums over pairs of values that should be equal.
 class PairNoise {
  public:
-  void add(double a, double b) {
-    difference_sq_ += 0.5 * (a - b) * (a - b);
-    energy_ += 0.5 * (a * a + b * b);
-    ++count_;
+  void add(double weight, double a, double b) {
+    difference_sq_ += 0.5 * weight * (a - b) * (a - b);
+    energy_ += 0.5 * weight * (a * a + b * b);
   }
   std::optional<double> relative() const {
-    if (count_ == 0 || !(energy_ > 0)) return std::nullopt;
+    if (!(energy_ > 0)) return std::nullopt;
     return std::sqrt(difference_sq_ / energy_);
   }
 
  private:
   double difference_sq_ = 0, energy_ = 0;
-  uint64_t count_ = 0;
 };
 
 std::optional<double> larger(std::optional<double> a, std::optional<double> b) {
@@ -164,7 +230,9 @@ Vec3 mirrored(const Vec3& w, const Vec3& wv) {
 
 void add_table_pairs(const Measurement& measurement, const Vec3& wv, const Progress& progress, PairNoise& mirror,
                      PairNoise& reciprocal) {
-  const std::vector<Vec3> lights = hemisphere_fibonacci(kNoiseLights);
+  const DirectionTree tree(reader_of(measurement, wv), wv, kParts);
+  std::vector<Vec3> lights;
+  tree.sample(kTreeLights, 0, lights);
   std::vector<Vec3> images(lights);
   for (Vec3& w : images) w = mirrored(w, wv);
   std::vector<Rgb> f(lights.size()), f_image(lights.size());
@@ -174,14 +242,14 @@ void add_table_pairs(const Measurement& measurement, const Vec3& wv, const Progr
   for (size_t i = 0; i < lights.size(); ++i) {
     if (i % 64 == 0) progress.check();
     if (!valid[i]) continue;
-    const double cosine = lights[i].z;
+    const double cosine = lights[i].z, weight = 1 / tree.density(lights[i]);
     if (valid_image[i] && measurement.isotropic()) {
-      mirror.add(cosine * luminance(f[i]), cosine * luminance(f_image[i]));
+      mirror.add(weight, cosine * luminance(f[i]), cosine * luminance(f_image[i]));
     }
     Rgb swapped;
     uint8_t covered = 0;
     measurement.eval(lights[i], {&wv, 1}, {&swapped, 1}, {&covered, 1});
-    if (covered) reciprocal.add(cosine * luminance(f[i]), cosine * luminance(swapped));
+    if (covered) reciprocal.add(weight, cosine * luminance(f[i]), cosine * luminance(swapped));
   }
 }
 
@@ -220,7 +288,7 @@ std::optional<double> sample_noise(const Measurement& measurement, int degrees, 
     if (samples[i].view != degrees) continue;
     for (size_t j = i + 1; j < samples.size() && samples[j].larger - samples[i].larger <= kPairDistance; ++j) {
       if (is_pair(samples[i], samples[j])) {
-        noise.add(samples[i].cosine * samples[i].f, samples[i].cosine * samples[j].f);
+        noise.add(1, samples[i].cosine * samples[i].f, samples[i].cosine * samples[j].f);
       }
     }
   }
@@ -236,46 +304,6 @@ std::optional<double> noise_of_view(const Measurement& measurement, int degrees,
     add_table_pairs(measurement, wv, progress, mirror, reciprocal);
   }
   return larger(mirror.relative(), reciprocal.relative());
-}
-
-namespace {
-
-constexpr double kInnerRadius = 1e-4;  // radians; the width of a Gaussian of bandwidth 1e8
-
-CloseRings rings_about(const Vec3& axis, const LightCounts& counts) {
-  return {axis, kInnerRadius, 0.5 * kPiD, counts.rings, counts.spokes};
-}
-
-/// Appends directions that the material's own sampler generates from a rank-1 lattice.
-void append_own(const PreparedBrdf& point, int count, std::vector<Vec3>& out) {
-  for (int i = 0; i < count; ++i) {
-    const double u = (i + 0.5) / count, v = kGoldenRatio * i;
-    out.push_back(point.sample_one(Vec2(u, v - std::floor(v))));
-  }
-}
-
-}  // namespace
-
-WeightedLights close_lights(const Material& material, const Vec3& wv, const LightCounts& counts) {
-  ScratchArena arena;
-  const PreparedBrdf* const point = material.prepare(wv, arena);
-  const CloseRings mirror = rings_about({-wv.x, -wv.y, wv.z}, counts), retro = rings_about(wv, counts);
-  std::vector<Vec3> all = hemisphere_fibonacci(counts.even);
-  mirror.append(all);
-  retro.append(all);
-  const size_t not_own = all.size();
-  append_own(*point, counts.own, all);
-  std::vector<float> own(all.size());
-  evaluate(material, wv, all, {}, own);
-  WeightedLights lights;
-  for (size_t i = 0; i < all.size(); ++i) {
-    const bool drawn_with_density = i < not_own || own[i] > 0.0f;
-    if (all[i].z <= 0 || !drawn_with_density) continue;
-    lights.wl.push_back(all[i]);
-    lights.weight.push_back(1 / (counts.even / (2 * kPiD) + mirror.density(all[i]) + retro.density(all[i]) +
-                                 counts.own * static_cast<double>(own[i])));
-  }
-  return lights;
 }
 
 }  // namespace velour

@@ -74,13 +74,6 @@ struct Views {
   }
 };
 
-void warn_of_narrow_views(const Comparison& errors, std::vector<Warning>& warnings) {
-  Views views;
-  for (const auto& [degrees, share] : errors.narrow_views) views.add(degrees, share);
-  if (views.degrees.empty()) return;
-  warnings.push_back(warning<WarningCode::narrow_highlight>({{"views", views.degrees}, {"share", views.share}}));
-}
-
 void warn_of_holes(const Comparison& errors, std::vector<Warning>& warnings) {
   Views views;
   for (const auto& [degrees, share] : errors.covered_share) {
@@ -128,7 +121,6 @@ void warn_of_measurement(const Measurement& measurement, const Comparison& error
   warn_of_azimuth(measurement.samples(), record.warnings);
   // Reciprocal pairs of a non-reciprocal measurement say nothing about its noise.
   if (!is_not_reciprocal(record)) warn_of_noise(errors, record.tolerance, record.warnings);
-  warn_of_narrow_views(errors, record.warnings);
   warn_of_holes(errors, record.warnings);
   warn_of_nothing_to_judge(errors, record.warnings);
   warn_of_darkness(record.albedo_max, errors.relative_l2, record.warnings);

@@ -9,9 +9,9 @@
 namespace velour {
 
 /// Appends to `record.warnings` one warning for each of: many invalid entries, few irregular samples,
-/// irregular samples of an anisotropic surface, noise above the tolerance, highlights too narrow for the lights of the
-/// error, lights that are not covered, no covered view, no or almost no reflected light (a wrong scale), and broken
-/// reciprocity. All other fields of `record` must be set.
+/// irregular samples of an anisotropic surface, noise above the tolerance, lights that are not covered, no covered
+/// view, no or almost no reflected light (a wrong scale), and broken reciprocity. All other fields of `record` must be
+/// set.
 void warn_of_measurement(const Measurement& measurement, const Comparison& errors, FitRecord& record);
 
 // Tests whether irregular samples are of an isotropic surface.

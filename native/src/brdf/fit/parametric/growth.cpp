@@ -134,6 +134,14 @@ class LobeGrowth::Growth {
     lobes_.cost = problem.evaluate(lobes_.model, lobes_.x);
   }
 
+  /// Starts with lobes, which are refined first.
+  void start_with(FitLobes lobes) {
+    lobes_ = std::move(lobes);
+    refine(problem_, lobes_, kPolishSteps, kPolishLeast);
+    points_.push_back(order_point(problem_, lobes_));
+    done_ = good_enough();
+  }
+
   /// Adds lobes in `spaces` until there are `most`, all views meet their goals, or more lobes hardly help.
   void grow(std::span<const LobeSpace> spaces, int most) {
     problem_.evaluate(lobes_.model, lobes_.x);
@@ -213,6 +221,8 @@ struct LobeGrowth::State {
         half(problem_of_half, options, progress) {}
 
   GrowthResult fit(int most);
+  /// Continues from the lobes of `coarse`, in place of a start with none.
+  GrowthResult finer(const ParametricBrdf& coarse);
 
  private:
   const Growth& grown(int most) {
@@ -246,12 +256,18 @@ GrowthResult LobeGrowth::fit(int most) {
   return fit;
 }
 
-GrowthResult LobeGrowth::State::fit(int most) {
-  const Growth& growth = grown(most);
-  FitLobes lobes = growth.lobes();
+GrowthResult LobeGrowth::finer(const ParametricBrdf& coarse) {
   GrowthResult fit;
-  fit.order.points = growth.points();
-  FitProblem own = problem;  // a copy, because its weights change
+  in_one_arena(state_->options.threads, [&] { fit = state_->finer(coarse); });
+  return fit;
+}
+
+namespace {
+
+/// The result for the lobes that have been grown: pictures, refinement, rounding, errors. `own` changes its weights.
+GrowthResult finished(FitProblem own, FitLobes lobes, const std::vector<OrderPoint>& points, int most) {
+  GrowthResult fit;
+  fit.order.points = points;
   own.evaluate(lobes.model, lobes.x);
   if (lobes.model.lobe_count() > 0) {
     grow_for_pictures(own, lobes, most, fit.order.points);
@@ -264,6 +280,50 @@ GrowthResult LobeGrowth::State::fit(int most) {
   for (const double v : lobes.x) fit.brdf.control.push_back(static_cast<float>(v));
   record_errors(own, fit);
   return fit;
+}
+
+/// The lobes of `brdf` on a spline twice as fine, which can represent them.
+FitLobes halved(const ParametricBrdf& brdf) {
+  FitLobes out;
+  out.model = brdf;
+  out.model.control.clear();
+  out.model.cells = 2 * brdf.cells;
+  const ViewSpline spline = brdf.spline();
+  const int nodes = out.model.spline().node_count();
+  out.x.resize(static_cast<Index>(out.model.index(nodes, 0, 0)));
+  for (int k = 0; k < brdf.parameter_count(); ++k) {
+    for (int j = 0; j < brdf.lobe_count(); ++j) {
+      std::vector<double> values;
+      for (int node = 0; node < spline.node_count(); ++node) {
+        values.push_back(static_cast<double>(brdf.control[brdf.index(node, k, j)]));
+      }
+      const std::vector<double> finer = spline.halved(values, brdf.isotropic && k == ParametricBrdf::kTiltX);
+      for (int node = 0; node < nodes; ++node) {
+        out.x[static_cast<Index>(out.model.index(node, k, j))] = finer[static_cast<size_t>(node)];
+      }
+    }
+  }
+  return out;
+}
+
+}  // namespace
+
+GrowthResult LobeGrowth::State::fit(int most) {
+  const Growth& growth = grown(most);
+  return finished(problem, growth.lobes(), growth.points(), most);
+}
+
+GrowthResult LobeGrowth::State::finer(const ParametricBrdf& coarse) {
+  constexpr LobeSpace kBoth[] = {LobeSpace::half, LobeSpace::light};
+  both.start_with(halved(coarse));
+  both.grow(kBoth, options.max_lobes);
+  return finished(problem, both.lobes(), both.points(), options.max_lobes);
+}
+
+GrowthResult grow_finer(const std::vector<MeasuredSlice>& slices, GrowthOptions options, const ParametricBrdf& coarse,
+                        Progress& progress) {
+  options.cells = 2 * coarse.cells;
+  return LobeGrowth(slices, options, progress).finer(coarse);
 }
 
 GrowthResult grow_lobes(const std::vector<MeasuredSlice>& slices, const GrowthOptions& options, Progress& progress) {

@@ -37,6 +37,8 @@ class LobeGrowth {
 
   /// Fit with at most `most` lobes, which must not decrease from call to call.
   GrowthResult fit(int most);
+  /// In place of fit(): begins with the lobes of `coarse`, at least one, whose splines have half of options.cells.
+  GrowthResult finer(const ParametricBrdf& coarse);
 
  private:
   class Growth;
@@ -45,6 +47,9 @@ class LobeGrowth {
 };
 
 GrowthResult grow_lobes(const std::vector<MeasuredSlice>& slices, const GrowthOptions& options, Progress& progress);
+/// Continues from the lobes of `coarse` with splines twice as fine, whatever options.cells is.
+GrowthResult grow_finer(const std::vector<MeasuredSlice>& slices, GrowthOptions options, const ParametricBrdf& coarse,
+                        Progress& progress);
 
 /// Recomputes the errors of `fit` after a change of its model.
 void judge_again(const std::vector<MeasuredSlice>& slices, GrowthOptions options, GrowthResult& fit,

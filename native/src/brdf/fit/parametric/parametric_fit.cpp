@@ -14,15 +14,15 @@ namespace {
 
 // Spline cells over the view, for tables and for irregular samples, which are too few for more.
 constexpr int kTableCells = 10, kSampleCells = 4;
+constexpr int kFinerLobes = 20;
 
 // With fewer irregular samples, a control value follows their noise. A material needs two or three lobes at least.
 constexpr size_t kSamplesPerValue = 5;
 constexpr int kMinLobes = 3;
 
-// The interpolation of irregular samples is slow, and they are too few to resolve a finer grid.
+// Irregular samples are too few to resolve a finer grid.
 SliceGrid grid_for(const Measurement& measurement) {
-  if (!measurement.samples().empty()) return {32, 24, measurement.isotropic()};
-  return {64, 32, measurement.isotropic()};
+  return {.parts = 384, .rings = 32, .spokes = 24, .folded = measurement.isotropic()};
 }
 
 /// Number of lobes that the irregular samples can determine.
@@ -63,6 +63,20 @@ Model parametric_model(const Measurement& measurement, const GrowthResult& fit, 
   model.fit.order = fit.order;
   model.body = *brdf;
   model.source = {measurement.provenance().name, measurement.provenance().format, measurement.provenance().sha256};
+  return model;
+}
+
+Model fit_finer(const Measurement& measurement, const ParametricBrdf& coarse, const FitOptions& options,
+                Progress& progress) {
+  progress.stage("sampling", 0.0, 0.1);
+  const MeasuredSlices measured = parametric_slices(measurement, options, progress);
+  progress.stage("fitting with more lobes", 0.1, 0.9);
+  GrowthOptions growth_options = growth_options_of(measurement, options);
+  growth_options.max_lobes = std::max(options.max_lobes, kFinerLobes);
+  const GrowthResult fit = grow_finer(measured.slices, growth_options, coarse, progress);
+  progress.stage("checking the model", 0.9, 1.0);
+  Model model = parametric_model(measurement, fit, options, progress);
+  warn_of_slices(measured, model.fit.warnings);
   return model;
 }
 

@@ -14,6 +14,11 @@ namespace velour {
 /// incidence. Deterministic for any thread count. `share`: the fit's share of the task's progress.
 Model fit_parametric(const Measurement& measurement, const FitOptions& options, Progress& progress, double share = 1);
 
+/// Continues the fit of an isotropic table that ended with the model `coarse`: with splines twice as fine, and up to 20
+/// lobes or options.max_lobes.
+Model fit_finer(const Measurement& measurement, const ParametricBrdf& coarse, const FitOptions& options,
+                Progress& progress);
+
 // The steps of fit_parametric(), for fits to a part of the views.
 
 /// The slices that a parametric fit reads.

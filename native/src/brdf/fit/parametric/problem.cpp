@@ -36,17 +36,17 @@ FitProblem::FitProblem(const std::vector<MeasuredSlice>& slices, const ViewSplin
   for (const MeasuredSlice& slice : slices) {
     FitView view(slice, spline, goal(slice) / std::sqrt(slice.weight));
     if (!(view.energy > 0)) continue;
-    // Samples of a goniometer have a weight of one each, and nothing between them was measured.
-    if (seen_evenly && !slice.interpolated && !(slice.energy > 0)) {
+    if (seen_evenly && slice.lights) {
       view.picture_weight = picture_weights(slice.samples);
-      view.spacing.emplace(slice.samples, view.wv);
+      view.spacing.emplace(slice.lights, view.wv);
     }
+    if (view.guide) smoothness_ = kSampleSmoothness;
     views_.push_back(std::move(view));
   }
 }
 
 double FitProblem::cost(const ParametricBrdf& model, const Eigen::VectorXd& x) const {
-  double sum = x.dot(smoothness_gradient(model, x));
+  double sum = x.dot(smoothness_gradient(model, smoothness_, x));
   for (const FitView& v : views_) {
     const double plain = v.error / v.goal, pictures = v.picture_error / kPictureGoal;
     sum += v.weight * plain * plain + pictures * pictures + kHiding * v.excess;
@@ -93,12 +93,12 @@ double reported_error(const std::vector<FitView>& views, const FitView& view) {
   return std::sqrt(sum / view.energy);
 }
 
-Eigen::VectorXd smoothness_gradient(const ParametricBrdf& model, const Eigen::VectorXd& x) {
+Eigen::VectorXd smoothness_gradient(const ParametricBrdf& model, double smoothness, const Eigen::VectorXd& x) {
   const Index block = static_cast<Index>(model.parameter_count()) * model.lobe_count();
   Eigen::VectorXd out = Eigen::VectorXd::Zero(x.size());
   for_each_triple(model.spline(), [&](int a, int b, int c) {
     const Eigen::VectorXd d =
-        kSmoothness * (x.segment(a * block, block) - 2 * x.segment(b * block, block) + x.segment(c * block, block));
+        smoothness * (x.segment(a * block, block) - 2 * x.segment(b * block, block) + x.segment(c * block, block));
     out.segment(a * block, block) += d;
     out.segment(b * block, block) -= 2 * d;
     out.segment(c * block, block) += d;

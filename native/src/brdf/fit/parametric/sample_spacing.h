@@ -1,41 +1,42 @@
 // Minimum width of a lobe that the samples of a view can resolve.
 #pragma once
 
-#include <array>
 #include <Eigen/Core>
-#include <span>
+#include <memory>
 
+#include "brdf/fit/direction_tree.h"
 #include "brdf/fit/parametric/warped_columns.h"
-#include "brdf/fit/slice_samples.h"
 #include "math/srbf/warped_lobe.h"
 
 namespace velour {
 
-/// Solid angle of one sample of a view as a continuous function of the light direction: that of the finest samples
-/// nearby, so that highlights, where samples are dense, may be sharp.
+/// Limits lobes to what the samples of a view, one per cell of a DirectionTree, can resolve.
 class SampleSpacing {
  public:
-  /// Weights of `samples` are solid angles (sr); `wv` is unit.
-  SampleSpacing(std::span<const SliceSample> samples, const Vec3d& wv);
+  /// `wv` is unit.
+  SampleSpacing(std::shared_ptr<const DirectionTree> lights, const Vec3d& wv) : wv_(wv), lights_(std::move(lights)) {}
 
   /// Excess of the lobe's log bandwidth over what the samples can resolve; negative for lobes that are wide enough. A
-  /// lobe must cover at least the solid angle of a sample at its center. If the center is below the horizon, the tail
-  /// above it must also decay over at least half the spacing of the samples. Without samples, any bandwidth is allowed.
-  double excess(const WarpedShape& shape) const;
-  /// Derivatives of excess() by the first out.size() parameters of the shape, in the order of fill_warped_slopes.
+  /// lobe must cover at least twice the solid angle of the cell at its brightest place. If its center is below the
+  /// horizon, the tail above must also decay over at least half the spacing of the samples.
+  double excess(const WarpedShape& shape) const { return excess(shape, log_solid_angle(shape)); }
+  /// Derivatives of excess() by the first out.size() parameters of the shape, in the order of fill_warped_slopes,
+  /// within that cell.
   void slopes(const WarpedShape& shape, Eigen::Ref<Eigen::VectorXd> out) const;
 
  private:
-  static constexpr int kSide = 16;
-  using Cells = std::array<float, static_cast<size_t>(kSide* kSide)>;
-  static glm::dvec2 place_of(const Vec3d& wl);
-  void spread();
-  double log_solid_angle(const Vec3d& wl) const;
+  struct Shown {
+    Vec3d wl;
+    double steep;  // decay of the tail (1 / rad) if the center is below the horizon, otherwise 0
+  };
+
+  Shown shown(const WarpedLobe& lobe) const;
+  double log_solid_angle(const WarpedShape& shape) const;
+  double excess(const WarpedShape& shape, double log_cell) const;
   double steepness(const WarpedLobe& lobe, const Vec3d& at) const;
 
   Vec3d wv_;
-  bool empty_;
-  Cells log_cell_;  // log of the solid angle (sr), over the equal-area disk of light directions
+  std::shared_ptr<const DirectionTree> lights_;
 };
 
 }  // namespace velour

@@ -198,7 +198,7 @@ FitNormalEquations::FitNormalEquations(const ParametricBrdf& model, const FitPro
   const std::vector<FitView>& views = problem.views();
   const Index block = block_size(model);
   block_.assign(static_cast<size_t>(model.spline().node_count()), Eigen::MatrixXf::Zero(block, block));
-  gradient_ = smoothness_gradient(model, x);
+  gradient_ = smoothness_gradient(model, problem.smoothness(), x);
   for (size_t v = 0; v < views.size(); ++v) {
     const ViewTaps& taps = views[v].taps;
     local_[v].hessian *= static_cast<float>(views[v].scale());
@@ -215,7 +215,7 @@ FitNormalEquations::FitNormalEquations(const ParametricBrdf& model, const FitPro
   // fair scale where there are no data.
   diagonal_.resize(gradient_.size());
   for (size_t n = 0; n < block_.size(); ++n) {
-    block_[n].diagonal().array() += static_cast<float>(6 * kSmoothness);
+    block_[n].diagonal().array() += static_cast<float>(6 * problem.smoothness());
     diagonal_.segment(static_cast<Index>(n) * block, block) = block_[n].diagonal();
   }
 }
@@ -232,7 +232,7 @@ Eigen::VectorXf FitNormalEquations::product(const Eigen::VectorXf& x) const {
     multiply({local_[v].hessian.data(), block, block, 1, block}, at_view.data(),
              curved.col(static_cast<Index>(v)).data());
   });
-  Eigen::VectorXf out = smoothness_gradient(model_, x.cast<double>()).cast<float>();
+  Eigen::VectorXf out = smoothness_gradient(model_, problem_.smoothness(), x.cast<double>()).cast<float>();
   auto weight = weight_.begin();
   for (size_t v = 0; v < views.size(); ++v) {
     const ViewTaps& taps = views[v].taps;

@@ -16,7 +16,8 @@ namespace {
 
 // Slices are fitted more tightly than required, to leave room for the interpolation error between them.
 constexpr double kSliceGoalShare = 0.8;
-constexpr SliceGrid kGrid{96, 64};
+// Half vectors turn with the view, so the lobes of neighboring slices correspond.
+constexpr SliceGrid kGrid{.parts = 0, .rings = 96, .spokes = 64};
 
 std::vector<ViewPath> fit_slices(const std::vector<MeasuredSlice>& slices, const FitOptions& options,
                                  Progress& progress) {

@@ -61,7 +61,8 @@ TEST(Compare, AModelThatIsTheMeasurementHasNoError) {
   const Comparison c = compare(AnalyticMeasurement(test::lambert), FormulaMaterial(test::lambert), progress);
   EXPECT_EQ(c.relative_l2, 0);
   EXPECT_EQ(c.log_rms, 0);
-  EXPECT_EQ(c.samples, 5u * 4096u);
+  EXPECT_GT(c.samples, 5u * 4000u);
+  EXPECT_EQ(c.standard_error, 0);
   for (const auto& [view, error] : c.by_view_angle) EXPECT_EQ(error, 0.0) << view;
   for (const auto& [view, noise] : c.noise_by_view_angle) EXPECT_NEAR(noise.value_or(1), 0, 1e-6) << view;
 }
@@ -97,7 +98,7 @@ TEST(Compare, UncoveredViewsAreNullAndDoNotCount) {
   EXPECT_TRUE(c.by_view_angle.at("60").has_value());
   EXPECT_FALSE(c.by_view_angle.at("75").has_value());
   EXPECT_FALSE(c.noise_by_view_angle.at("75").has_value());
-  EXPECT_EQ(c.samples, 3u * 4096u);
+  EXPECT_FALSE(c.standard_error_by_view_angle.at("75").has_value());
 }
 
 TEST(Compare, UncoveredLightsAreLeftOutNotTakenForBlack) {
@@ -107,16 +108,12 @@ TEST(Compare, UncoveredLightsAreLeftOutNotTakenForBlack) {
   EXPECT_EQ(compare(part, FormulaMaterial(test::lambert), progress).relative_l2, 0);
 }
 
-TEST(Compare, ANarrowHighlightIsLookedAtClosely) {
+TEST(Compare, ANarrowHighlightIsSeen) {
   const AnalyticMeasurement mirror(test::near_mirror(1e6));
   Progress progress;
   const Comparison without_it = compare(mirror, FormulaMaterial(scaled(0.02f)), progress);
-  EXPECT_EQ(without_it.narrow_views.size(), kHeldOutViews.size());
-  EXPECT_LT(without_it.narrow_views.at(30), 1e-3);
   EXPECT_GT(without_it.relative_l2, 0.99);
   EXPECT_LT(compare(mirror, FormulaMaterial(test::near_mirror(1e6)), progress).relative_l2, 1e-6);
-  EXPECT_TRUE(
-      compare(AnalyticMeasurement(test::lambert), FormulaMaterial(test::lambert), progress).narrow_views.empty());
 }
 
 TEST(Compare, AHandfulOfDirectionsIsNoView) {
@@ -124,7 +121,7 @@ TEST(Compare, AHandfulOfDirectionsIsNoView) {
   part.set_coverage([](const DirectionPair& p) { return p.wl.z > 0.99f; });
   Progress progress;
   const Comparison c = compare(part, FormulaMaterial(test::lambert), progress);
-  EXPECT_NEAR(c.covered_share.at(30), 0.01, 0.001);
+  EXPECT_NEAR(c.covered_share.at(30), 0.01, 0.003);
   EXPECT_EQ(c.by_view_angle.at("30"), std::nullopt);
   EXPECT_EQ(c.relative_l2, 1) << "nothing good is claimed of what is not known";
 }
@@ -175,12 +172,18 @@ TEST(ViewError, IsTheWeightedRatioOfNorms) {
   EXPECT_NEAR(e.relative_l2(), std::sqrt(2 * 0.25 / (2 + 1)), 1e-6);
 }
 
-TEST(ViewError, KnowsHowManyDirectionsCarryTheEnergy) {
-  ViewError e;
-  for (int i = 0; i < 10; ++i) e.add(0.1, Rgb(2), Rgb(0), 0.5);
-  EXPECT_NEAR(e.carriers(), 10, 1e-6);
-  e.add(0.1, Rgb(200), Rgb(0), 0.5);
-  EXPECT_NEAR(e.carriers(), 1, 0.01);
+/// A highlight of the wrong width: the error lies in a few directions, and its standard error says how well they know
+/// it.
+TEST(Compare, TheErrorIsKnownToFivePercentOfItself) {
+  Progress progress;
+  const Comparison c =
+      compare(AnalyticMeasurement(test::near_mirror(1e5)), FormulaMaterial(test::near_mirror(8e4)), progress);
+  for (const auto& [view, error] : c.by_view_angle) {
+    EXPECT_GT(error.value(), 0.05) << view;
+    EXPECT_GT(c.standard_error_by_view_angle.at(view).value(), 0) << view;
+    EXPECT_LE(c.standard_error_by_view_angle.at(view).value(), 0.05 * *error) << view;
+  }
+  EXPECT_LT(c.standard_error, 0.05 * c.relative_l2);
 }
 
 }  // namespace

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "base/error.h"
 #include "support/analytic_measurement.h"
 
@@ -21,6 +23,46 @@ TEST(FitModel, TheKindIsWhatWasAskedFor) {
   Progress progress;
   EXPECT_EQ(std::string(model_kind(fit_model(ModelKind::per_view, glossy(), options, progress))), "scattered");
   EXPECT_EQ(std::string(model_kind(fit_model(ModelKind::parametric, glossy(), options, progress))), "parametric");
+}
+
+TEST(FitModel, TheAutomaticChoiceIsParametricAsLongAsItIsGoodEnough) {
+  FitOptions options;
+  options.max_lobes = 4;
+  Progress progress;
+  const Model good = fit_model(ModelKind::automatic, glossy(), options, progress);
+  EXPECT_EQ(std::get<ParametricBrdf>(good.body).cells, 10);
+  EXPECT_EQ(good.fit.by_view_angle, fit_model(ModelKind::parametric, glossy(), options, progress).fit.by_view_angle);
+}
+
+TEST(FitModel, TheAutomaticChoiceIsLargerWhereParametricFails) {
+  // A highlight that swings to and fro every ten degrees of the view, faster than splines of ten cells.
+  const AnalyticMeasurement swinging([](const DirectionPair& p) {
+    const float theta = std::acos(std::min(p.wv.z, 1.0f)) * 180 / kPi;
+    const float tilt = 0.2f * std::sin(2 * kPi * theta / 10);
+    const Vec3 h = glm::normalize(p.wl + p.wv);
+    const Vec3 along = p.wv.z < 1 ? glm::normalize(Vec3(p.wv.x, p.wv.y, 0)) : Vec3(1, 0, 0);
+    const Vec3 center = std::cos(tilt) * Vec3(0, 0, 1) + std::sin(tilt) * along;
+    return Rgb(0.1f / kPi + std::exp(80 * (glm::dot(h, center) - 1)));
+  });
+  FitOptions options;
+  options.max_lobes = 3;
+  Progress progress;
+  const double parametric = fit_model(ModelKind::parametric, swinging, options, progress).fit.relative_l2;
+  const Model chosen = fit_model(ModelKind::automatic, swinging, options, progress);
+  const auto* finer = std::get_if<ParametricBrdf>(&chosen.body);
+  EXPECT_TRUE(!finer || finer->cells == 20);
+  EXPECT_LT(1.3 * chosen.fit.relative_l2, parametric);
+}
+
+TEST(FitModel, OptionsOfOneKindDecide) {
+  FitOptions options;
+  options.max_lobes = 2;
+  options.kernel = Kernel::abel_poisson;
+  Progress progress;
+  EXPECT_EQ(std::string(model_kind(fit_model(ModelKind::automatic, glossy(), options, progress))), "scattered");
+  options = {};
+  options.max_bytes = 300;
+  EXPECT_EQ(std::string(model_kind(fit_model(ModelKind::automatic, glossy(), options, progress))), "parametric");
 }
 
 TEST(FitModel, TheBoundInBytesHoldsForParametricModels) {

@@ -6,7 +6,6 @@
 #include <Eigen/Cholesky>
 
 #include "brdf/fit/parametric/solver.h"
-#include "brdf/fit/view_grid.h"
 
 namespace velour {
 namespace {
@@ -38,6 +37,8 @@ Lobes two_lobes(bool isotropic, double change) {
   return lobes;
 }
 
+constexpr int kParts = 1024;  // cells that the lobes cover, so that none is in excess
+
 std::vector<MeasuredSlice> slices_of(const Lobes& lobes) {
   P brdf = lobes.model;
   for (const double v : lobes.x) brdf.control.push_back(static_cast<float>(v));
@@ -46,14 +47,17 @@ std::vector<MeasuredSlice> slices_of(const Lobes& lobes) {
     for (const float azimuth : {0.0f, 1.0f, 2.5f, 4.5f}) {
       if (brdf.isotropic && azimuth > 0) continue;
       const Vec3 wv = direction(radians_from(degrees), azimuth);
-      const LightGrid grid = light_grid(wv, 16, 16);
-      MeasuredSlice slice{.wv = wv, .samples = {}};
       const auto at_view = lobes_at(brdf, Vec3d(wv));
-      for (size_t i = 0; i < grid.wl.size(); ++i) {
-        Vec3d f(0);
-        for (const WarpedLobe& lobe : at_view)
-          f += lobe.coefficient * warped_kernel(lobe, Vec3d(grid.wl[i]), Vec3d(wv));
-        slice.samples.push_back({grid.wl[i], grid.weight[i], Rgb(f) * grid.wl[i].z});
+      const LightReader read = [&](std::span<const Vec3> wl, std::span<LightValue> values) {
+        for (size_t i = 0; i < wl.size(); ++i) {
+          values[i] = {.f = Rgb(value_of(at_view, Vec3d(wl[i]), Vec3d(wv))), .valid = true};
+        }
+      };
+      MeasuredSlice slice{.wv = wv, .samples = {}};
+      slice.lights = std::make_shared<const DirectionTree>(read, wv, kParts);
+      for (const uint32_t leaf : slice.lights->leaves()) {
+        const DirectionTree::Cell& cell = slice.lights->cell(leaf);
+        slice.samples.push_back({cell.wl, static_cast<float>(cell.solid_angle()), cell.value.f * cell.wl.z});
       }
       slices.push_back(std::move(slice));
     }
@@ -71,7 +75,7 @@ class ParametricProblem : public testing::TestWithParam<bool> {
 
 TEST_P(ParametricProblem, TheTruthHasNoErrorButThePenalty) {
   const double cost = problem_.evaluate(truth_.model, truth_.x);
-  EXPECT_NEAR(cost, truth_.x.dot(smoothness_gradient(truth_.model, truth_.x)), 1e-4);
+  EXPECT_NEAR(cost, truth_.x.dot(smoothness_gradient(truth_.model, kSmoothness, truth_.x)), 1e-4);
   for (const FitView& v : problem_.views()) EXPECT_LT(v.error, 1e-4);
 }
 
@@ -112,7 +116,7 @@ TEST_P(ParametricProblem, TheGradientIsThatOfTheCost) {
   // Sharp enough to fall between the samples: the bound of the bandwidth speaks as well.
   Eigen::VectorXd x = start_.x;
   for (int node = 0; node < start_.model.spline().node_count(); ++node) {
-    x[static_cast<Eigen::Index>(start_.model.index(node, P::kLogBandwidth, 1))] = 7;
+    x[static_cast<Eigen::Index>(start_.model.index(node, P::kLogBandwidth, 1))] = 12;
   }
   problem_.weigh_for_pictures();
   std::vector<LocalNormal> local;

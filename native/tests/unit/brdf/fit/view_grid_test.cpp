@@ -57,25 +57,6 @@ TEST(LightGrid, IsAQuadratureOfTheHemisphere) {
   }
 }
 
-TEST(LightGrid, JoinedWithRingsItMeasuresNarrowRetroReflectionToo) {
-  for (const float theta : {30.0f, 60.0f, 80.0f}) {
-    const Vec3 wv = direction(radians_from(theta), 0.7f);
-    LightGrid grid = light_grid(wv, 64, 32);
-    const auto integral = [&grid](const auto& value) {
-      double sum = 0;
-      for (size_t i = 0; i < grid.wl.size(); ++i) sum += static_cast<double>(grid.weight[i]) * value(grid.wl[i]);
-      return sum;
-    };
-    const double bandwidth = 5000;
-    const auto retro = [&](const Vec3& w) { return std::exp(bandwidth * (glm::dot(Vec3d(w), Vec3d(wv)) - 1)); };
-    const double exact = 2 * kPiD / bandwidth;
-    EXPECT_GT(std::abs(integral(retro) - exact), 0.1 * exact) << theta;  // by chance
-    join_retro_rings(grid, wv, 64, 32);
-    EXPECT_NEAR(integral(retro), exact, 0.02 * exact) << theta;  // rings are a quarter of their radius wide
-    EXPECT_NEAR(integral([](const Vec3& w) { return static_cast<double>(w.z); }), kPiD, 0.01 * kPiD) << theta;
-  }
-}
-
 TEST(LightGrid, HeldOutLightsLeaveTheirSolidAngleToTheirRing) {
   LightGrid grid = light_grid(direction(0.5f, 0));
   double before = 0, after = 0;
