@@ -22,7 +22,7 @@ constexpr int kMinLobes = 3;
 
 // Irregular samples are too few to resolve a finer grid.
 SliceGrid grid_for(const Measurement& measurement) {
-  return {.parts = 320, .rings = 32, .spokes = 24, .folded = measurement.isotropic()};
+  return {.parts = 384, .rings = 32, .spokes = 24, .folded = measurement.isotropic()};
 }
 
 /// Number of lobes that the irregular samples can determine.
