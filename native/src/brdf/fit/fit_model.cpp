@@ -61,7 +61,8 @@ double worst_miss(const FitRecord& record) {
 /// Options that only one of the kinds has decide. Nothing if any kind will do.
 std::optional<ModelKind> required_kind(const FitOptions& options) {
   if (options.kernel != Kernel::gaussian) return ModelKind::per_view;
-  const bool parametric = options.for_scene || options.limit_albedo || options.symmetric || options.max_bytes > 0;
+  const bool is_bounded = options.max_bytes > 0 || options.max_lobes < FitOptions().max_lobes;
+  const bool parametric = options.for_scene || options.limit_albedo || options.symmetric || is_bounded;
   return parametric ? std::optional(ModelKind::parametric) : std::nullopt;
 }
 
