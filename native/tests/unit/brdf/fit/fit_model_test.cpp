@@ -26,8 +26,7 @@ TEST(FitModel, TheKindIsWhatWasAskedFor) {
 }
 
 TEST(FitModel, TheAutomaticChoiceIsParametricAsLongAsItIsGoodEnough) {
-  FitOptions options;
-  options.max_lobes = 4;
+  const FitOptions options;
   Progress progress;
   const Model good = fit_model(ModelKind::automatic, glossy(), options, progress);
   EXPECT_EQ(std::get<ParametricBrdf>(good.body).cells, 10);
@@ -44,8 +43,7 @@ TEST(FitModel, TheAutomaticChoiceIsLargerWhereParametricFails) {
     const Vec3 center = std::cos(tilt) * Vec3(0, 0, 1) + std::sin(tilt) * along;
     return Rgb(0.1f / kPi + std::exp(80 * (glm::dot(h, center) - 1)));
   });
-  FitOptions options;
-  options.max_lobes = 3;
+  const FitOptions options;
   Progress progress;
   const double parametric = fit_model(ModelKind::parametric, swinging, options, progress).fit.relative_l2;
   const Model chosen = fit_model(ModelKind::automatic, swinging, options, progress);
@@ -60,6 +58,9 @@ TEST(FitModel, OptionsOfOneKindDecide) {
   options.kernel = Kernel::abel_poisson;
   Progress progress;
   EXPECT_EQ(std::string(model_kind(fit_model(ModelKind::automatic, glossy(), options, progress))), "scattered");
+  options = {};
+  options.max_lobes = 1;
+  EXPECT_EQ(std::get<ParametricBrdf>(fit_model(ModelKind::automatic, glossy(), options, progress).body).lobe_count(), 1);
   options = {};
   options.max_bytes = 300;
   EXPECT_EQ(std::string(model_kind(fit_model(ModelKind::automatic, glossy(), options, progress))), "parametric");
