@@ -60,7 +60,8 @@ TEST(FitModel, OptionsOfOneKindDecide) {
   EXPECT_EQ(std::string(model_kind(fit_model(ModelKind::automatic, glossy(), options, progress))), "scattered");
   options = {};
   options.max_lobes = 1;
-  EXPECT_EQ(std::get<ParametricBrdf>(fit_model(ModelKind::automatic, glossy(), options, progress).body).lobe_count(), 1);
+  EXPECT_EQ(std::get<ParametricBrdf>(fit_model(ModelKind::automatic, glossy(), options, progress).body).lobe_count(),
+            1);
   options = {};
   options.max_bytes = 300;
   EXPECT_EQ(std::string(model_kind(fit_model(ModelKind::automatic, glossy(), options, progress))), "parametric");
