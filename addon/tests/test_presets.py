@@ -107,7 +107,7 @@ def test_the_script_refuses_what_is_not_there():
 
 
 def test_committed_presets_are_those_of_the_table():
-    """Whoever changes the table runs scripts/presets; models of six cloths and leathers are not committed yet."""
+    """Whoever changes the table runs scripts/presets. Six cloths and leathers are not committed yet."""
     listed = library.listed(ROOT / "addon/presets")
     names = [entry.name for entry in listed]
     built = [preset for preset in PRESETS if preset.name in names]
