@@ -38,7 +38,7 @@ def object_arrays(obj, uv_maps=(), colors=(), empty=_own, shows_uvs=False):
 
 
 class Shape(NamedTuple):
-    """What of a mesh changes when it deforms."""
+    """The arrays of a mesh that change when it deforms."""
 
     positions: np.ndarray  # [vertices x 3]
     vertex_normals: np.ndarray | None  # [vertices x 3]

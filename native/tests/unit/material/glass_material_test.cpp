@@ -200,7 +200,7 @@ TEST(GlassMaterial, PrincipledHasItsShareOfGlass) {
   EXPECT_FALSE(make_principled_material({})->transmits());
 }
 
-/// What is below sheen and coat, and what they return, is never more than all.
+/// The light that sheen and coat let through and the light that they reflect add up to at most all of it.
 TEST(GlassMaterial, WhiteUnderSheenAndCoatLosesLittle) {
   for (const float cosine : {0.2f, 0.6f, 1.0f}) {
     const auto material = make_principled_material({.base_color = Rgb(1), .coat = 1, .sheen = 1});
