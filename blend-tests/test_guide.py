@@ -48,7 +48,7 @@ class Snippets(SnippetTest):
         if not importlib.import_module("velour.core.presets").listed():
             self.skipTest("scripts/presets has not been run")
         self._run_page("preset.md")
-        self.assertTrue((self.folder / "look_0001.png").is_file())
+        self.assertTrue((self.folder / "look.png").is_file())
 
     def test_library(self):
         with tempfile.TemporaryDirectory() as cache, mock.patch.dict(os.environ, XDG_CACHE_HOME=cache):

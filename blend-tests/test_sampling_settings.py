@@ -1,9 +1,11 @@
 """Numbers of samples: camera rays in the panels, light directions in what is stored, and the presets."""
 
 import warnings
+from unittest import mock
 
 import bpy
 
+from support import inputs
 from support.blender import BlenderTest
 
 
@@ -48,10 +50,20 @@ class SamplingSettings(BlenderTest):
         settings.clamp_indirect = 10.0
         found = {}
         for preset in ("PREVIEW", "FINAL", "REFERENCE"):
-            bpy.ops.velour.sampling_preset(preset=preset)
+            self._choose(preset)
             found[preset] = settings.camera_samples, settings.noise_target, settings.use_denoising
         self.assertLess(found["PREVIEW"][0], found["FINAL"][0])
         self.assertLess(found["FINAL"][0], found["REFERENCE"][0])
         self.assertGreater(found["PREVIEW"][1], found["FINAL"][1])
         self.assertEqual([found[preset][2] for preset in found], [True, True, False])
         self.assertEqual(settings.clamp_indirect, 0.0)
+
+    def test_a_preset_leaves_denoising_off_where_there_is_no_denoiser(self):
+        self._choose("FINAL", "There is none.")
+        self.assertFalse(self.settings.use_denoising)
+        self._choose("FINAL")
+        self.assertTrue(self.settings.use_denoising)
+
+    def _choose(self, preset, no_denoiser=""):
+        with mock.patch.object(inputs.module("export.denoiser"), "missing", return_value=no_denoiser):
+            bpy.ops.velour.sampling_preset(preset=preset)

@@ -1,14 +1,9 @@
-"""Denoises pictures, preferably by the Open Image Denoise that Blender ships, and reports their errors."""
+"""Denoises pictures and reports their errors."""
 
-import functools
-from pathlib import Path
-
-import bpy
-
-from ..native import VelourError, denoise_job, library
+from ..export.denoiser import missing
+from ..native import denoise_job
 from ..native.errors import refuse
 
-_FILES = "libOpenImageDenoise.so.2*"
 last_errors = {}  # {name of scene: sentence on the error of its last denoised picture}
 
 
@@ -18,25 +13,6 @@ def prepare(scene):
         raise refuse(
             f"Scene '{scene.name}' cannot be denoised: {reason} Or disable Render > Denoise > Render."
         )
-
-
-@functools.cache
-def missing():
-    """Why denoising is unavailable; empty if it is available."""
-    try:
-        library.set_denoiser(_blenders_own())
-        library.denoiser()
-    except VelourError as error:
-        return str(error)
-    return ""
-
-
-def _blenders_own():
-    """Path of the Open Image Denoise that ships with this Blender; empty if there is none."""
-    folders = [Path(bpy.app.binary_path).parent] if bpy.app.binary_path else []
-    folders.append(Path(bpy.__file__).parent)  # for Blender as a module
-    found = [path for folder in folders for path in sorted((folder / "lib").glob(_FILES))]
-    return str(found[0]) if found else ""
 
 
 def denoise(job, scene, threads, wait):

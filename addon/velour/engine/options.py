@@ -1,9 +1,9 @@
 """A scene's settings as the options of a render job."""
 
 from ..export.caches import cache_folder
+from ..export.denoiser import missing
 from ..export.film import hides_world
 from ..export.world import layer_world
-from .denoising import missing
 
 _WITHOUT_END = 1 << 24  # light directions per pixel, more than anybody waits for
 

@@ -3,6 +3,8 @@
 import bpy
 from bpy.props import EnumProperty
 
+from ..export import denoiser
+
 # Values of render settings; every purpose uses the noise threshold.
 _VALUES = {
     "PREVIEW": {"camera_samples": 32, "noise_target": 0.1, "use_denoising": True},
@@ -33,6 +35,9 @@ class VELOUR_OT_sampling_preset(bpy.types.Operator):
         settings.use_noise_target = True
         for name, value in _VALUES[self.preset].items():
             setattr(settings, name, value)
+        if settings.use_denoising and (reason := denoiser.missing()):
+            settings.use_denoising = False
+            self.report({"WARNING"}, f"Without denoising: {reason}")
         if self.preset == "REFERENCE":
             settings.clamp_direct = settings.clamp_indirect = settings.filter_glossy = 0.0
         return {"FINISHED"}

@@ -3,6 +3,7 @@
 import bpy
 
 from ..engine import denoising
+from ..export import denoiser
 from ..handlers.saved_files import newer_sentence
 from ..operators.check_scene import VELOUR_OT_check_scene
 from ..operators.copy_cycles_settings import VELOUR_OT_copy_cycles_settings
@@ -68,7 +69,7 @@ class VELOUR_RENDER_PT_sampling(_RenderPanel, bpy.types.Panel):
         value.prop(settings, "noise_target", text="")
         layout.prop(settings, "time_limit")
         layout.column(heading="Denoise").prop(settings, "use_denoising", text="Render")
-        if reason := denoising.missing():
+        if reason := denoiser.missing():
             draw_sentence(context, layout, reason, icon="ERROR")
         elif error := denoising.last_errors.get(context.scene.name):
             draw_sentence(context, layout, error, icon="INFO")
