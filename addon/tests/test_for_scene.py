@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import csv
+
 import numpy as np
 import pytest
 from campaigns import run_script
@@ -124,5 +126,7 @@ def test_what_makes_no_sense_is_refused(folder, reduced, arguments, word):
 def test_the_script_writes_its_part_of_the_page(folder, tmp_path, data_folder):
     assert run_script("for_scene", tmp_path, data=data_folder).returncode == 0
     page = (tmp_path / "out/for_scene.md").read_text(encoding="utf-8")
-    assert "moved camera" in page
-    assert (tmp_path / "out/for_scene.csv").is_file()
+    with (tmp_path / "out/for_scene.csv").open(encoding="utf-8") as file:
+        (row,) = (row for row in csv.DictReader(file) if row["moved camera"])  # others state conditions
+    assert float(row["moved camera"]) > 0
+    assert f"| {row['material']} |" in page
