@@ -1,9 +1,13 @@
 """Blender as the tests use it: the add-on, folders, child processes."""
 
+import contextlib
+import ctypes
 import os
 import shutil
 import signal
 import subprocess
+import sys
+import tempfile
 import threading
 import time
 import unittest
@@ -75,6 +79,32 @@ def interrupt(command, after):
         return child.wait(), "".join(lines), time.monotonic() - sent if sent else None
     finally:
         watchdog.cancel()
+
+
+@contextlib.contextmanager
+def printed():
+    """Yields a function that returns what this process has printed since, Blender itself included."""
+    def flush():
+        sys.stdout.flush()
+        ctypes.CDLL(None).fflush(None)
+
+    with tempfile.TemporaryFile("w+", errors="replace") as file:
+        flush()
+        kept = os.dup(1)
+        os.dup2(file.fileno(), 1)
+
+        def said():
+            flush()
+            file.seek(0)
+            return file.read()
+
+        try:
+            yield said
+        finally:
+            text = said()
+            os.dup2(kept, 1)
+            os.close(kept)
+            print(text, end="")
 
 
 class BlenderTest(unittest.TestCase):
