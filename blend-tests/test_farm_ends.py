@@ -17,7 +17,7 @@ _END_NODE = """
 
 class FarmEnds(FarmTest):
     def test_a_frame_that_the_engine_ends_goes_on(self):
-        self.job_of("ended", 2000)
+        self.job_of("ended", 500)
         ended = self.another_stage("ends", "engine/final.py", _TURN, _TURN + _END_NODE)
         done = self.node("--frames", "1-2", environment=ended)
         self.assertEqual(done.returncode, 3, done.stdout)

@@ -63,7 +63,7 @@ class FarmSlurm(SlurmTest, FarmTest):
 
     def _submit_long(self, *options):
         """A job of one frame, which is being rendered."""
-        self.job_of("ended", 4000, "--frames", "1")
+        self.job_of("ended", 1500, "--frames", "1")
         again = ("--output", self.output, "--frames", "1", "--threads", "1")
         number, _ = self._submit(*again, *options)
         self.slurm.wait_until(lambda: self.first_sample(1), "no pass is rendered")

@@ -7,7 +7,7 @@ import numpy as np
 
 from support import inputs, scenes
 from support.blender import run_blender
-from test_approximation import WithoutVelour, group_of
+from test_approximation import InCycles, group_of
 
 # An export in a Blender of its own, which has to end; {before} what is done before Velour is there.
 _EXPORT = """
@@ -44,7 +44,7 @@ def module(name):
 
 
 @unittest.skipUnless(has_usd(), "this Blender cannot write USD")
-class Usd(WithoutVelour):
+class Usd(InCycles):
     _count = 0
 
     def _model(self, data):

@@ -63,7 +63,7 @@ class VelourCheck(CheckFolderTest):
             light.energy = watts
             light.keyframe_insert("energy", frame=frame)
         self.save("shot")
-        self.update("--frame", 2, "--frame", 19)
+        self.update("--frame", 2, "--frame", 19, "--seeds", 4)
         found = sorted(path.name for path in self.shots.glob("*.exr") if "error" not in path.name)
         self.assertEqual(found, ["shot_0002.exr", "shot_0019.exr"])
         status, said, outcomes = self.check()

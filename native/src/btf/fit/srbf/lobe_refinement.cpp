@@ -76,6 +76,13 @@ namespace {
 
 constexpr float kTileRidge = 1e-5f;  // on coefficients, relative to a lobe of value 1 everywhere
 
+/// Solves gram x = moment. `gram` (symmetric; its lower half is read) may be singular up to rounding.
+Eigen::VectorXf solved(const Eigen::MatrixXf& gram, const Eigen::VectorXf& moment) {
+  const Eigen::LLT<Eigen::MatrixXf> factor(gram);  // in blocks: several times as fast as LDLT
+  if (factor.info() == Eigen::Success) return factor.solve(moment);
+  return gram.selfadjointView<Eigen::Lower>().ldlt().solve(moment);
+}
+
 }  // namespace
 
 struct ProjectedError::Part {
@@ -125,8 +132,7 @@ ProjectedError::Part ProjectedError::of_point(size_t number, const std::vector<M
   Eigen::MatrixXf gram(count, count);
   multiply_by_itself({column.data(), count, column.rows(), column.rows(), 1}, {gram.data(), count, count, 1, count});
   gram.diagonal().array() += ridge;
-  const Eigen::VectorXf coefficient =
-      gram.selfadjointView<Eigen::Lower>().ldlt().solve(column.transpose() * truth).eval();
+  const Eigen::VectorXf coefficient = solved(gram, column.transpose() * truth);
   const Eigen::VectorXf rest = truth - column * coefficient;
   part.error = static_cast<double>(rest.squaredNorm() + ridge * coefficient.squaredNorm());
   // At the best coefficients the error does not change with them: only the change of the lobes remains.
