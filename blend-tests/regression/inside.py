@@ -1,23 +1,60 @@
-"""Opening files and rendering them, for the scripts that run inside Blender."""
+"""Opening files and rendering them, for the scripts that run inside Blender. Run by itself, it obeys orders.
 
+An order is a line of stdin, a JSON object: "script" (inside_*.py, whose main(task) is called), "task", and
+"log" (the file that gets what is said meanwhile). The file task["report"] gets the dictionary that main()
+returns, or its error; then stdout gets the line DONE. Blender ends with the orders.
+"""
+
+import ctypes
+import importlib
 import json
+import os
 import sys
+import traceback
 from pathlib import Path
 
 import addon_utils
 import bpy
 
+DONE = "velour: done"
+HERE = Path(__file__).resolve().parent
 
-def run(main):
-    """Calls `main(task)` with the task that the command line ends with. The report gets the dictionary that
-    it returns, or its error."""
-    task = json.loads(sys.argv[sys.argv.index("--") + 1])
+
+def obey():
+    orders, answers = os.fdopen(os.dup(0)), os.fdopen(os.dup(1), "w")
+    os.dup2(os.open(os.devnull, os.O_RDONLY), 0)
+    sys.path[:0] = [str(HERE), str(HERE.parent)]
+    for line in orders:
+        order = json.loads(line)
+        _log_to(order["log"])
+        _run(Path(order["script"]).stem, order["task"])
+        _flush()
+        print(DONE, file=answers, flush=True)
+
+
+def _run(module, task):
     report = {"error": None}
     try:
-        report |= main(task) or {}
+        report |= importlib.import_module(module).main(task) or {}
     except Exception as error:
+        traceback.print_exc()
         report["error"] = sentence(error)
     Path(task["report"]).write_text(json.dumps(report))
+
+
+def _log_to(path):
+    _flush()
+    log = os.open(path, os.O_WRONLY | os.O_CREAT | os.O_APPEND)
+    for output in (1, 2):
+        os.dup2(log, output)
+    os.close(log)
+
+
+def _flush():
+    """Python's outputs and Blender's own."""
+    sys.stdout.flush()
+    sys.stderr.flush()
+    ctypes.CDLL(None).fflush(None)
 
 
 def open_file(blend, scripts):
@@ -83,3 +120,7 @@ def sentence(error):
     """What an operator reports, without its "Error:", on one line."""
     text = " ".join(str(error).split()) or type(error).__name__
     return text.removeprefix("Error: ")
+
+
+if __name__ == "__main__":
+    obey()

@@ -4,18 +4,14 @@ The task: "blend" (to open), "save" (paths by variant or by change), "models" (f
 """
 
 import math
-import sys
 from pathlib import Path
 
 import bpy
+import inside
 import numpy as np
 from mathutils import Matrix
 
-sys.path[:0] = [str(Path(__file__).parent), str(Path(__file__).parents[1])]
-
-import inside  # noqa: E402
-
-from support import scenes  # noqa: E402
+from support import scenes
 
 BALL, CUBE, TILES, PLASTIC = "Bench ball", "Bench cube", "Bench tiles", "Bench plastic"
 _PROP_METERS = 4.0  # from a camera without depth of field
@@ -186,6 +182,3 @@ _CHANGES = {
     "model refitted": _refit,
     "UV map shifted": _shift_uv_map,
 }
-
-if __name__ == "__main__":
-    inside.run(main)

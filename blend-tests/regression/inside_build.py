@@ -1,21 +1,16 @@
 """Runs inside Blender: builds a scene of blend-tests/scenes and saves it as a .blend.
 
-The task: "scene" (the Python file), "blend" (to write), "report".
+The task: "scene" (the Python file), "blend" (to write) and "report", which gets "meaning".
 """
 
 import importlib.util
-import json
-import sys
 from pathlib import Path
 
 import addon_utils
 import bpy
 
-TESTS = Path(__file__).resolve().parent.parent
-sys.path[:0] = [str(TESTS)]
 
-
-def build(task):
+def main(task):
     bpy.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)
     for name in ("velour", "cycles"):  # film exposure and ray visibility are settings of Cycles
         addon_utils.enable(name, default_set=True)
@@ -26,8 +21,4 @@ def build(task):
     bpy.ops.wm.save_as_mainfile(filepath=str(blend))  # what is beside the file is named relative to it
     module.build(blend.parent)
     bpy.ops.wm.save_as_mainfile(filepath=str(blend))
-    report = {"error": None, "meaning": getattr(module, "meaning", str)()}
-    Path(task["report"]).write_text(json.dumps(report))
-
-
-build(json.loads(sys.argv[sys.argv.index("--") + 1]))
+    return {"meaning": getattr(module, "meaning", str)()}

@@ -5,17 +5,13 @@ The task: "blend", "scripts" (whether its own may run), "engine" (VELOUR, CYCLES
 BOUNCES-SEED.exr) and "report".
 """
 
-import sys
 from pathlib import Path
 
 import addon_utils
 import bpy
+import inside
 
-sys.path[:0] = [str(Path(__file__).parent), str(Path(__file__).parents[1])]
-
-import inside  # noqa: E402
-
-from parity import engines  # noqa: E402
+from parity import engines
 
 _SEEDS_AND_SAMPLES = {"velour.seed", "velour.samples", "cycles.seed", "cycles.samples"}
 
@@ -49,6 +45,3 @@ def _set_size(render, width):
     height //= max(round(render.resolution_x * render.pixel_aspect_x), 1)
     render.resolution_x, render.resolution_y = width, min(max(height, 16), 4 * width)
     render.resolution_percentage, render.use_border = 100, False
-
-
-inside.run(main)

@@ -6,13 +6,9 @@ those that name causes, and the world gets files of its own), "folder" (of the p
 world-FRAME-SEED.exr, FRAME being "own" for null) and "report", which gets "layer" (of the passes, or null).
 """
 
-import sys
 from pathlib import Path
 
 import bpy
-
-sys.path.insert(0, str(Path(__file__).parent))
-
 import inside
 import inside_world
 
@@ -71,7 +67,3 @@ def _show_passes(scene):
     if hasattr(settings, "use_exr_interleave"):  # one part in place of one for each pass
         settings.use_exr_interleave = True
     return layer.name
-
-
-if __name__ == "__main__":
-    inside.run(main)

@@ -84,6 +84,7 @@ def interrupt(command, after):
 @contextlib.contextmanager
 def printed():
     """Yields a function that returns what this process has printed since, Blender itself included."""
+
     def flush():
         sys.stdout.flush()
         ctypes.CDLL(None).fflush(None)
