@@ -19,6 +19,7 @@ _KEYS_OF_VECTOR = 3  # the previous frame, this one, the next
 _FRAMES_OF_VECTOR = 2.0
 _MIDDLE = {"START": 0.5, "CENTER": 0.0, "END": -0.5}  # of the shutter's time, from the frame on
 _CURVE_VALUES = 256
+_TIMES = 1025  # at which the opening of the shutter is given
 _GONE = object()  # stands for the places of a particle that does not exist all the time
 
 
@@ -227,9 +228,19 @@ def _position(scene):
 
 
 def _shutter_curve(render):
-    """[values] How far the shutter is open, at even times; a single value: constant."""
-    values = np.abs(np.array(curve_values(render.motion_blur_shutter_curve, _CURVE_VALUES), np.float32))
-    return np.ones(1, np.float32) if (values == values[0]).all() else values
+    """[values] How far the shutter is open, at even times.
+
+    Like Cycles' table of times (util_cdf_invert with 256 entries), which leaves out 1/512 of the light at
+    both ends and ends at 255/256 of the shutter.
+    """
+    values = np.abs(np.array(curve_values(render.motion_blur_shutter_curve, _CURVE_VALUES)))
+    if not values.any():
+        return values.astype(np.float32)
+    times = np.linspace(0, _CURVE_VALUES / (_CURVE_VALUES - 1), _TIMES)
+    opening = np.interp(times, np.linspace(0, 1, _CURVE_VALUES), values, right=0.0)
+    passed = np.cumsum(opening) / opening.sum()
+    least = 0.5 / _CURVE_VALUES
+    return np.where((passed > least) & (passed < 1 - least), opening, 0).astype(np.float32)
 
 
 def _key(instance):
