@@ -11,7 +11,7 @@ layer(math/optimize BELOW base LIBRARIES Eigen3::Eigen)
 layer(image BELOW base math/sphere LIBRARIES PRIVATE glm::glm OpenEXR::OpenEXR TIFF::TIFF ZLIB::ZLIB)
 layer(votf/eval BELOW math/srbf)
 
-layer(brdf/measure BELOW image math/sphere LIBRARIES PRIVATE Eigen3::Eigen)
+layer(brdf/measure BELOW image math/sphere math/optimize LIBRARIES PRIVATE Eigen3::Eigen)
 layer(brdf/formats BELOW brdf/measure LIBRARIES PRIVATE velour_highway pugixml::pugixml)
 layer(brdf/model BELOW math/srbf)
 layer(usage BELOW brdf/measure brdf/model LIBRARIES PRIVATE Eigen3::Eigen)

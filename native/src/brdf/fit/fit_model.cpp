@@ -58,6 +58,13 @@ double worst_miss(const FitRecord& record) {
   return worst;
 }
 
+/// Whether a larger model is worth a try.
+bool is_poor(const Measurement& measurement, const FitRecord& record) {
+  if (measurement.samples().empty()) return worst_miss(record) > kGoodEnough;
+  // Irregular samples determine no larger model, except where this one is worse than black.
+  return std::ranges::any_of(record.by_view_angle, [](const auto& view) { return view.second.value_or(0.0) > 1.0; });
+}
+
 /// Options that only one of the kinds has decide. Nothing if any kind will do.
 std::optional<ModelKind> required_kind(const FitOptions& options) {
   if (options.kernel != Kernel::gaussian) return ModelKind::per_view;
@@ -77,12 +84,12 @@ Model fit_automatically(const Measurement& measurement, const FitOptions& option
     if (kWorthIt * other.fit.relative_l2 < best.fit.relative_l2) best = std::move(other);
   };
   const auto& coarse = std::get<ParametricBrdf>(best.body);
-  const bool table = measurement.samples().empty();  // irregular samples determine no larger model
-  if (table && measurement.isotropic() && coarse.lobe_count() > 0 && worst_miss(best.fit) > kGoodEnough) {
+  const bool table = measurement.samples().empty();  // irregular samples are too few for more cells
+  if (table && measurement.isotropic() && coarse.lobe_count() > 0 && is_poor(measurement, best.fit)) {
     const Progress::Span span(progress, 0.4, 0.7);
     replace_if_better(fit_finer(measurement, coarse, options, progress));
   }
-  if (table && worst_miss(best.fit) > kGoodEnough) {
+  if (is_poor(measurement, best.fit)) {
     const Progress::Span span(progress, 0.7, 1.0);
     replace_if_better(fit_per_view(measurement, options, progress));
   }

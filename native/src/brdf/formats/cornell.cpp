@@ -185,15 +185,15 @@ class IrregularMeasurement : public TableMeasurement {
 
 TableMeasurement::Details describe(const CornellText& text) {
   const auto whole = [](double v) { return std::to_string(std::lround(v)); };
-  return {
-      {"table", std::to_string(text.rows.size() / text.row_size) + " irregular samples of " +
-                    std::to_string(text.wavelengths.size()) + " wavelengths, " + whole(text.wavelengths.front()) +
-                    " to " + whole(text.wavelengths.back()) + " nm"},
-      {"holds", "f without cosine, 1/sr, spectral; converted to linear Rec. 709 with the CIE 1931 observer"},
-      {"invalid", "samples that are not finite or have negative luminance"},
-      {"interpolation", "local linear regression over 16 samples in half and difference angles, tabulated at " +
-                            std::to_string(kCornellLayout.theta_h) + " x " + std::to_string(kCornellLayout.theta_d) +
-                            " x " + std::to_string(kCornellLayout.phi_d) + " nodes"}};
+  return {{"table", std::to_string(text.rows.size() / text.row_size) + " irregular samples of " +
+                        std::to_string(text.wavelengths.size()) + " wavelengths, " + whole(text.wavelengths.front()) +
+                        " to " + whole(text.wavelengths.back()) + " nm"},
+          {"holds", "f without cosine, 1/sr, spectral; converted to linear Rec. 709 with the CIE 1931 observer"},
+          {"invalid", "samples that are not finite or have negative luminance"},
+          {"interpolation",
+           "microfacet lobes, and local linear regression over 16 samples of what they leave, tabulated at " +
+               std::to_string(kCornellLayout.theta_h) + " x " + std::to_string(kCornellLayout.theta_d) + " x " +
+               std::to_string(kCornellLayout.phi_d) + " nodes"}};
 }
 
 /// The comment lines before the first number, as the file's description.

@@ -4,11 +4,13 @@
 #include <array>
 #include <cmath>
 #include <Eigen/Dense>
+#include <limits>
 #include <nanoflann.hpp>
 
 #include "base/error.h"
 #include "base/parallel.h"
 #include "brdf/measure/half_diff.h"
+#include "brdf/measure/microfacet_trend.h"
 
 namespace velour {
 namespace {
@@ -19,6 +21,7 @@ constexpr double kAzimuthWeight = 0.3;
 constexpr double kLinearBelow = 0.01;  // 1/sr: asinh turns from linear to logarithmic here
 constexpr double kFalloff = 3.0;       // weight of the furthest neighbor: exp(-3)
 constexpr double kRidge = 1e-3;        // on the slopes, relative to the data's own weight
+constexpr double kWorth = 0.9;         // share of the error that must be left for a trend, or another lobe of it
 
 using Point = std::array<double, 3>;
 
@@ -51,7 +54,7 @@ float expand(double g) { return static_cast<float>(kLinearBelow * std::sinh(g));
 
 }  // namespace
 
-/// The samples as a nanoflann data set, and a tree over them.
+/// The samples as a nanoflann data set, a tree over them, and their trend.
 struct IrregularInterpolant::Index {
   explicit Index(std::span<const IrregularSample> samples);
 
@@ -62,10 +65,18 @@ struct IrregularInterpolant::Index {
     return false;
   }
 
-  Rgb regress(const Point& here, const Nearest& nearest) const;
+  /// Makes the regression follow a trend.
+  void follow(std::span<const IrregularSample> samples, const MicrofacetTrend& wanted);
+  /// What the trend leaves at a place.
+  std::array<double, 3> regress(const Point& here, const Nearest& nearest) const;
+  Rgb f(const Vec3& wl, const Vec3& wv, const Point& here, const Nearest& nearest) const;
+  /// Mean squared difference of compressed luminance, times the mean cosine, at samples that the regression does not
+  /// see.
+  double left_out_error(std::span<const IrregularSample> samples) const;
 
-  std::vector<Point> regression, reach;       // Place
-  std::vector<std::array<double, 3>> values;  // compressed
+  MicrofacetTrend trend;
+  std::vector<Point> regression, reach;     // Place
+  std::vector<std::array<double, 3>> rest;  // what the trend leaves of the compressed values
   using Tree = nanoflann::KDTreeSingleIndexAdaptor<nanoflann::L2_Simple_Adaptor<double, Index>, Index, 3>;
   std::unique_ptr<Tree> tree;
 };
@@ -75,10 +86,59 @@ IrregularInterpolant::Index::Index(std::span<const IrregularSample> samples) {
     const Place place = place_of(sample.wl, sample.wv);
     regression.push_back(place.regression);
     reach.push_back(place.reach);
-    values.push_back({compress(sample.f.r), compress(sample.f.g), compress(sample.f.b)});
   }
   tree = std::make_unique<Tree>(3, *this);
   tree->buildIndex();
+  // What is smooth between samples needs no trend, and real highlights may have another shape.
+  MicrofacetTrend best;
+  double least = std::numeric_limits<double>::infinity();
+  for (size_t lobes = 0; lobes <= MicrofacetTrend::kMostLobes; ++lobes) {
+    const MicrofacetTrend candidate = lobes == 0 ? MicrofacetTrend() : MicrofacetTrend(samples, lobes);
+    if (candidate.shapes().size() < lobes) break;
+    follow(samples, candidate);
+    const double error = left_out_error(samples);
+    if (error < kWorth * least) least = error, best = candidate;
+  }
+  follow(samples, best);
+}
+
+void IrregularInterpolant::Index::follow(std::span<const IrregularSample> samples, const MicrofacetTrend& wanted) {
+  trend = wanted;
+  rest.clear();
+  for (const IrregularSample& sample : samples) {
+    const Rgb t = trend.f(sample.wl, sample.wv);
+    auto& left = rest.emplace_back();
+    for (int c = 0; c < 3; ++c) left[static_cast<size_t>(c)] = compress(sample.f[c]) - compress(t[c]);
+  }
+}
+
+double IrregularInterpolant::Index::left_out_error(std::span<const IrregularSample> samples) const {
+  double sum = 0;
+  for (size_t i = 0; i < samples.size(); ++i) {
+    std::array<uint32_t, kCount + 1> sample{};
+    std::array<double, kCount + 1> distance{};
+    const size_t found = tree->knnSearch(regression[i].data(), kCount + 1, sample.data(), distance.data());
+    Nearest others;
+    size_t n = 0;
+    for (size_t k = 0; k < found && n < kCount; ++k) {
+      if (sample[k] == i) continue;
+      others.sample[n] = sample[k];
+      others.distance_sq[n++] = distance[k];
+    }
+    if (n < kCount) return 0;  // too few to tell
+    const double cosine = 0.5 * (samples[i].wl.z + samples[i].wv.z);
+    const float found_f = luminance(f(samples[i].wl, samples[i].wv, regression[i], others));
+    const double difference = compress(luminance(samples[i].f)) - compress(found_f);
+    sum += cosine * difference * difference;
+  }
+  return sum / static_cast<double>(samples.size());
+}
+
+Rgb IrregularInterpolant::Index::f(const Vec3& wl, const Vec3& wv, const Point& here, const Nearest& nearest) const {
+  const auto left = regress(here, nearest);
+  Rgb value = trend.f(wl, wv);
+  for (int c = 0; c < 3; ++c) value[c] = expand(compress(value[c]) + left[static_cast<size_t>(c)]);
+  return value;
 }
 
 IrregularInterpolant::IrregularInterpolant(std::span<const IrregularSample> samples) {
@@ -99,10 +159,10 @@ std::optional<Rgb> IrregularInterpolant::f(const Vec3& wl, const Vec3& wv) const
     return distance_sq(here.reach, index_->reach[n]) <= kReach * kReach;
   });
   if (!in_reach) return std::nullopt;
-  return index_->regress(here.regression, nearest);
+  return index_->f(wl, wv, here.regression, nearest);
 }
 
-Rgb IrregularInterpolant::Index::regress(const Point& here, const Nearest& nearest) const {
+std::array<double, 3> IrregularInterpolant::Index::regress(const Point& here, const Nearest& nearest) const {
   const double width = std::max(nearest.distance_sq.back(), 1e-12);
   Eigen::Matrix<double, kCount, 4> terms;
   Eigen::Matrix<double, kCount, 3> data;
@@ -110,21 +170,21 @@ Rgb IrregularInterpolant::Index::regress(const Point& here, const Nearest& neare
   for (int i = 0; i < kCount; ++i) {
     const auto n = static_cast<size_t>(i);
     const Point& there = regression[nearest.sample[n]];
-    const auto& value = values[nearest.sample[n]];
+    const auto& left = rest[nearest.sample[n]];
     terms.row(i) << 1.0, there[0] - here[0], there[1] - here[1], there[2] - here[2];
-    data.row(i) << value[0], value[1], value[2];
+    data.row(i) << left[0], left[1], left[2];
     weights(i) = std::exp(-kFalloff * nearest.distance_sq[n] / width);
   }
   Eigen::Matrix4d normal = terms.transpose() * weights.asDiagonal() * terms;
   normal.diagonal().tail<3>().array() += kRidge * weights.sum() * width;
   const Eigen::Matrix<double, 4, 3> moment = terms.transpose() * weights.asDiagonal() * data;
   const Eigen::Matrix<double, 4, 3> solution = normal.ldlt().solve(moment);
-  Rgb f;
+  std::array<double, 3> found{};
   for (int c = 0; c < 3; ++c) {
-    const double low = data.col(c).minCoeff(), high = data.col(c).maxCoeff();
-    f[c] = expand(std::clamp(solution(0, c), low, high + (high - low)));
+    const double low = data.col(c).minCoeff(), high = data.col(c).maxCoeff(), range = high - low;
+    found[static_cast<size_t>(c)] = std::clamp(solution(0, c), low, trend.shapes().empty() ? high + range : high);
   }
-  return f;
+  return found;
 }
 
 std::vector<TableNode> resample_irregular(const IrregularInterpolant& interpolant, const BrdfTableLayout& layout,

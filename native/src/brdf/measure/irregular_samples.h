@@ -11,12 +11,15 @@
 
 namespace velour {
 
-/// Local linear regression over the nearest samples. f is assumed isotropic, reciprocal and mirror-symmetric, so a pair
-/// is a point (theta_h^0.7, theta_d, 0.3 sin theta_h sin theta_d cos 2 phi_d). f varies fastest with theta_h, whose
-/// power spreads a highlight over several samples. Each channel is fitted as asinh(f / 0.01 sr^-1), nearly logarithmic
-/// for highlights and linear about 0, with Gaussian weights over the 16 nearest samples and a light ridge on the
-/// slopes. The result never falls below those samples; it may rise above them by their range, because a highlight's top
-/// mostly lies between samples.
+/// Local linear regression over the nearest samples of what a trend leaves, as regression kriging does [HHR07]: samples
+/// a few degrees apart do not resolve a sharp highlight, but those of all views tell its shape. The trend is a
+/// MicrofacetTrend of the samples, or none if leaving out each sample shows that regression alone predicts it as well.
+/// f is assumed isotropic, reciprocal and mirror-symmetric, so a pair is a point (theta_h^0.7, theta_d,
+/// 0.3 sin theta_h sin theta_d cos 2 phi_d). f varies fastest with theta_h, whose power spreads a highlight over
+/// several samples. Each channel is compressed to asinh(f / 0.01 sr^-1), nearly logarithmic for highlights and linear
+/// about 0; the regression has Gaussian weights over the 16 nearest samples and a light ridge on the slopes. What it
+/// adds to a trend stays between what that leaves of those samples. Without a trend, the result never falls below those
+/// samples; it may rise above them by their range, because a highlight's top mostly lies between samples.
 class IrregularInterpolant {
  public:
   /// Copies what it needs. Throws Error(invalid_argument) for fewer than kNeighbors samples.

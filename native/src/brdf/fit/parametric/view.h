@@ -27,7 +27,7 @@ std::vector<float> picture_weights(std::span<const SliceSample> samples);
 inline constexpr double kHiding = 100;
 
 // Weight of the squared error of a guide.
-inline constexpr double kGuideWeight = 0.01;
+inline constexpr double kGuideWeight = 0.1;
 
 /// A view of the fit. `error` is the relative L2 error of its f cos with channels weighted as in luminance, which is
 /// never below that of the luminance.
