@@ -92,7 +92,7 @@ IrregularInterpolant::Index::Index(std::span<const IrregularSample> samples) {
   // What is smooth between samples needs no trend, and real highlights may have another shape.
   MicrofacetTrend best;
   double least = std::numeric_limits<double>::infinity();
-  for (size_t lobes = 0; lobes <= MicrofacetTrend::kMostLobes; ++lobes) {
+  for (size_t lobes = 0; lobes <= MicrofacetTrend::kMaxLobes; ++lobes) {
     const MicrofacetTrend candidate = lobes == 0 ? MicrofacetTrend() : MicrofacetTrend(samples, lobes);
     if (candidate.shapes().size() < lobes) break;
     follow(samples, candidate);

@@ -18,11 +18,11 @@ struct Profile {
 constexpr float kLargeTail = 40.0f;
 constexpr Profile kProfiles[] = {{1.5f, 1.0f},       {2.0f, 1.0f},       {3.0f, 1.0f},      {6.0f, 1.0f},
                                  {kLargeTail, 1.0f}, {kLargeTail, 2.0f}, {kLargeTail, 4.0f}};
-constexpr double kLeastLogAlpha = -5.5, kMostLogAlpha = 0.0, kStep = 0.2, kLastStep = 0.001;
+constexpr double kMinLogAlpha = -5.5, kMaxLogAlpha = 0.0, kStep = 0.2, kLastStep = 0.001;
 constexpr int kRounds = 2;             // of searches for each of two lobes in turn, near where they are
 constexpr double kLogAperture = -3.5;  // of the broadest flat top: 1.7 degrees
 constexpr double kNear = 0.6;          // in log alpha
-constexpr size_t kMostSamples = 2000;  // that are read; of more, every nth
+constexpr size_t kMaxSamples = 2000;   // that are read; of more, every nth
 constexpr double kFloor = 1e-3;        // of f cos, relative to its mean: hardly distinguishable from 0
 constexpr double kNegligible = 4e-6;   // of the mean squared difference, relative to f cos: 0.4 % of f
 constexpr int kUnknowns = 2 + 6;       // of a lobe: its shape, and two colors
@@ -57,7 +57,7 @@ struct Geometry {
 class Fit {
  public:
   explicit Fit(std::span<const IrregularSample> samples) {
-    const size_t step = (samples.size() + kMostSamples - 1) / kMostSamples;
+    const size_t step = (samples.size() + kMaxSamples - 1) / kMaxSamples;
     for (size_t i = 0; i < samples.size(); i += step) geometry_.emplace_back(samples[i].wl, samples[i].wv);
     const auto count = static_cast<Index>(geometry_.size());
     cosine_.resize(count);
@@ -125,7 +125,7 @@ class Fit {
       for (double step = kStep / 2; step > kLastStep; step /= 2) {
         const double middle = at;
         for (const double x : {middle - step, middle + step})
-          consider(std::clamp(x, kLeastLogAlpha, std::max(last, kLeastLogAlpha)));
+          consider(std::clamp(x, kMinLogAlpha, std::max(last, kMinLogAlpha)));
       }
       if (cost < lowest) lowest = cost, best = {static_cast<float>(std::exp(at)), tail, power};
     }
@@ -134,11 +134,11 @@ class Fit {
   }
 
   double search_all(std::vector<MicrofacetShape>& shapes, size_t which) const {
-    return search(shapes, which, kLeastLogAlpha, kMostLogAlpha);
+    return search(shapes, which, kMinLogAlpha, kMaxLogAlpha);
   }
   double search_near(std::vector<MicrofacetShape>& shapes, size_t which) const {
     const double at = std::log(static_cast<double>(shapes[which].alpha));
-    return search(shapes, which, std::max(at - kNear, kLeastLogAlpha), std::min(at + kNear, kMostLogAlpha));
+    return search(shapes, which, std::max(at - kNear, kMinLogAlpha), std::min(at + kNear, kMaxLogAlpha));
   }
 
  private:
@@ -156,7 +156,7 @@ MicrofacetTrend::MicrofacetTrend(std::span<const IrregularSample> samples, size_
   if (fit.black()) return;
   Eigen::MatrixXd color;
   double cost = fit.solve(shapes_, color);
-  while (shapes_.size() < std::min(lobes, kMostLobes)) {
+  while (shapes_.size() < std::min(lobes, kMaxLobes)) {
     auto with = shapes_;
     with.push_back({.alpha = 0.1f, .tail = 2.0f});
     double lower = fit.search_all(with, with.size() - 1);

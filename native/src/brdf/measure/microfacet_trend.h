@@ -22,14 +22,14 @@ struct MicrofacetShape {
 /// below at most two isotropic lobes. Reciprocal. Immutable.
 class MicrofacetTrend {
  public:
-  static constexpr size_t kMostLobes = 2;
+  static constexpr size_t kMaxLobes = 2;
 
   /// Black.
   MicrofacetTrend() = default;
   /// With `lobes` lobes at most. Least squares on sqrt(f cos), where cos is the mean of both cosines, so that the order
   /// of a pair does not matter. Shapes are searched on a grid, colors are non-negative least squares. A lobe is added
   /// if the Bayesian information criterion [Sch78] wants it. Black if no sample has a positive luminance.
-  explicit MicrofacetTrend(std::span<const IrregularSample> samples, size_t lobes = kMostLobes);
+  explicit MicrofacetTrend(std::span<const IrregularSample> samples, size_t lobes = kMaxLobes);
 
   /// In 1/sr, for unit directions above the horizon; never negative.
   Rgb f(const Vec3& wl, const Vec3& wv) const;
@@ -39,7 +39,7 @@ class MicrofacetTrend {
  private:
   std::vector<MicrofacetShape> shapes_;
   Rgb diffuse_{0.0f};
-  Rgb normal_[kMostLobes], grazing_[kMostLobes];
+  Rgb normal_[kMaxLobes], grazing_[kMaxLobes];
 };
 
 }  // namespace velour
