@@ -89,7 +89,7 @@ IrregularInterpolant::Index::Index(std::span<const IrregularSample> samples) {
   }
   tree = std::make_unique<Tree>(3, *this);
   tree->buildIndex();
-  // What is smooth between samples needs no trend, and real highlights may have another shape.
+  // Smooth materials need no trend, and real highlights may have a shape that no trend has.
   MicrofacetTrend best;
   double least = std::numeric_limits<double>::infinity();
   for (size_t lobes = 0; lobes <= MicrofacetTrend::kMaxLobes; ++lobes) {
