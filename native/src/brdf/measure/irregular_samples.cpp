@@ -8,7 +8,7 @@
 
 #include "base/error.h"
 #include "base/parallel.h"
-#include "brdf/measure/half_diff.h"
+#include "brdf/measure/brdf_table.h"
 
 namespace velour {
 namespace {
