@@ -21,7 +21,8 @@ constexpr double kAzimuthWeight = 0.3;
 constexpr double kLinearBelow = 0.01;  // 1/sr: asinh turns from linear to logarithmic here
 constexpr double kFalloff = 3.0;       // weight of the furthest neighbor: exp(-3)
 constexpr double kRidge = 1e-3;        // on the slopes, relative to the data's own weight
-constexpr double kWorth = 0.9;         // share of the error that must be left for a trend, or another lobe of it
+constexpr size_t kMaxLeftOut = 2000;
+constexpr double kWorth = 0.9;  // share of the error that must be left for a trend, or another lobe of it
 
 using Point = std::array<double, 3>;
 
@@ -70,8 +71,8 @@ struct IrregularInterpolant::Index {
   /// What the trend leaves at a place.
   std::array<double, 3> regress(const Point& here, const Nearest& nearest) const;
   Rgb f(const Vec3& wl, const Vec3& wv, const Point& here, const Nearest& nearest) const;
-  /// Mean squared difference of compressed luminance, times the mean cosine, at samples that the regression does not
-  /// see.
+  /// Sum of squared differences of compressed luminance, times the mean cosine, at samples that the regression does
+  /// not see: all of them, or every nth of more than kMaxLeftOut.
   double left_out_error(std::span<const IrregularSample> samples) const;
 
   MicrofacetTrend trend;
@@ -114,7 +115,8 @@ void IrregularInterpolant::Index::follow(std::span<const IrregularSample> sample
 
 double IrregularInterpolant::Index::left_out_error(std::span<const IrregularSample> samples) const {
   double sum = 0;
-  for (size_t i = 0; i < samples.size(); ++i) {
+  const size_t step = (samples.size() + kMaxLeftOut - 1) / kMaxLeftOut;
+  for (size_t i = 0; i < samples.size(); i += step) {
     std::array<uint32_t, kCount + 1> sample{};
     std::array<double, kCount + 1> distance{};
     const size_t found = tree->knnSearch(regression[i].data(), kCount + 1, sample.data(), distance.data());
@@ -131,7 +133,7 @@ double IrregularInterpolant::Index::left_out_error(std::span<const IrregularSamp
     const double difference = compress(luminance(samples[i].f)) - compress(found_f);
     sum += cosine * difference * difference;
   }
-  return sum / static_cast<double>(samples.size());
+  return sum;
 }
 
 Rgb IrregularInterpolant::Index::f(const Vec3& wl, const Vec3& wv, const Point& here, const Nearest& nearest) const {
