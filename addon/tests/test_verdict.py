@@ -9,7 +9,7 @@ from command_line import velour
 from conftest import ROOT
 from velour.core.verdict import REASONS, line, line_for, with_text
 
-HEADER = ROOT / "native/src/model/verdict.h"
+HEADER = ROOT / "native/src/model/records.h"
 
 
 def info(quality: str, reason: str | None = None, value: float = 0.0, **changes) -> dict:

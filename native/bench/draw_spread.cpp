@@ -7,8 +7,8 @@
 
 #include "brdf/fit/ggx_fit.h"
 #include "math/sphere/random.h"
-#include "model/model_file.h"
-#include "model/model_material.h"
+#include "model/file/model_file.h"
+#include "model/model.h"
 
 namespace {
 

@@ -23,12 +23,11 @@
 
 #include "base/simd.h"
 #include "brdf/eval/parametric_table.h"
-#include "brdf/eval/parametric_values.h"
 #include "brdf/eval/table_sampler.h"
 #include "brdf/fit/peer.h"
 #include "math/sphere/random.h"
-#include "model/model_file.h"
-#include "model/model_material.h"
+#include "model/file/model_file.h"
+#include "model/model.h"
 
 namespace {
 

@@ -6,7 +6,7 @@
 #include <cstdio>
 #include <cstdlib>
 
-#include "capture/goniometer/microsurface_brdf.h"
+#include "capture/goniometer/goniometer.h"
 #include "support/beckmann.h"
 
 namespace {

@@ -22,13 +22,13 @@
 #include "light/environment_mixture.h"
 #include "material/material.h"
 #include "math/sphere/random.h"
-#include "model/model_file.h"
-#include "model/model_material.h"
-#include "render/direction_sampling.h"
+#include "model/file/model_file.h"
+#include "model/model.h"
 #include "render/lights/environment_proposals.h"
 #include "render/lights/lighting.h"
-#include "render/vertex.h"
-#include "scene/obj_file.h"
+#include "render/path/direction_sampling.h"
+#include "render/path/vertex.h"
+#include "scene/mesh_file.h"
 #include "scene/scene.h"
 
 namespace {

@@ -13,7 +13,7 @@
 #include "base/simd.h"
 #include "btf/fit/btf_fit.h"
 #include "btf/model/tensor_evaluator.h"
-#include "model/model_file.h"
+#include "model/file/model_file.h"
 #include "support/example_tensor.h"
 
 namespace {

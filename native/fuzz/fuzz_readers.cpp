@@ -13,13 +13,12 @@
 #include "base/file.h"
 #include "brdf/formats/window_bsdf.h"
 #include "brdf/measure/measurement.h"
-#include "btf/formats/csv_index.h"
 #include "btf/formats/load_btf.h"
+#include "btf/formats/picture_index.h"
 #include "image/picture.h"
-#include "model/model_file.h"
-#include "scene/obj_file.h"
-#include "scene/ply_file.h"
-#include "usage/observation_file.h"
+#include "model/file/model_file.h"
+#include "scene/mesh_file.h"
+#include "usage/observation.h"
 
 namespace velour {
 namespace {

@@ -1,6 +1,6 @@
 """The verdict on a fit in one line: whether the model looks like the measurement, and what to do if not.
 
-The library stores it with the model as quality, reason and numbers (native/src/model/verdict.h).
+The library stores it with the model as quality, reason and numbers (native/src/model/records.h).
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-// Shades a BTF of multivariate SRBFs (native/src/realtime/btf_maps.h, btf/model/srbf_btf.h) under environment and lights.
+// Shades a BTF of multivariate SRBFs (native/src/realtime/maps.h, btf/model/srbf_btf.h) under environment and lights.
 // btf_terms, first row: number of levels, aspect; then x, width and height of each level's map; from pixel 17 on, the
 // columns of the matrix from Rec. 709 to the working space. Then two rows per side, the side above first: number of
 // coefficients, first layer, minimum and maximum of the relief; then per coefficient: light and phase; view, and

@@ -1,6 +1,6 @@
 // Surface of a pixel in a shell (VOTF): the structure that the view ray hits below the top, which is the drawn mesh;
-// rays without a hit pass through. Sphere tracing as in votf/eval/shell_trace.h and render/shell_crossing.h.
-// shell_maps: native/src/realtime/votf_maps.h; shell_terms: bottom, top, reference, aspect; then the largest distance
+// rays without a hit pass through. Sphere tracing as in votf/eval/shell_trace.h and render/path/shell_crossing.h.
+// shell_maps: native/src/realtime/maps.h; shell_terms: bottom, top, reference, aspect; then the largest distance
 // that the maps resolve, and whether the structure is open.
 
 const int DEPTH_LOOKS = 64;

@@ -1,8 +1,9 @@
-// Reads whole files up to a limit, writes them atomically, and hashes them.
+// Reads whole files up to a limit, hashes them, and writes files that appear complete or not at all.
 #pragma once
 
 #include <unistd.h>
 #include <cstdint>
+#include <filesystem>
 #include <span>
 #include <string>
 #include <utility>
@@ -17,7 +18,7 @@ std::vector<uint8_t> read_file(const std::string& path, uint64_t limit = uint64_
 /// The first `count` bytes (fewer when the file is shorter).
 std::vector<uint8_t> read_file_head(const std::string& path, size_t count);
 
-/// Writes atomically: a killed process leaves the old file or the new one (base/atomic_file.h).
+/// Writes atomically: a killed process leaves the old file or the new one (AtomicFile).
 void write_file(const std::string& path, std::span<const uint8_t> bytes);
 
 /// SHA-256 in lower-case hexadecimal.
@@ -74,6 +75,39 @@ class RandomAccessFile {
   std::string path_;
   Descriptor fd_;
   uint64_t size_;
+};
+
+// A file that appears complete or not at all.
+
+/// Written beside its path under a temporary name, then flushed and renamed by commit(): a killed process leaves the
+/// old file or the new one. Without a commit nothing remains. The next process that writes to the same folder removes
+/// the temporary files of killed processes, which are those that nobody locks. A failed write is remembered, so that
+/// commit() throws its reason even if a caller has swallowed the exception.
+class AtomicFile {
+ public:
+  /// Throws Error(io).
+  explicit AtomicFile(std::string path);
+  ~AtomicFile();
+  AtomicFile(const AtomicFile&) = delete;
+  AtomicFile& operator=(const AtomicFile&) = delete;
+
+  void write(std::span<const uint8_t> bytes);
+  void seek(uint64_t position);
+  uint64_t position() const { return start_ + buffer_.size(); }
+  void commit();
+
+ private:
+  void flush();
+  void write_through(std::span<const uint8_t> bytes);
+
+  std::string path_;
+  std::filesystem::path target_;
+  std::string temporary_;
+  Descriptor fd_;
+  std::vector<uint8_t> buffer_;
+  uint64_t start_ = 0;  // file position of the buffer
+  int failure_ = 0;     // errno of the first write that failed
+  bool committed_ = false;
 };
 
 }  // namespace velour

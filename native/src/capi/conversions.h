@@ -1,4 +1,4 @@
-// Conversion of colors, matrices and option bits from the caller's form.
+// Conversion of colors, matrices, options and measured materials from the caller's form.
 #pragma once
 
 #include <algorithm>
@@ -9,9 +9,10 @@
 #include "capi/handles.h"
 #include "image/picture.h"
 #include "material/principled/principled_material.h"
-#include "material/texture_slot.h"
+#include "material/texture.h"
 #include "math/sphere/affine.h"
 #include "math/sphere/vec.h"
+#include "scene/scene.h"
 #include "velour/velour.h"
 
 namespace velour::capi {
@@ -75,5 +76,15 @@ std::shared_ptr<const Material> material_of(const vlr_principled_desc& desc, con
 
 /// `m` [2 x 3, row-major] is applied to (u, v, 1).
 inline TextureMap map_from(const float* m) { return {{m[0], m[3], m[1], m[4]}, {m[2], m[5]}}; }
+
+// Materials of models, raw measurements and BTFs, as surfaces and as layers of shaders.
+
+/// `neighbors`: see make_material().
+SurfaceMaterial surface_of(const std::shared_ptr<const Model>& model, uint32_t neighbors);
+/// f of the measurement; null `proposal`: samples come from a coarse model made here.
+SurfaceMaterial surface_of(std::shared_ptr<const Measurement> measurement, std::shared_ptr<const Model> proposal,
+                           uint32_t neighbors);
+/// The BTF itself, with transmitted light if it has some. `most_bytes` 0: the default limit of read_btf_table().
+SurfaceMaterial surface_of(const BtfMeasurement& btf, uint64_t most_bytes);
 
 }  // namespace velour::capi

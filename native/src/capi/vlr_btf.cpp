@@ -3,10 +3,10 @@
 #include "btf/fit/btf_fit.h"
 #include "btf/formats/btf_export.h"
 #include "btf/formats/load_btf.h"
-#include "capi/btf_reports.h"
 #include "capi/guard.h"
 #include "capi/handles.h"
-#include "model/model_file.h"
+#include "capi/reports/reports.h"
+#include "model/file/model_file.h"
 #include "usage/btf/scene_reduction.h"
 
 using namespace velour;

@@ -4,13 +4,12 @@
 #include "brdf/fit/fit_model.h"
 #include "brdf/fit/peer.h"
 #include "brdf/verdict/verdict.h"
-#include "capi/btf_reports.h"
-#include "capi/fit_reports.h"
 #include "capi/guard.h"
 #include "capi/handles.h"
+#include "capi/reports/reports.h"
 #include "capture/goniometer/microsurface.h"
-#include "model/model_file.h"
-#include "model/model_material.h"
+#include "model/file/model_file.h"
+#include "model/model.h"
 
 using namespace velour;
 using namespace velour::capi;

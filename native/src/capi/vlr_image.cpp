@@ -2,8 +2,8 @@
 
 #include "capi/conversions.h"
 #include "capi/guard.h"
-#include "capi/json_text.h"
-#include "image/formats/exr_part.h"
+#include "capi/reports/reports.h"
+#include "image/formats/exr_picture.h"
 
 using namespace velour;
 using namespace velour::capi;

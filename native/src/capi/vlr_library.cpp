@@ -3,7 +3,7 @@
 #include "base/job.h"
 #include "base/simd.h"
 #include "capi/guard.h"
-#include "capi/json_text.h"
+#include "capi/reports/reports.h"
 #include "scene/embree_scene.h"
 #include "velour/version.h"
 

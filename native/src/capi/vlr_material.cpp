@@ -2,8 +2,7 @@
 #include "capi/conversions.h"
 #include "capi/guard.h"
 #include "capi/handles.h"
-#include "capi/measured_materials.h"
-#include "material/principled/principled_point.h"
+#include "material/principled/principled_material.h"
 
 using namespace velour;
 using namespace velour::capi;

@@ -1,14 +1,11 @@
 #include "brdf/measure/measurement.h"
 
 #include "btf/formats/load_btf.h"
-#include "capi/btf_reports.h"
-#include "capi/fit_reports.h"
 #include "capi/guard.h"
 #include "capi/handles.h"
-#include "capi/json_text.h"
-#include "capi/scene_reports.h"
-#include "model/model_file.h"
-#include "usage/observation_file.h"
+#include "capi/reports/reports.h"
+#include "model/file/model_file.h"
+#include "usage/observation.h"
 
 using namespace velour;
 using namespace velour::capi;

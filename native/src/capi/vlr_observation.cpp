@@ -1,13 +1,12 @@
 // Observations of scene usage, and the job that makes them.
-#include "usage/observation_file.h"
+#include "usage/observation.h"
 
 #include <algorithm>
 #include <chrono>
 
 #include "capi/guard.h"
 #include "capi/handles.h"
-#include "capi/scene_reports.h"
-#include "usage/observation.h"
+#include "capi/reports/reports.h"
 #include "usage/observe/scene_observer.h"
 
 using namespace velour;

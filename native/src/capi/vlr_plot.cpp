@@ -5,14 +5,13 @@
 #include "base/file.h"
 #include "capi/guard.h"
 #include "capi/handles.h"
-#include "capi/json_text.h"
+#include "capi/reports/reports.h"
 #include "image/picture.h"
 #include "plot/font.h"
 #include "plot/model_plots.h"
+#include "plot/output.h"
 #include "plot/pen.h"
 #include "plot/plot.h"
-#include "plot/raster.h"
-#include "plot/svg.h"
 
 using namespace velour;
 using namespace velour::capi;

@@ -2,11 +2,10 @@
 #include "capi/conversions.h"
 #include "capi/guard.h"
 #include "capi/handles.h"
-#include "capi/json_text.h"
-#include "realtime/btf_maps.h"
+#include "capi/reports/reports.h"
 #include "realtime/light_map.h"
 #include "realtime/lobe_rows.h"
-#include "realtime/votf_maps.h"
+#include "realtime/maps.h"
 #include "velour/velour.h"
 
 using namespace velour;

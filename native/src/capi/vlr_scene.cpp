@@ -4,7 +4,7 @@
 #include "capi/conversions.h"
 #include "capi/guard.h"
 #include "capi/handles.h"
-#include "capi/scene_reports.h"
+#include "capi/reports/reports.h"
 #include "scene/scene.h"
 
 using namespace velour;

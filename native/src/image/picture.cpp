@@ -9,7 +9,6 @@
 #include "base/error.h"
 #include "base/file.h"
 #include "image/open_picture.h"
-#include "image/orientation.h"
 
 namespace velour {
 

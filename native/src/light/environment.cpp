@@ -4,7 +4,7 @@
 #include <cmath>
 #include "base/error.h"
 #include "light/equirectangular.h"
-#include "math/sphere/sobol.h"
+#include "math/sphere/random.h"
 #include "math/sphere/warp.h"
 
 namespace velour {

@@ -5,7 +5,6 @@
 #include <chrono>
 #include <cmath>
 #include <numeric>
-#include "light/environment_kernels.h"
 #include "light/environment_mixture.h"
 #include "light/equirectangular.h"
 #include "math/sphere/directions.h"

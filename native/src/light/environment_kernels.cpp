@@ -1,5 +1,5 @@
 // Highway compiles this file once for each instruction set.
-#include "light/environment_kernels.h"
+#include "light/environment_fit.h"
 
 #include <algorithm>
 

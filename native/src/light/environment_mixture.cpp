@@ -11,7 +11,7 @@
 #include "image/tensors/exr_tensors.h"
 #include "light/environment.h"
 #include "light/equirectangular.h"
-#include "math/sphere/sobol.h"
+#include "math/sphere/random.h"
 #include "math/srbf/lobe_mixture.h"
 
 namespace velour {

@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "base/parallel.h"
-#include "light/equirectangular_draws.h"
 
 namespace velour {
 

@@ -1,5 +1,5 @@
 // Highway compiles this file once for each instruction set.
-#include "light/equirectangular_draws.h"
+#include "light/equirectangular.h"
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "light/equirectangular_draws.cpp"

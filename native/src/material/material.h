@@ -5,7 +5,7 @@
 #include <cmath>
 #include <memory>
 #include <span>
-#include "base/scratch_arena.h"
+#include "base/memory.h"
 #include "material/surface_site.h"
 #include "math/sphere/directions.h"
 #include "math/sphere/vec.h"

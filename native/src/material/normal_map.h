@@ -4,7 +4,7 @@
 #include <memory>
 
 #include "material/material.h"
-#include "material/texture_slot.h"
+#include "material/texture.h"
 
 namespace velour {
 

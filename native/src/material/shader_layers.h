@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "material/material.h"
-#include "material/principled/principled_point.h"
-#include "material/texture_slot.h"
+#include "material/principled/principled_material.h"
+#include "material/texture.h"
 
 namespace velour {
 

@@ -6,11 +6,13 @@
 #include <string>
 
 #include "base/error.h"
-#include "image/half_image.h"
 #include "image/picture.h"
-#include "material/footprint_taps.h"
+#include "image/texels.h"
+#include "material/program/program.h"
+#include "material/surface_site.h"
 
 namespace velour {
+
 namespace {
 
 /// Floor of a small number; std::floor is a library call on the baseline instruction set.
@@ -132,5 +134,15 @@ uint64_t Texture<T>::bytes() const {
 
 template class Texture<float>;
 template class Texture<Rgb>;
+
+void MeshSets::use(const std::shared_ptr<const Program>& computing, uint32_t used) {
+  if (program && program != computing) {
+    refuse("A material cannot take values from two programs; use outputs of one program for all its parameters.");
+  }
+  program = computing;
+  outputs |= used;
+  uvs = std::max(uvs, static_cast<uint8_t>(computing->uv_sets()));
+  colors = std::max(colors, static_cast<uint8_t>(computing->corner_sets()));
+}
 
 }  // namespace velour

@@ -1,10 +1,14 @@
-// Textures, averaged over ray footprints.
+// Textures, and parameters of materials that may come from one.
 #pragma once
 
+#include <algorithm>
+#include <cmath>
 #include <cstdint>
+#include <memory>
 #include <span>
+#include <type_traits>
 #include <vector>
-
+#include "material/surface_site.h"
 #include "math/sphere/vec.h"
 
 namespace velour {
@@ -56,5 +60,94 @@ class Texture {
 
 extern template class Texture<float>;
 extern template class Texture<Rgb>;
+
+// A texture, a mesh's own colors or an output of a program in place of a number or a color of a material.
+
+class Program;
+
+// Affine map of texture coordinates: places an image or a tile on a surface.
+
+/// Maps (u, v) of a surface to `map` (u, v) + `shift`.
+struct TextureMap {
+  Mat2 map{1.0f};
+  Vec2 shift{0.0f};
+
+  Vec2 point(const Vec2& uv) const { return map * uv + shift; }
+  /// A singular map leaves no direction for a tangent and no width for a footprint.
+  bool invertible() const {
+    const float sum = map[0].x + map[0].y + map[1].x + map[1].y + shift.x + shift.y;
+    return std::isfinite(sum) && glm::determinant(glm::dmat2(map)) != 0.0;
+  }
+};
+
+/// If empty, the parameter's own value applies.
+template <class T>
+struct TextureSlot {
+  std::shared_ptr<const Texture<T>> texture;
+  TextureMap map;           // from the surface's coordinates to the image's
+  size_t set;               // set of coordinates (SurfaceSite::place) or of mesh colors, or output of the program
+  bool of_corners = false;  // use the mesh's colors (SurfaceSite::colors); a number takes the first channel
+  std::shared_ptr<const Program> program{};  // use what it computed (SurfaceSite::computed)
+
+  // Not an aggregate: GCC 12 warns about uninitialized members of aggregates in braced lists.
+  TextureSlot(std::shared_ptr<const Texture<T>> picture = nullptr, const TextureMap& to_picture = {},
+              size_t of_surface = 0) noexcept
+      : texture(std::move(picture)), map(to_picture), set(of_surface) {}
+  static TextureSlot colors_of_corners(size_t set) {
+    TextureSlot slot(nullptr, {}, set);
+    slot.of_corners = true;
+    return slot;
+  }
+
+  static TextureSlot output_of(std::shared_ptr<const Program> computing, size_t output) {
+    TextureSlot slot(nullptr, {}, output);
+    slot.program = std::move(computing);
+    return slot;
+  }
+
+  bool given() const { return texture || of_corners || program; }
+
+  T at(const SurfaceSite& site, const T& otherwise) const {
+    if (program) return first_of(site.computed[set]);
+    if (of_corners) return first_of(site.colors[set]);
+    if (!texture) return otherwise;
+    const SitePlace place = site.place(set);
+    return texture->look_up(map.point(place.uv), map.map * place.footprint);
+  }
+
+ private:
+  static T first_of(const Rgb& color) {
+    if constexpr (std::is_same_v<T, Rgb>)
+      return color;
+    else
+      return color.r;
+  }
+};
+
+/// What a material needs of a site: numbers of texture coordinate sets and corner color sets of a mesh, and a program.
+struct MeshSets {
+  uint8_t uvs = 0, colors = 0;
+  std::shared_ptr<const Program> program{};
+  uint32_t outputs = 0;  // of the program that are used, as bits
+
+  /// Throw Error(invalid_argument) if both need a program and these differ.
+  void add(const MeshSets& other) {
+    uvs = std::max(uvs, other.uvs);
+    colors = std::max(colors, other.colors);
+    if (other.program) use(other.program, other.outputs);
+  }
+  template <class T>
+  void add(const TextureSlot<T>& slot) {
+    if (slot.program) {
+      use(slot.program, uint32_t{1} << slot.set);
+    } else if (slot.given()) {
+      uint8_t& count = slot.of_corners ? colors : uvs;
+      count = std::max(count, static_cast<uint8_t>(1 + slot.set));
+    }
+  }
+
+ private:
+  void use(const std::shared_ptr<const Program>& computing, uint32_t used);
+};
 
 }  // namespace velour

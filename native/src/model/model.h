@@ -1,4 +1,4 @@
-// The fitted, immutable asset: parameters, error against its source, and where it came from.
+// The fitted, immutable asset: parameters, error against its source, where it came from; and its run-time evaluator.
 #pragma once
 
 #include <map>
@@ -7,16 +7,15 @@
 #include <string>
 #include <variant>
 #include <vector>
-
 #include "base/warning.h"
+#include "brdf/measure/measurement.h"
 #include "brdf/model/parametric_brdf.h"
 #include "brdf/model/per_view_brdf.h"
 #include "btf/model/factored_btf.h"
 #include "btf/model/srbf_btf.h"
 #include "btf/model/tensor_btf.h"
-#include "model/btf_record.h"
+#include "material/material.h"
 #include "model/records.h"
-#include "model/verdict.h"
 #include "votf/eval/occlusion_volume.h"
 
 namespace velour {
@@ -104,5 +103,18 @@ const TexelGrid* grid_of(const Model& model);
 
 /// "scattered", "parametric", "factored-btf", "srbf-btf", "tensor-btf".
 const char* model_kind(const Model& model);
+
+// Makes the run-time evaluator of a model.
+
+/// f and samples of the model, whose ownership it shares. `neighbors`: number of views mixed for a per-view model, 0:
+/// the model's default.
+std::shared_ptr<const Material> make_material(const std::shared_ptr<const Model>& model, int neighbors);
+
+/// make_material() for light from the viewer's side only, without the transmission of a BTF.
+std::shared_ptr<const Material> make_reflecting_material(const std::shared_ptr<const Model>& model, int neighbors);
+
+/// Reference mode: f of the measurement, samples of the model, unbiased whatever the model's error.
+std::shared_ptr<const Material> make_measured_material(std::shared_ptr<const Measurement> measurement,
+                                                       const std::shared_ptr<const Model>& proposal, int neighbors);
 
 }  // namespace velour

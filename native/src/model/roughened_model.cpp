@@ -7,7 +7,7 @@
 #include "base/parallel.h"
 #include "brdf/model/parametric_brdf.h"
 #include "image/tensors/tensor.h"
-#include "math/srbf/widened_lobe.h"
+#include "math/srbf/kernel.h"
 
 namespace velour {
 

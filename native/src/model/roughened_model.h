@@ -6,7 +6,7 @@
 namespace velour {
 
 /// The model of a surface that is rougher by `roughness` in [0, 1]; 0 gives the same model. Every lobe is convolved
-/// with the lobe that this roughness spreads a mirror to (math/srbf/widened_lobe.h), and keeps the light that it
+/// with the lobe that this roughness spreads a mirror to (math/srbf/kernel.h), and keeps the light that it
 /// reflects at every view, so the albedo is preserved. Cosine terms are unchanged. The result is an ordinary model with
 /// its own densities; its record is the original's plus a warning. Throws Error(invalid_argument) for a BTF and for
 /// other numbers. Negative ones are refused because a highlight is a sum of lobes, which would come apart if narrowed.

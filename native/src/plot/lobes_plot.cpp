@@ -1,12 +1,12 @@
-#include "plot/lobes_plot.h"
+#include "plot/model_plots.h"
 
 #include <algorithm>
 #include <cmath>
 #include <functional>
 #include "brdf/eval/per_view_lobes.h"
 #include "brdf/fit/error/evaluate.h"
-#include "model/model_material.h"
-#include "plot/axes.h"
+#include "model/model.h"
+#include "plot/plot.h"
 
 namespace velour {
 

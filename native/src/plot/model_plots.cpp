@@ -4,13 +4,12 @@
 #include <cmath>
 #include <utility>
 #include "base/error.h"
-#include "brdf/fit/error/albedo.h"
+#include "brdf/fit/error/evaluate.h"
 #include "brdf/fit/fit_report.h"
 #include "brdf/measure/held_out.h"
-#include "model/model_material.h"
-#include "plot/axes.h"
-#include "plot/lobes_plot.h"
-#include "votf/eval/visibility_mask.h"
+#include "model/model.h"
+#include "plot/plot.h"
+#include "votf/eval/occlusion_volume.h"
 
 namespace velour {
 

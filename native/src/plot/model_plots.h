@@ -3,6 +3,7 @@
 
 #include <array>
 #include <memory>
+#include <vector>
 #include "base/progress.h"
 #include "brdf/measure/measurement.h"
 #include "material/material.h"
@@ -53,5 +54,23 @@ Plot albedo_plot(const Material& material, const Measurement* measurement, doubl
 /// Share of a tile that its structure covers, at view angles three degrees apart: mean, minimum and maximum over
 /// azimuths. Throws Error(unsupported) for a model without a VOTF.
 Plot outline_plot(const Model& model, Progress& progress);
+
+// A model in the plane of incidence of one view.
+
+/// Luminance of f cos(theta_l) against the signed theta_l, for the model of a BRDF, each of its lobes, and the
+/// measurement: interpolated, or the samples themselves that lie near view and plane. The radius is logarithmic if one
+/// peak would hide everything else.
+Plot lobes_plot(const std::shared_ptr<const Model>& model, const Measurement* measurement, const PlotView& view);
+
+// Measured values in the plane of incidence of one view.
+
+/// Light direction in the plane of incidence of views of azimuth `phi` (radians), `degrees` from the normal, positive
+/// on the side opposite the viewer.
+Vec3 light_in_plane(double degrees, double phi);
+
+/// Luminance of f cos(theta_l) against the signed theta_l in degrees, sorted. Tables: interpolated every two
+/// degrees, and closer around the mirror direction, where they cover the pair. Irregular samples: those within 2.5
+/// degrees of the view and of the plane.
+std::vector<PlotPoint> measured_points(const Measurement& measurement, const PlotView& view);
 
 }  // namespace velour

@@ -5,7 +5,6 @@
 #include <string>
 #include <vector>
 #include "math/sphere/vec.h"
-#include "plot/axes.h"
 #include "plot/plot.h"
 
 namespace velour {

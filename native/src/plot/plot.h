@@ -1,4 +1,4 @@
-// Data of a plot: series of numbers with their axes, without pixels.
+// Data of a plot: series of numbers, axes with ranges and round ticks, without pixels.
 #pragma once
 
 #include <optional>
@@ -82,5 +82,50 @@ struct Drawing {
   Rgb background{1};
   std::vector<std::variant<Stroke, Dot, Label>> marks;
 };
+
+// Ranges and ticks of axes, at round numbers.
+
+struct PlotTick {
+  double value;
+  std::string text;
+};
+
+/// Text of at most four digits; k, M and G stand for 1e3, 1e6 and 1e9 from ten thousand on.
+std::string tick_text(double value);
+
+/// Sets the range from 0 to a round number that contains `largest`, which must be above 0.
+void set_linear_range(PlotAxis& axis, double largest);
+/// Sets a range between 1, 2 or 5 times powers of ten, at least a factor of two wide. Both must be above 0.
+void set_logarithmic_range(PlotAxis& axis, double least, double largest);
+
+/// Returns two to `most` ticks (`most` at least 3) in ascending order, all in the range: multiples of 1, 2 or 5 times a
+/// power of ten; on a logarithmic axis powers of ten, or 1, 2 and 5 times them if those are few.
+std::vector<PlotTick> ticks_of(const PlotAxis& axis, int most);
+
+/// Position of `value`: 0 at the low end, 1 at the high end.
+double place_on(const PlotAxis& axis, double value);
+
+// The colors of a plot, kept readable in any theme.
+
+/// Channels are sRGB as a display takes them, 0 to 1.
+struct PlotColors {
+  Rgb background{1, 1, 1};
+  Rgb text{0.13f, 0.13f, 0.13f};
+  Rgb model{0.0f, 0.45f, 0.7f};      // Okabe and Ito's blue and vermilion: safe for color blindness
+  Rgb measured{0.84f, 0.37f, 0.0f};  // also the chosen point
+  Rgb red{0.84f, 0.15f, 0.16f}, green{0.17f, 0.63f, 0.17f}, blue{0.12f, 0.38f, 0.85f};
+};
+
+/// Contrast (L1 + 0.05) / (L2 + 0.05) of relative luminances, 1 to 21 (WCAG 2.1).
+float contrast(const Rgb& a, const Rgb& b);
+
+/// Returns `colors` with a text contrast of at least 4.5 to the background, black or white if necessary, and all other
+/// colors mixed with the text's as far as necessary for a contrast of 3.
+PlotColors readable(const PlotColors& colors);
+
+/// Color of marks; `colors` must come from readable().
+Rgb color_of(PlotRole role, const PlotColors& colors);
+/// Color of the grid lines.
+Rgb grid_color(const PlotColors& colors);
 
 }  // namespace velour

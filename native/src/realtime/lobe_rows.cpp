@@ -7,7 +7,6 @@
 #include "base/error.h"
 #include "base/parallel.h"
 #include "brdf/eval/per_view_lobes.h"
-#include "realtime/exchanged_lobes.h"
 #include "realtime/light_map.h"
 #include "realtime/lobes_of_views.h"
 

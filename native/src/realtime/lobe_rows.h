@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <vector>
 #include "base/progress.h"
-#include "material/principled/principled_point.h"
+#include "material/principled/principled_material.h"
 #include "model/model.h"
 
 namespace velour {
@@ -48,7 +48,7 @@ struct LobeRows {
 /// along its longer axis, each as wide as the lobe is across and scaled by the change of variables; where they are
 /// broad, the residual of f cos is fitted by a clipped cosine and a few Gaussians with fixed centers, in least squares
 /// over the sphere. Per-view models have Gaussian lobes already; Abel-Poisson kernels become the Gaussians of their
-/// mean cosine. Symmetric models also have the lobes of the light (realtime/exchanged_lobes.h). Throws
+/// mean cosine. Symmetric models also have the lobes of the light (realtime/lobes_of_views.h). Throws
 /// Error(invalid_argument) for the model of a BTF.
 LobeRows lobe_rows(const Model& model, int threads, Progress& progress);
 /// Rows of a Principled material: its GGX lobe becomes four lobes over half vectors.

@@ -8,8 +8,7 @@
 #include <string>
 
 #include "base/parallel.h"
-#include "render/denoised_target.h"
-#include "render/noise_target.h"
+#include "render/film/noise_target.h"
 #include "render/preparation.h"
 
 namespace velour {

@@ -10,8 +10,7 @@
 #include <string>
 
 #include "base/parallel.h"
-#include "render/denoised_target.h"
-#include "render/noise_target.h"
+#include "render/film/noise_target.h"
 #include "render/preparation.h"
 #include "render/ray_log.h"
 #include "render/tile_renderer.h"

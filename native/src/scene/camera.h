@@ -1,16 +1,33 @@
-// Cameras.
+// Cameras and their shutters.
 #pragma once
 
 #include <array>
 #include <optional>
 #include <vector>
-
 #include "math/sphere/affine.h"
 #include "scene/embree_scene.h"
 #include "scene/motion.h"
-#include "scene/shutter.h"
 
 namespace velour {
+
+// Times of camera rays.
+
+/// Distribution of times over [0, 1], while the shutter is open: in proportion to how far it is open.
+class Shutter {
+ public:
+  /// `opening`: at even times from 0 to 1, linear in between; a single value: constant. Throws Error(invalid_argument)
+  /// unless all values are finite and at least 0, and one is above 0.
+  explicit Shutter(const std::vector<float>& opening = {1.0f});
+
+  /// Inverse of the distribution function; `u` in [0, 1).
+  float time(float u) const;
+  /// Density of time().
+  float density(float time) const;
+
+ private:
+  std::vector<float> density_;  // at even times; at least two
+  std::vector<float> below_;    // distribution function there
+};
 
 /// Aperture of a thin lens, in the plane of the camera's origin.
 struct Aperture {

@@ -1,4 +1,4 @@
-#include "scene/mesh_arrays.h"
+#include "scene/mesh.h"
 
 #include <algorithm>
 #include <array>

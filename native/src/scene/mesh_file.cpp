@@ -4,8 +4,6 @@
 #include <cctype>
 #include <iterator>
 #include "base/parallel.h"
-#include "scene/obj_file.h"
-#include "scene/ply_file.h"
 
 namespace velour {
 

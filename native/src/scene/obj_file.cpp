@@ -1,6 +1,6 @@
 // tinyobjloader is not used: it does not name the line of an error, reads "1,5" as 1, does not support continued lines,
 // and its triangulation depends on the position of the origin.
-#include "scene/obj_file.h"
+#include "scene/mesh_file.h"
 
 #include <algorithm>
 #include <charconv>

@@ -1,4 +1,4 @@
-#include "scene/ply_file.h"
+#include "scene/mesh_file.h"
 
 #include <algorithm>
 #include <array>
@@ -10,7 +10,6 @@
 
 #include "base/error.h"
 #include "base/file.h"
-#include "scene/obj_file.h"
 
 namespace velour {
 namespace {

@@ -14,13 +14,13 @@
 #include "base/warning.h"
 #include "light/environment.h"
 #include "light/light.h"
-#include "material/texture_slot.h"
+#include "material/texture.h"
 #include "scene/camera.h"
 #include "scene/embree_scene.h"
 #include "scene/mesh.h"
 #include "scene/motion.h"
 #include "scene/scene_shells.h"
-#include "votf/eval/shell_field.h"
+#include "votf/eval/occlusion_volume.h"
 
 namespace velour {
 

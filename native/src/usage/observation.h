@@ -2,8 +2,13 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
 #include <vector>
 #include "math/sphere/vec.h"
 #include "usage/scene_domain.h"
@@ -61,5 +66,35 @@ double out_of_views(const SceneDomain& domain, const SceneObservation& frame);
 /// For a BTF model whose finest level has `texels` along the longer side of the tile: share of the weight that would
 /// look up a finer level. Computed from all hits; 1 for a frame that shows the material but has no footprints.
 double out_of_resolution(uint32_t texels, const SceneObservation& frame);
+
+// Content hash of an observation.
+
+/// SHA-256 of the view histogram, the light density, the surface usage if there is any, and the hits with their terms,
+/// as four words. For the domain of one frame; merging adds the words up.
+std::array<uint64_t, 4> content_hash(const SceneObservation& observation);
+
+// The four words of a domain's hash as 64 hexadecimal digits, first word first.
+
+std::string hash_text(const std::array<uint64_t, 4>& hash);
+
+/// Empty unless `text` consists of 64 digits 0-9, a-f.
+std::optional<std::array<uint64_t, 4>> parse_hash(std::string_view text);
+
+// Observation files: JSON with readable numbers; hits and their terms are base64
+// (docs/reference/measurement_formats.md).
+
+/// All numbers survive a round trip bit by bit.
+std::string encode_observation(const SceneObservation& observation);
+
+/// Throws Error(bad_data), or Error(version_mismatch) for another version of the format. The message names the file
+/// (`name`) and the field at fault.
+SceneObservation decode_observation(std::span<const uint8_t> bytes, const std::string& name);
+
+/// Writes atomically.
+void save_observation(const SceneObservation& observation, const std::string& path);
+SceneObservation load_observation(const std::string& path);
+
+/// Whether the file begins like the JSON of an observation; the rest may still be damaged.
+bool is_observation_file(const std::string& path);
 
 }  // namespace velour

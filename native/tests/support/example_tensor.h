@@ -5,8 +5,7 @@
 
 #include "btf/measure/relief.h"
 #include "btf/model/tensor_btf.h"
-#include "image/bilinear_texels.h"
-#include "image/half_image.h"
+#include "image/texels.h"
 #include "math/sphere/direction_mesh.h"
 #include "math/sphere/random.h"
 

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <initializer_list>
 
-#include "brdf/measure/half_diff.h"
+#include "brdf/measure/brdf_table.h"
 #include "math/sphere/random.h"
 #include "math/srbf/kernel.h"
 

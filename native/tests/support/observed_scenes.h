@@ -2,7 +2,7 @@
 // surfaces are gray, so that luminance is linear along every path.
 #pragma once
 
-#include "material/through_material.h"
+#include "material/derived_materials.h"
 #include "math/sphere/random.h"
 #include "support/changed_material.h"
 #include "support/proof_materials.h"

@@ -1,7 +1,7 @@
 // BTFs of two sides with light that comes through, for tests of all kinds of models.
 #pragma once
 
-#include "material/through_material.h"
+#include "material/derived_materials.h"
 #include "support/sided_btfs.h"
 
 namespace velour::test {

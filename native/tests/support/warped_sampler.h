@@ -4,7 +4,7 @@
 #include <algorithm>
 
 #include "brdf/eval/parametric_material.h"
-#include "brdf/eval/parametric_values.h"
+#include "brdf/eval/parametric_table.h"
 #include "math/srbf/warped_lobe.h"
 #include "math/srbf/warped_mixture.h"
 #include "support/proof_materials.h"

@@ -6,7 +6,7 @@
 #include "material/material.h"
 #include "math/sphere/directions.h"
 #include "math/srbf/kernel.h"
-#include "math/srbf/plain_draws.h"
+#include "math/srbf/warped_mixture.h"
 
 namespace velour {
 

@@ -1,4 +1,4 @@
-#include "brdf/eval/parametric_nodes.h"
+#include "brdf/eval/parametric_table.h"
 
 #include <algorithm>
 #include <cmath>
@@ -8,7 +8,7 @@
 #include "math/sphere/frame.h"
 #include "math/srbf/kernel.h"
 #include "math/srbf/lobe_tree.h"
-#include "math/srbf/plain_draws.h"
+#include "math/srbf/warped_mixture.h"
 
 namespace velour {
 

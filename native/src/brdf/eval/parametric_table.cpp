@@ -3,8 +3,6 @@
 
 #include <algorithm>
 
-#include "brdf/eval/parametric_values.h"
-
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "brdf/eval/parametric_table.cpp"
 #include <hwy/foreach_target.h>

@@ -1,5 +1,5 @@
 // Highway compiles this file once for each instruction set.
-#include "brdf/eval/parametric_values.h"
+#include "brdf/eval/parametric_table.h"
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "brdf/eval/parametric_values.cpp"

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include "brdf/fit/slice_samples.h"
+#include "brdf/fit/slice_sampling.h"
 #include "brdf/measure/held_out.h"
 
 namespace velour {

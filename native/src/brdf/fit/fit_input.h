@@ -5,7 +5,7 @@
 #include <vector>
 #include "base/progress.h"
 #include "base/warning.h"
-#include "brdf/fit/options.h"
+#include "brdf/fit/fit_model.h"
 #include "brdf/fit/slice_sampling.h"
 #include "brdf/measure/measurement.h"
 

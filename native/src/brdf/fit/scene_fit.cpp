@@ -4,7 +4,7 @@
 #include <chrono>
 #include <cmath>
 #include <numeric>
-#include "brdf/fit/error/albedo.h"
+#include "brdf/fit/error/evaluate.h"
 #include "brdf/fit/parametric/parametric_fit.h"
 #include "usage/picture_error.h"
 

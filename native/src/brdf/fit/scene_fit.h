@@ -3,7 +3,7 @@
 
 #include <vector>
 #include "base/progress.h"
-#include "brdf/fit/options.h"
+#include "brdf/fit/fit_model.h"
 #include "usage/observation.h"
 
 namespace velour {

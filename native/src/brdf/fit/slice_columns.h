@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-#include "brdf/fit/slice_samples.h"
+#include "brdf/fit/slice_sampling.h"
 #include "math/srbf/kernel.h"
 
 namespace velour {

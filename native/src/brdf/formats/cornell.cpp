@@ -6,11 +6,11 @@
 #include <string_view>
 
 #include "base/error.h"
-#include "brdf/measure/entries.h"
+#include "brdf/measure/brdf_table.h"
 #include "brdf/measure/held_out.h"
 #include "brdf/measure/irregular_samples.h"
+#include "brdf/measure/measurement.h"
 #include "brdf/measure/spectrum.h"
-#include "brdf/measure/table_measurement.h"
 
 namespace velour {
 namespace {

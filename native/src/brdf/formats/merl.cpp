@@ -8,8 +8,8 @@
 
 #include "base/byte_reader.h"
 #include "base/file.h"
-#include "brdf/measure/entries.h"
-#include "brdf/measure/table_measurement.h"
+#include "brdf/measure/brdf_table.h"
+#include "brdf/measure/measurement.h"
 
 namespace velour {
 namespace {

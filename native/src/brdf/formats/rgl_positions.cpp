@@ -1,5 +1,5 @@
 // Highway compiles this file once for each instruction set.
-#include "brdf/formats/rgl_positions.h"
+#include "brdf/formats/rgl.h"
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "brdf/formats/rgl_positions.cpp"
@@ -26,7 +26,7 @@ namespace HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
-/// atan2 with the polynomial of half_diff.h, over lanes.
+/// atan2 with the polynomial of brdf_table.h, over lanes.
 template <class D, class V = hn::Vec<D>>
 HWY_INLINE V arc_tangent(D d, V y, V x) {
   constexpr float kTerms[] = {-0.0161657367f, 0.0429096138f, -0.0752896400f, 0.1065626393f,

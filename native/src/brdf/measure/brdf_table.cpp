@@ -2,14 +2,26 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cmath>
 #include <cstring>
+
 #include "base/error.h"
 #include "base/file.h"
-#include "brdf/measure/entries.h"
-#include "brdf/measure/table_measurement.h"
+#include "brdf/measure/measurement.h"
 #include "image/tensors/exr_tensors.h"
+#include "math/sphere/directions.h"
 
 namespace velour {
+
+DirectionPair pair_of_half_diff(double theta_h, double phi_h, double theta_d, double phi_d) {
+  const double sin_h = std::sin(theta_h), cos_h = std::cos(theta_h);
+  const double sin_p = std::sin(phi_h), cos_p = std::cos(phi_h);
+  const Vec3d half{sin_h * cos_p, sin_h * sin_p, cos_h};
+  const Vec3d along{cos_h * cos_p, cos_h * sin_p, -sin_h}, across{-sin_p, cos_p, 0.0};
+  const Vec3d side = std::sin(theta_d) * (std::cos(phi_d) * along + std::sin(phi_d) * across);
+  const Vec3d up = std::cos(theta_d) * half;
+  return {Vec3(up + side), Vec3(up - side)};
+}
 
 namespace {
 
@@ -231,6 +243,40 @@ bool HalfDiffTable::lookup(const Vec3& wl, const Vec3& wv, Rgb& f) const {
   const bool covered = sum[3] > 0.0f;
   f = covered ? Rgb(sum[0], sum[1], sum[2]) / sum[3] : Rgb(0.0f);
   return covered;
+}
+
+TableMeasurement::TableMeasurement(HalfDiffTable table, Provenance provenance, const EntryCounts& counts,
+                                   Details details)
+    : table_(std::move(table)), details_(std::move(details)) {
+  provenance_ = std::move(provenance);
+  counts_ = counts;
+  coverage_ = ViewCoverage(*this);
+}
+
+void TableMeasurement::eval(const Vec3& wv, std::span<const Vec3> wl, std::span<Rgb> f,
+                            std::span<uint8_t> valid) const {
+  for (size_t i = 0; i < wl.size(); ++i) {
+    const bool above = wv.z > 0.0f && wl[i].z > 0.0f;
+    if (!above) f[i] = Rgb(0.0f);
+    valid[i] = above && table_.lookup(wl[i], wv, f[i]);
+  }
+}
+
+ViewCoverage::ViewCoverage(const Measurement& measurement) {
+  const auto lights = hemisphere_fibonacci(256);
+  std::vector<Rgb> f(lights.size());
+  std::vector<uint8_t> valid(lights.size());
+  for (size_t degree = 0; degree < covered_.size(); ++degree) {
+    measurement.eval(direction(radians_from(static_cast<float>(degree)), 0.0f), lights, f, valid);
+    const auto hits = std::count(valid.begin(), valid.end(), uint8_t{1});
+    covered_[degree] = static_cast<size_t>(hits) * 2 >= lights.size();
+  }
+}
+
+bool ViewCoverage::covers(float theta_v) const {
+  if (!(theta_v >= 0.0f && theta_v < kPi / 2)) return false;
+  const auto degree = static_cast<size_t>(std::lround(theta_v * (180.0f / kPi)));
+  return covered_[std::min(degree, covered_.size() - 1)];
 }
 
 }  // namespace velour

@@ -9,7 +9,7 @@
 
 #include "base/error.h"
 #include "base/parallel.h"
-#include "brdf/measure/half_diff.h"
+#include "brdf/measure/brdf_table.h"
 #include "brdf/measure/microfacet_trend.h"
 
 namespace velour {

@@ -3,11 +3,10 @@
 #include <algorithm>
 #include <array>
 
-#include "btf/eval/factored_sums.h"
 #include "btf/eval/measured_btf_material.h"
-#include "btf/measure/pair_interpolation.h"
+#include "btf/measure/pair_layout.h"
 #include "btf/model/factored_btf.h"
-#include "material/footprint_taps.h"
+#include "material/surface_site.h"
 
 namespace velour {
 namespace {

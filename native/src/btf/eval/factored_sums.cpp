@@ -1,5 +1,5 @@
 // Highway compiles this file once for each instruction set.
-#include "btf/eval/factored_sums.h"
+#include "btf/eval/factored_material.h"
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "btf/eval/factored_sums.cpp"

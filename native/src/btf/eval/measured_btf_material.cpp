@@ -8,8 +8,8 @@
 #include "base/error.h"
 #include "btf/measure/btf_measurement.h"
 #include "btf/model/factored_btf.h"
-#include "image/half_image.h"
-#include "material/footprint_taps.h"
+#include "image/texels.h"
+#include "material/surface_site.h"
 
 namespace velour {
 

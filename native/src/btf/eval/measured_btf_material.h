@@ -4,14 +4,18 @@
 #include <cstdint>
 #include <memory>
 #include <vector>
-#include "btf/eval/btf_light.h"
 #include "btf/measure/btf_measurement.h"
 #include "btf/measure/half_floats.h"
-#include "btf/measure/pair_interpolation.h"
+#include "btf/measure/pair_layout.h"
 #include "material/material.h"
 #include "math/sphere/warp.h"
 
 namespace velour {
+
+// Which side of the surface a BTF material is lit from.
+
+/// f is given for light from one side of the surface. For other_side, light directions are mirrored (z > 0).
+enum class BtfLight { viewers_side, other_side };
 
 // A whole BTF in memory, for random access.
 

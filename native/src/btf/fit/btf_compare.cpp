@@ -6,7 +6,7 @@
 #include <memory>
 #include "base/parallel.h"
 #include "btf/model/srbf_evaluator.h"
-#include "btf/model/tensor_images.h"
+#include "btf/model/tensor_evaluator.h"
 
 namespace velour {
 

@@ -10,13 +10,12 @@
 #include "btf/fit/srbf/srbf_fit.h"
 #include "btf/fit/svd/svd_fit.h"
 #include "btf/fit/tensor/tensor_fit.h"
-#include "btf/measure/pair_interpolation.h"
 #include "btf/measure/pair_layout.h"
 #include "btf/model/srbf_evaluator.h"
 #include "btf/model/tensor_evaluator.h"
 #include "math/sphere/random.h"
 #include "math/sphere/warp.h"
-#include "model/model_material.h"
+#include "model/model.h"
 
 namespace velour {
 

@@ -10,7 +10,6 @@
 #include "btf/fit/btf_compare.h"
 #include "btf/fit/btf_fitter.h"
 #include "btf/fit/fit_checkpoint.h"
-#include "btf/fit/fit_memory.h"
 #include "math/sphere/vec.h"
 #include "model/model.h"
 #include "usage/observation.h"

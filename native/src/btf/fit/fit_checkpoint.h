@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "base/warning.h"
-#include "btf/fit/companded_views.h"
+#include "btf/fit/side_views.h"
 #include "image/tensors/exr_tensors.h"
 
 namespace velour {

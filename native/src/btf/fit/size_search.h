@@ -6,7 +6,6 @@
 #include "btf/fit/btf_compare.h"
 #include "btf/fit/btf_fitter.h"
 #include "btf/fit/fit_checkpoint.h"
-#include "model/btf_record.h"
 #include "model/records.h"
 
 namespace velour {

@@ -12,8 +12,8 @@
 
 #include "base/error.h"
 #include "base/file.h"
-#include "btf/formats/image_names.h"
-#include "image/stack/image_stack.h"
+#include "btf/formats/picture_index.h"
+#include "image/image_stack.h"
 
 namespace velour {
 namespace fs = std::filesystem;

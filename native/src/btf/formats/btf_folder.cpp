@@ -3,7 +3,7 @@
 #include <filesystem>
 #include "base/error.h"
 #include "base/file.h"
-#include "image/stack/image_stack_file.h"
+#include "image/image_stack.h"
 
 namespace velour {
 

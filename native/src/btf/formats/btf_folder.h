@@ -7,7 +7,7 @@
 #include <vector>
 #include "btf/formats/btf_index.h"
 #include "btf/measure/btf_measurement.h"
-#include "image/stack/image_stack.h"
+#include "image/image_stack.h"
 
 namespace velour {
 

@@ -7,9 +7,8 @@
 #include "base/error.h"
 #include "base/file.h"
 #include "btf/formats/btf_folder.h"
-#include "btf/formats/csv_index.h"
-#include "btf/formats/image_names.h"
 #include "btf/formats/image_set.h"
+#include "btf/formats/picture_index.h"
 #include "btf/formats/ubo_file.h"
 
 namespace velour {

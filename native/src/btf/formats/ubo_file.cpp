@@ -11,7 +11,6 @@
 #include "base/file.h"
 #include "base/transposed.h"
 #include "btf/formats/image_set.h"
-#include "btf/formats/ubo_header.h"
 
 namespace velour {
 namespace {

@@ -1,4 +1,4 @@
-#include "btf/formats/ubo_header.h"
+#include "btf/formats/ubo_file.h"
 
 #include <algorithm>
 #include <cmath>

@@ -4,9 +4,11 @@
 #include <charconv>
 #include <cmath>
 #include <string>
+
 #include "base/error.h"
 #include "btf/measure/btf_measurement.h"
 #include "math/sphere/directions.h"
+#include "math/sphere/random.h"
 
 namespace velour {
 
@@ -205,6 +207,65 @@ std::vector<Vec3> directions_on_side(const std::vector<PolarAngles>& set, bool b
     if ((w.z < 0) == below) directions.emplace_back(w.x, w.y, std::abs(w.z));
   }
   return directions;
+}
+
+PairInterpolation::Sides::Sides(const std::vector<PolarAngles>& directions) {
+  std::array<std::vector<Vec3>, 2> of_side;
+  for (uint32_t i = 0; i < directions.size(); ++i) {
+    const Vec3 d = unit_direction(directions[i]);
+    const size_t side = d.z > 0 ? 0 : 1;
+    of_side[side].emplace_back(d.x, d.y, std::abs(d.z));
+    number[side].push_back(i);
+  }
+  for (size_t side = 0; side < 2; ++side) {
+    if (!of_side[side].empty()) mesh[side].emplace(of_side[side]);
+  }
+}
+
+std::optional<DirectionMesh::Weights> PairInterpolation::Sides::at(const Vec3& d) const {
+  const size_t side = d.z >= 0 ? 0 : 1;
+  if (!mesh[side]) return std::nullopt;
+  Corners corners = mesh[side]->at({d.x, d.y, std::abs(d.z)});
+  for (uint32_t& index : corners.index) index = number[side][index];
+  return corners;
+}
+
+PairInterpolation::PairInterpolation(const PairLayout& layout) : views_(layout.views()), lights_(layout.lights()) {
+  if (layout.complete()) return;
+  throw Error(Status::unsupported, "The BTF has " + std::to_string(layout.pairs()) + " of " +
+                                       std::to_string(layout.views().size() * layout.lights().size()) +
+                                       " view-light pairs; interpolation requires all of them.");
+}
+
+namespace {
+
+constexpr uint64_t kSeed = 75;           // arbitrary, but fixed so that results stay comparable
+constexpr double kMaxHeldOutTheta = 75;  // degrees
+
+PolarAngles drawn_direction(RandomStream& random, bool two_sided) {
+  const double least_cosine = std::cos(radians_from(kMaxHeldOutTheta));
+  const double cosine = 1 - static_cast<double>(random.next()) * (1 - least_cosine);
+  const double theta = std::acos(cosine) * (180 / kPiD), phi = 360 * static_cast<double>(random.next());
+  const bool below = random.next() < 0.5f;
+  return {two_sided && below ? 180 - theta : theta, phi};
+}
+
+}  // namespace
+
+PairLayout held_out_pairs(uint32_t count, bool two_sided) {
+  if (count < 1 || count > kMaxDirections) {
+    throw Error(Status::invalid_argument, "The number of held-out pairs is " + std::to_string(count) +
+                                              "; it must be 1 to " + std::to_string(kMaxDirections) + ".");
+  }
+  std::vector<PolarAngles> views, lights;
+  std::vector<std::vector<uint32_t>> light_of_view;
+  for (uint32_t i = 0; i < count; ++i) {
+    RandomStream random(kSeed, 0, i);
+    views.push_back(drawn_direction(random, two_sided));
+    lights.push_back(drawn_direction(random, two_sided));
+    light_of_view.push_back({i});
+  }
+  return {std::move(views), std::move(lights), light_of_view};
 }
 
 }  // namespace velour

@@ -1,14 +1,18 @@
-// The pairs of directions of a BTF and the order of its images.
+// Pairs of view and light: their order in a BTF, interpolation between them, and held-out pairs.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
 #include "base/warning.h"
+#include "math/sphere/direction_mesh.h"
 #include "math/sphere/vec.h"
 
 namespace velour {
+
+// The pairs of directions of a BTF and the order of its images.
 
 // Directions as polar angles in degrees, the convention of measurements.
 
@@ -80,5 +84,43 @@ std::vector<PolarAngles> named_directions(const std::string& name);
 /// Warning about views and lights that coincide with an earlier one (phi 0 and 360, any phi at theta 0); interpolation
 /// uses the earlier one only. Nothing if all differ.
 std::optional<Warning> repeated_directions(const PairLayout& layout);
+
+// Interpolation between the direction pairs of a BTF, barycentric over views and over lights.
+
+/// For complete layouts. Directions above and below the reference plane are interpolated separately. Immutable.
+class PairInterpolation {
+ public:
+  /// Throws Error(unsupported) for an incomplete layout.
+  explicit PairInterpolation(const PairLayout& layout);
+
+  using Corners = DirectionMesh::Weights;
+  /// Indices of views (lights) and their weights; empty if the set has no direction on that side of the plane.
+  std::optional<Corners> view(const Vec3& wv) const { return views_.at(wv); }
+  std::optional<Corners> light(const Vec3& wl) const { return lights_.at(wl); }
+  /// Whether views and lights from below are covered.
+  bool has_lower_side() const { return view({0, 0, -1}) && light({0, 0, -1}); }
+  /// Whether transmission is covered, in either direction.
+  bool knows_through() const {
+    return (view({0, 0, 1}) && light({0, 0, -1})) || (view({0, 0, -1}) && light({0, 0, 1}));
+  }
+
+ private:
+  /// A set of directions; those below the plane are mirrored up into a separate mesh.
+  struct Sides {
+    explicit Sides(const std::vector<PolarAngles>& directions);
+    std::optional<Corners> at(const Vec3& direction) const;
+    std::array<std::vector<uint32_t>, 2> number;  // index in the set: upper, lower
+    std::array<std::optional<DirectionMesh>, 2> mesh;
+  };
+  Sides views_, lights_;
+};
+
+// Held-out pairs of directions, which validate models and are never fitted.
+
+/// `count` pairs; view i is paired with light i only. Directions are sampled uniformly by solid angle up to 75 degrees
+/// from the normal, the last ring of measured sets. Deterministic: a smaller set is a prefix of a larger one.
+/// `two_sided`: each direction lies above or below the plane with equal probability. Throws Error(invalid_argument)
+/// unless `count` is from 1 to kMaxDirections.
+PairLayout held_out_pairs(uint32_t count, bool two_sided);
 
 }  // namespace velour

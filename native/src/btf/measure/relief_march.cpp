@@ -1,5 +1,5 @@
 // Highway compiles this file once for each instruction set.
-#include "btf/measure/relief_march.h"
+#include "btf/measure/relief.h"
 
 #include <algorithm>
 #include <bit>

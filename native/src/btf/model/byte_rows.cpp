@@ -1,5 +1,5 @@
 // Highway compiles this file once for each instruction set.
-#include "btf/model/byte_rows.h"
+#include "btf/model/srbf_evaluator.h"
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "btf/model/byte_rows.cpp"

@@ -1,7 +1,7 @@
 #include "btf/model/factored_btf.h"
 
 #include <algorithm>
-#include "btf/measure/pair_interpolation.h"
+#include "btf/measure/pair_layout.h"
 
 namespace velour {
 

@@ -9,7 +9,7 @@
 #include "btf/measure/btf_measurement.h"
 #include "btf/measure/half_floats.h"
 #include "btf/measure/pair_layout.h"
-#include "image/half_image.h"
+#include "image/texels.h"
 
 namespace velour {
 

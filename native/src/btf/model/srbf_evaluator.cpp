@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "image/bilinear_texels.h"
+#include "image/texels.h"
 
 namespace velour {
 namespace {

@@ -1,4 +1,4 @@
-// Evaluation of BTFs made of multivariate SRBFs.
+// Evaluates BTFs of multivariate SRBFs.
 #pragma once
 
 #include <algorithm>
@@ -9,13 +9,27 @@
 #include <memory>
 #include <optional>
 #include <vector>
-#include "base/aligned_array.h"
+#include "base/memory.h"
 #include "btf/measure/relief.h"
-#include "btf/model/byte_rows.h"
 #include "btf/model/srbf_btf.h"
+#include "image/texels.h"
 #include "math/sphere/vec.h"
 
 namespace velour {
+
+// Bilinear interpolation of byte texels.
+
+inline constexpr uint32_t kByteRowPadding = 16;
+
+/// Texels of a periodic tile: [row][column][stride] bytes.
+struct ByteTexels {
+  const uint8_t* bytes;
+  uint32_t width, height, stride;
+};
+
+/// For i < stride: to[i] += weight * step[i] * (bilinear mean of byte i at `texel`, see bilinear_at). `stride` must be
+/// a multiple of kByteRowPadding; `step` and `to` must be aligned to 64 bytes. Run-time dispatched SIMD.
+void add_bilinear_bytes(const ByteTexels& texels, const Vec2& texel, float weight, const float* step, float* to);
 
 // A point of an SRBF BTF seen from one view.
 

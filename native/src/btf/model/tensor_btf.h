@@ -32,7 +32,7 @@ struct TensorLevel {
 /// place). For color axis a, view v and light l, the sum at p is
 ///   s_a = sum over the members c of p, and over ranks r, of value_{c,r}(p) basis_{c,r}(v, l, a),
 ///   basis_{c,r}(v, l, a) = sum over ranks of core_c(r, i, j, k) view_c(v, i) light_c(l, j) color_c(a, k).
-/// The factors are interpolated between views and between lights (pair_interpolation.h), the sums between texels, and f
+/// The factors are interpolated between views and between lights (PairInterpolation), the sums between texels, and f
 /// = expanded(axes (s_0, s_1, s_2)).
 struct TensorSide {
   bool view_below = false, light_below = false;

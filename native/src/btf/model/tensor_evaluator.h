@@ -7,13 +7,15 @@
 // with the vectors of the three by three surrounding views and lights, interpolated. If these vectors would take too
 // much memory, the core is contracted with the views alone: a hit contracts those of its three views, at ten times the
 // cost, and a light is three rows of a factor (TensorOrder). Images, whose texels share view and light, use the reverse
-// order (tensor_images.h).
+// order (TensorImages).
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <memory>
 #include <optional>
 #include <vector>
+#include "base/memory.h"
 #include "btf/measure/relief.h"
 #include "btf/model/tensor_btf.h"
 #include "math/sphere/direction_mesh.h"
@@ -79,6 +81,96 @@ class TensorEvaluator {
   struct Side;
   std::shared_ptr<const TensorBtf> btf_;
   std::vector<std::unique_ptr<const Side>> sides_;
+};
+
+// Inner loops of clustered-tensor evaluation. Run-time dispatched SIMD.
+
+/// Texels of a periodic tile, [row][column][record]: the indices of a texel's clusters, then the coefficient bytes of
+/// each cluster. Up to kRankPadding bytes past the last record are read.
+struct TensorTexels {
+  const uint8_t* records;
+  uint32_t width, height;
+  uint32_t members, rank;
+  uint32_t stride() const { return members * (1 + rank); }
+};
+
+/// Adds `weight` times the four texels around `texel` (bilinear_at) to the bytes and shares of the point.
+void add_tensor_texels(const TensorTexels& texels, const Vec2& texel, float weight, TensorPoint& point);
+
+/// How far a side is contracted in advance. Earlier orders need larger tables and leave less work per query.
+enum class TensorOrder {
+  pairs,  // all factors but the texels', for every pair of directions
+  views,  // the views' factor, for every view; texels and lights remain
+  ranks,  // nothing; all factors remain
+};
+
+/// Query-independent contraction of a side. A point has a row of `width` numbers per cluster and channel: [light rank],
+/// or for TensorOrder::pairs [color rank][texel rank]; both padded.
+struct TensorTables {
+  TensorOrder order;
+  uint32_t clusters, rank, color_rank, width;
+  const float *least, *step;  // [cluster][padded rank]: scales of bytes
+  const float* color;         // [cluster][channel][rank]
+  const float* view;          // [view][cluster][rank], for TensorOrder::ranks
+  uint32_t view_rank;
+  const float* table;  // [view or view rank][cluster][rank][color rank][width], not for pairs
+  const float* light;  // multiplies the rows: [light][cluster][width], for pairs [view][light][cluster][width]
+  uint32_t lights;
+
+  size_t table_row() const { return size_t{color_rank} * width; }
+  size_t table_cluster() const { return rank * table_row(); }
+  size_t table_node() const { return clusters * table_cluster(); }
+  size_t light_node() const { return size_t{clusters} * width; }
+};
+
+/// Converts the bytes and shares of a point to the rows that are multiplied by the light.
+void contract_view(const TensorTables& tables, const DirectionMesh::Weights& view, TensorPoint& point);
+
+/// The sum of each channel under a light.
+Vec3 contract_light(const TensorTables& tables, const DirectionMesh::Weights& light, const TensorPoint& point);
+
+// Query-independent contraction of a side of clustered tensors.
+
+struct TensorFactors;
+
+/// Owns the arrays of its TensorTables. Immutable.
+class TensorContraction {
+ public:
+  /// Uses the first TensorOrder whose tables fit into `most_bytes`; those of TensorOrder::ranks may exceed it.
+  TensorContraction(const TensorBtf& btf, const TensorSide& side, uint64_t most_bytes);
+  const TensorTables& tables() const { return tables_; }
+  /// Size of the contraction of such a side, whatever its values.
+  static uint64_t bytes(const TensorBtf& btf, const TensorSide& side, uint64_t most_bytes);
+
+ private:
+  void scale_from(const TensorSide& side);
+  void fill_cluster(const TensorSide& side, const TensorFactors& factors, size_t cluster);
+  void fill_lights(const TensorSide& side, const TensorFactors& factors, size_t cluster);
+  void fill_pairs(const TensorSide& side, const TensorFactors& factors, size_t cluster);
+
+  uint32_t views_;
+  TensorTables tables_;
+  AlignedArray<float> least_, step_, color_, view_, table_, light_;
+};
+
+// Images of BTFs made of clustered tensors.
+
+/// Computes f of every texel of the finest level for one pair of directions, [row][column][channel]; zero if the model
+/// has no side for the pair. All texels share the pair, so it is contracted first: each cluster becomes one vector over
+/// texel rank and color, and a texel costs one product per coefficient and channel. Evaluation at points uses the
+/// reverse order (TensorEvaluator).
+class TensorImages {
+ public:
+  /// Keeps a reference to `btf`.
+  explicit TensorImages(const TensorBtf& btf);
+  ~TensorImages();
+  /// Thread-safe.
+  void image(const DirectionPair& pair, std::vector<float>& rgb) const;
+
+ private:
+  struct Side;
+  struct Impl;
+  std::unique_ptr<const Impl> impl_;
 };
 
 }  // namespace velour

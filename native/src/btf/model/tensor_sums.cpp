@@ -1,9 +1,9 @@
 // Highway compiles this file once for each instruction set.
-#include "btf/model/tensor_sums.h"
+#include "btf/model/tensor_evaluator.h"
 
 #include <algorithm>
 
-#include "image/bilinear_texels.h"
+#include "image/texels.h"
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "btf/model/tensor_sums.cpp"

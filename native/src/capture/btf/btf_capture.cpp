@@ -9,10 +9,9 @@
 #include <nlohmann/json.hpp>
 
 #include "base/parallel.h"
-#include "btf/measure/held_out_pairs.h"
+#include "btf/measure/pair_layout.h"
 #include "capture/btf/tile_checks.h"
 #include "capture/btf/view_capture.h"
-#include "capture/btf/view_store.h"
 #include "math/sphere/random.h"
 
 namespace velour {

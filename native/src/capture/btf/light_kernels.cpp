@@ -1,6 +1,6 @@
 // Highway compiles this file once for each instruction set. Multiplications and additions are not fused, so that all of
 // them give the same bits.
-#include "capture/btf/light_kernels.h"
+#include "capture/btf/view_capture.h"
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "capture/btf/light_kernels.cpp"

@@ -3,9 +3,8 @@
 #include <algorithm>
 #include "material/material.h"
 #include "math/sphere/random.h"
-#include "math/sphere/sobol.h"
-#include "render/continuation.h"
-#include "render/vertex.h"
+#include "render/path/direction_sampling.h"
+#include "render/path/vertex.h"
 
 namespace velour {
 

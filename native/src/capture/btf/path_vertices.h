@@ -11,8 +11,7 @@
 #include "btf/measure/pair_layout.h"
 #include "capture/btf/repeated_tile.h"
 #include "material/material.h"
-#include "render/footprint.h"
-#include "render/vertex.h"
+#include "render/path/vertex.h"
 
 namespace velour {
 

@@ -7,7 +7,7 @@
 #include "capture/btf/view_capture.h"
 #include "material/material.h"
 #include "math/sphere/directions.h"
-#include "math/sphere/sobol.h"
+#include "math/sphere/random.h"
 
 namespace velour {
 

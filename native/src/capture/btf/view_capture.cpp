@@ -3,11 +3,25 @@
 #include <tbb/parallel_for.h>
 #include <algorithm>
 #include <atomic>
+#include <chrono>
 #include <cmath>
+#include <thread>
+
 #include "math/sphere/random.h"
-#include "render/continuation.h"
+#include "render/path/direction_sampling.h"
 
 namespace velour {
+
+void ViewStore::read_by(const std::function<void()>& work) const {
+  if (!pages_.in_file()) return work();
+  std::jthread releases([this](const std::stop_token& stop) {
+    while (!stop.stop_requested()) {
+      release();
+      std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    }
+  });
+  work();
+}
 
 namespace {
 

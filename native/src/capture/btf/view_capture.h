@@ -1,19 +1,82 @@
-// Captures all texels of one view.
+// Captures one view of a tile: tests every light against the vertices of its paths, and sums what arrives.
 #pragma once
 
 #include <tbb/enumerable_thread_specific.h>
 #include <array>
+#include <cstdint>
+#include <functional>
 #include <optional>
 #include <span>
+#include <string>
 #include <vector>
+#include "base/memory.h"
 #include "btf/formats/btf_folder.h"
-#include "capture/btf/light_kernels.h"
 #include "capture/btf/path_vertices.h"
-#include "capture/btf/view_store.h"
 #include "material/material.h"
+#include "math/sphere/directions.h"
+#include "math/sphere/frame.h"
 #include "render/ray_log.h"
 
 namespace velour {
+
+// Memory of one view's images, or a file in place of it.
+
+/// Zero-initialized array of halves; above `limit` bytes it is a temporary file in `folder` (see ScratchPages).
+class ViewStore {
+ public:
+  /// Throws Error(io) if the file cannot be created.
+  ViewStore(uint64_t halves, uint64_t limit, const std::string& folder)
+      : halves_(halves), pages_(halves * sizeof(uint16_t), limit, folder) {}
+
+  std::span<uint16_t> halves() const { return {static_cast<uint16_t*>(pages_.data()), halves_}; }
+  /// Evicts the array from the process's memory; it is read back from the file on use. Thread-safe.
+  void release() const { pages_.release(); }
+  /// Runs `work`, which reads the array, and evicts what it has read in the meantime.
+  void read_by(const std::function<void()>& work) const;
+
+ private:
+  const uint64_t halves_;
+  const ScratchPages pages_;
+};
+
+// SIMD kernels for pairs of a place and a light.
+
+/// Normals of many places, one array per component.
+class PlaceNormals {
+ public:
+  void clear() { count_ = 0; }
+  void push(const Vec3& geometric, const Vec3& shading);
+  size_t count() const { return count_; }
+  const float* component(size_t c) const { return components_[c].data(); }
+
+ private:
+  size_t count_ = 0;
+  std::array<std::vector<float>, 6> components_;  // padded to whole vectors
+};
+
+/// Finds the numbers, ascending, of the places whose geometric and shading normals both face `wl`.
+void facing_places(const PlaceNormals& normals, const Vec3& wl, std::vector<uint32_t>& numbers);
+
+/// Lights that reach a place, stored contiguously.
+struct LitLights {
+  DirectionBatch wl;                                          // local, padded
+  uint32_t number[DirectionBatch::kCapacity];                 // in the group
+  alignas(64) float weight[DirectionBatch::kCapacity] = {0};  // factor of f: wl.z per_irradiance
+};
+
+/// Collects the lights in [first, first + 64) of `group` whose bit in `mask` is set.
+void collect_lit(const LightGroup& group, uint32_t first, uint64_t mask, const Frame& frame, LitLights& lit);
+
+/// Sums over paths for each light of a group.
+struct PathSums {
+  alignas(64) double sum[3][kLightsTogether];
+  alignas(64) double luminance[kLightsTogether], luminance_sq[kLightsTogether];
+};
+
+/// Adds the contribution of each of the first `lights` lights along one path; omits values that are not finite and
+/// returns their number. `luminance_weights`: for the color space of `path`.
+uint32_t add_path(const float (&path)[3][kLightsTogether], const Vec3& luminance_weights, uint32_t lights,
+                  PathSums& sums);
 
 // Which lights reach which vertices.
 

@@ -4,7 +4,7 @@
 #include <array>
 #include <optional>
 #include <span>
-#include "capture/goniometer/periodic_tile.h"
+#include "capture/goniometer/height_field.h"
 #include "math/sphere/random.h"
 #include "math/sphere/vec.h"
 

@@ -11,7 +11,7 @@
 #include "base/parallel.h"
 #include "brdf/formats/merl.h"
 #include "brdf/measure/brdf_table.h"
-#include "capture/goniometer/microsurface_brdf.h"
+#include "capture/goniometer/goniometer.h"
 
 namespace velour {
 

@@ -1,11 +1,14 @@
-// Builds a tile's mesh from curved surfaces.
+// Meshes of curved surfaces, and noise that repeats with the tile: the parts of all tiles.
 #pragma once
 
+#include <cstdint>
 #include <functional>
-
+#include <glm/glm.hpp>
 #include "capture/tile/tile.h"
 
 namespace velour {
+
+// Builds a tile's mesh from curved surfaces.
 
 /// How a grid of points continues beyond its last line.
 struct GridEnd {
@@ -44,6 +47,19 @@ class MeshBuilder {
 
   TileMesh mesh_;
   std::vector<uint32_t> original_;  // the vertex that each vertex duplicates, or itself
+};
+
+// Random values and smooth noise that repeat with the cell of a tile.
+
+/// Value noise: uniform random numbers in [0, 1) at the points of a lattice, interpolated with continuous slopes, never
+/// outside [0, 1). Repeats after `cells` lattice cells along each axis.
+struct PeriodicNoise {
+  uint64_t seed = 0;
+  uint64_t stream = 0;  // selects independent noise for the same seed
+  glm::ivec2 cells{1, 1};
+
+  /// `at` in periods: at + (1, 0) and at + (0, 1) give the same value.
+  double operator()(const glm::dvec2& at) const;
 };
 
 }  // namespace velour

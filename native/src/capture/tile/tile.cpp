@@ -6,11 +6,8 @@
 #include <sstream>
 
 #include "base/error.h"
-#include "capture/tile/chainmail.h"
-#include "capture/tile/gravel.h"
-#include "capture/tile/knit.h"
-#include "capture/tile/sheets.h"
-#include "capture/tile/woven.h"
+#include "capture/tile/bodies.h"
+#include "capture/tile/fabrics.h"
 
 namespace velour {
 namespace {

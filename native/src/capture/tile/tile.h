@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-#include "material/principled/principled_point.h"
+#include "material/principled/principled_material.h"
 #include "math/sphere/vec.h"
 
 namespace velour {

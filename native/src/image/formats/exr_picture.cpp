@@ -21,7 +21,6 @@
 #include "base/error.h"
 #include "base/file.h"
 #include "image/formats/exr_header_check.h"
-#include "image/formats/exr_part.h"
 #include "image/open_picture.h"
 
 namespace velour {

@@ -3,7 +3,6 @@
 #include "base/private_library.h"
 #include "image/open_picture.h"
 #include "image/openimageio/openimageio_module.h"
-#include "image/orientation.h"
 
 namespace velour {
 namespace {

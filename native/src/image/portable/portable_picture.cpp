@@ -1,7 +1,7 @@
 #include "image/portable/portable_picture.h"
 
 #include "base/error.h"
-#include "image/orientation.h"
+#include "image/open_picture.h"
 
 namespace velour {
 namespace {

@@ -22,7 +22,6 @@
 #include "image/formats/exr_header_check.h"
 #include "image/formats/exr_scan.h"
 #include "image/tensors/tensor_pack.h"
-#include "image/tensors/tensor_pixels.h"
 
 namespace velour {
 namespace {

@@ -2,7 +2,7 @@
 //
 // A tensor is a part with one channel "Y": its last dimension is the width, the others flattened are the height, and
 // the attribute "velour.shape" holds the shape. A last dimension of three is stored as channels R, G, B instead, so
-// that viewers show it in color. The first part is a tensor that covers all others (tensor_pixels.h), if there is one:
+// that viewers show it in color. The first part is a tensor that covers all others (tensor_pack.h), if there is one:
 // Blender allocates a buffer for the first part and reads all parts into it. Parts wider or higher than the first are
 // not for viewers: their channels are "value", or "value_x", "value_y", "value_z". Packed files have two parts: a pack
 // (tensor_pack.h) as integers in channel "value", with the attribute "velour.coding" "pack", and the smallest tensor

@@ -5,11 +5,90 @@
 #include <array>
 #include <bit>
 #include <cstring>
+#include <new>
+
 #include "base/error.h"
 #include "base/json_fields.h"
-#include "image/tensors/zlib_stream.h"
 
 namespace velour {
+
+namespace {
+
+constexpr int kLevel = 6, kWindowBits = 15, kMemoryLevel = 8;  // explicit: the same bytes must give the same stream
+constexpr size_t kStep = 1 << 16;
+
+/// zlib's counters have 32 bits.
+uInt counted(uint64_t bytes) {
+  if (bytes <= UINT32_MAX) return static_cast<uInt>(bytes);
+  throw Error(Status::invalid_argument, "More than 4 GiB cannot be compressed at once.");
+}
+
+/// zlib takes non-const pointers, but only reads through them.
+Bytef* source(std::span<const uint8_t> bytes) { return const_cast<Bytef*>(bytes.data()); }
+
+}  // namespace
+
+Deflater::Deflater() {
+  if (deflateInit2(&stream_, kLevel, Z_DEFLATED, kWindowBits, kMemoryLevel, strategy_) != Z_OK) throw std::bad_alloc();
+}
+
+Deflater::~Deflater() { deflateEnd(&stream_); }
+
+void Deflater::write(std::span<const uint8_t> bytes, int strategy) {
+  if (strategy != strategy_) change_to(strategy);
+  stream_.next_in = source(bytes);
+  stream_.avail_in = counted(bytes.size());
+  run(Z_NO_FLUSH);
+}
+
+std::vector<uint8_t> Deflater::take() {
+  run(Z_FINISH);
+  out_.resize(stream_.total_out);
+  return std::move(out_);
+}
+
+void Deflater::run(int flush) {
+  do {
+    make_room();
+    if (deflate(&stream_, flush) == Z_STREAM_ERROR) throw Error(Status::unknown, "zlib cannot compress the data.");
+  } while (stream_.avail_out == 0);
+}
+
+void Deflater::change_to(int strategy) {
+  run(Z_BLOCK);  // flushes the last block, for which deflateParams would need room
+  make_room();
+  if (deflateParams(&stream_, kLevel, strategy) != Z_OK) throw Error(Status::unknown, "zlib cannot compress the data.");
+  strategy_ = strategy;
+}
+
+void Deflater::make_room() {
+  out_.resize(stream_.total_out + kStep);
+  stream_.next_out = out_.data() + stream_.total_out;
+  stream_.avail_out = kStep;
+}
+
+Inflater::Inflater(std::span<const uint8_t> bytes) {
+  stream_.next_in = source(bytes);
+  stream_.avail_in = counted(bytes.size());
+  if (inflateInit(&stream_) != Z_OK) throw std::bad_alloc();
+}
+
+Inflater::~Inflater() { inflateEnd(&stream_); }
+
+bool Inflater::read(std::span<uint8_t> to) {
+  if (to.size() > UINT32_MAX) return false;
+  stream_.next_out = to.data();
+  stream_.avail_out = static_cast<uInt>(to.size());
+  const int status = inflate(&stream_, Z_SYNC_FLUSH);
+  return (status == Z_OK || status == Z_STREAM_END) && stream_.avail_out == 0;
+}
+
+bool Inflater::finish() {
+  uint8_t beyond = 0;
+  stream_.next_out = &beyond;
+  stream_.avail_out = 1;
+  return inflate(&stream_, Z_SYNC_FLUSH) == Z_STREAM_END && stream_.avail_out == 1;
+}
 
 namespace {
 
@@ -237,6 +316,76 @@ void rests_to_maps(std::span<uint8_t> rests, uint64_t rows, uint64_t columns) {
     const uint8_t* const below = line % rows == 0 ? nullptr : row - columns;
     for (uint64_t x = 0; x < columns; ++x) row[x] = static_cast<uint8_t>(row[x] + guess(row, below, x));
   }
+}
+
+namespace {
+
+/// Row length of packs in words: OpenEXR's overhead is a three-thousandth of such a row, and every GPU accepts pictures
+/// of this width.
+constexpr uint64_t kLongestRow = 1 << 14;
+
+/// Size of a part for `words`, with as little padding as covering `part` allows.
+PartSize words_size(uint64_t words, const PartSize& part) {
+  PartSize size;
+  size.height = std::max(part.height, (words + kLongestRow - 1) / kLongestRow);
+  size.width = std::max(part.width, (words + size.height - 1) / size.height);
+  return size;
+}
+
+size_t value_bytes(Imf::PixelType type) { return type == Imf::HALF ? 2 : 4; }
+
+}  // namespace
+
+PartSize part_size(std::vector<uint64_t> shape) {
+  PartSize size;
+  if (!shape.empty() && shape.back() == 3) {
+    size.channels = 3;
+    shape.pop_back();
+  }
+  if (shape.empty()) return size;
+  size.width = shape.back();
+  shape.pop_back();
+  for (const uint64_t extent : shape) size.height *= extent;
+  return size;
+}
+
+TensorPixels::TensorPixels(const Tensor& tensor)
+    : size_(part_size(tensor.shape)), data_(reinterpret_cast<const char*>(tensor.data.data())) {
+  if (tensor.precision == Precision::floats) return;
+  // OpenEXR converts values when it reads, but not when it writes.
+  for (const float value : tensor.data) halves_.push_back(half(value).bits());
+  type_ = Imf::HALF;
+  data_ = reinterpret_cast<const char*>(halves_.data());
+}
+
+bool covers(const PartSize& first, const PartSize& part) {
+  return part.width <= first.width && part.height <= first.height;
+}
+
+TensorPixels::TensorPixels(const std::vector<uint8_t>& pack, const PartSize& part)
+    : size_(words_size((pack.size() + sizeof(uint32_t) - 1) / sizeof(uint32_t), part)), type_(Imf::UINT) {
+  words_.resize(size_.width * size_.height);
+  std::memcpy(words_.data(), pack.data(), pack.size());
+  data_ = reinterpret_cast<const char*>(words_.data());
+}
+
+Imf::FrameBuffer TensorPixels::frame_buffer(const ChannelNames& names) const {
+  return pixel_buffer(data_, type_, size_, names);
+}
+
+Imf::FrameBuffer pixel_buffer(const char* data, Imf::PixelType type, const PartSize& size, const ChannelNames& names) {
+  Imf::FrameBuffer buffer;
+  const size_t bytes = value_bytes(type), x_stride = bytes * size.channels, y_stride = x_stride * size.width;
+  for (size_t c = 0; c < names.size(); ++c) {
+    buffer.insert(names[c], Imf::Slice(type, const_cast<char*>(data) + c * bytes, x_stride, y_stride));
+  }
+  return buffer;
+}
+
+ChannelNames shown_names(uint64_t channels) { return channels == 3 ? ChannelNames{"R", "G", "B"} : ChannelNames{"Y"}; }
+
+ChannelNames hidden_names(uint64_t channels) {
+  return channels == 3 ? ChannelNames{"value_x", "value_y", "value_z"} : ChannelNames{"value"};
 }
 
 }  // namespace velour

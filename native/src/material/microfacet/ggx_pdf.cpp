@@ -1,5 +1,5 @@
 // Highway compiles this file once for each instruction set.
-#include "material/microfacet/ggx_pdf.h"
+#include "material/microfacet/ggx_sampler.h"
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "material/microfacet/ggx_pdf.cpp"

@@ -4,8 +4,6 @@
 #include <cmath>
 #include "material/material.h"
 #include "material/microfacet/ggx.h"
-#include "material/microfacet/ggx_albedo.h"
-#include "material/microfacet/ggx_pdf.h"
 #include "math/sphere/random.h"
 #include "math/sphere/warp.h"
 

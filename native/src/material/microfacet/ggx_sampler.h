@@ -72,4 +72,11 @@ class GgxSampler {
 /// Material of the fitted lobe itself.
 std::shared_ptr<const Material> make_ggx_material(const GgxParameters& parameters);
 
+// Density of GgxSampler over a batch of directions.
+
+/// pdf[i] = cosine_share max(wl.z, 0) / pi + lobe_scale (|s|^2 / ggx_spread(s))^2 where s = wl + wv points up. The
+/// second term is pdf_ggx_reflection without a square root: spread and |s|^2 scale alike, so s is not normalized. The
+/// batch is padded. SIMD, dispatched at run time.
+void ggx_mixture_pdf(const GgxPoint& point, const Vec2& alpha, const DirectionBatch& wl, ScalarBatch& pdf);
+
 }  // namespace velour

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <cstdint>
 
-#include "material/microfacet/ggx_albedo.h"
+#include "material/microfacet/ggx.h"
 #include "math/sphere/frame.h"
 #include "math/sphere/random.h"
 

@@ -1,5 +1,5 @@
-// Formulas of the Principled BSDF. Included inside a namespace, after ggx_formulas-inl.h: by principled_point.cpp for
-// scalars, and by sources that Highway compiles for vectors.
+// Formulas of the Principled BSDF. Included inside a namespace, after ggx_formulas-inl.h: by principled_material.cpp
+// for scalars, and by sources that Highway compiles for vectors.
 
 /// Factor of point.diffuse: 1 except in Disney's formula [Bur12, Sec. 5.3].
 template <class W>

@@ -1,7 +1,6 @@
 // Blender's color nodes (kernel/svm/color_util.h, hsv.h, ramp.h and util/color.h of Cycles).
 #include <algorithm>
 #include <cmath>
-#include "material/program/numbers.h"
 #include "material/program/operands.h"
 
 namespace velour {

@@ -2,7 +2,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include "material/program/numbers.h"
 #include "material/program/operands.h"
 
 namespace velour {

@@ -5,7 +5,7 @@
 #include <memory>
 #include <span>
 #include <vector>
-#include "base/aligned_array.h"
+#include "base/memory.h"
 #include "material/program/operations.h"
 #include "material/surface_site.h"
 #include "material/texture.h"

@@ -1,7 +1,6 @@
 // Blender's nodes that depend on the view or change the normal (kernel/svm/fresnel.h, bump.h, tex_coord.h of Cycles).
 #include <algorithm>
 #include <cmath>
-#include "material/program/numbers.h"
 #include "material/program/operands.h"
 
 namespace velour {

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <span>
 
-#include "base/aligned_array.h"
+#include "base/memory.h"
 #include "math/sphere/vec.h"
 
 namespace velour {

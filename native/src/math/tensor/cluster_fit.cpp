@@ -11,7 +11,7 @@
 #include "math/tensor/cluster_choice.h"
 #include "math/tensor/decompositions.h"
 #include "math/tensor/matrix_product.h"
-#include "math/tensor/mode_product.h"
+#include "math/tensor/tensor_view.h"
 
 namespace velour {
 

@@ -3,8 +3,8 @@
 
 #include <span>
 #include "base/progress.h"
-#include "math/tensor/clustered_tensor.h"
-#include "math/tensor/leading_vectors.h"
+#include "math/tensor/cluster_choice.h"
+#include "math/tensor/decompositions.h"
 
 namespace velour {
 

@@ -1,12 +1,15 @@
-// Dense tensors: non-owning views and owning tensors.
+// Dense tensors: non-owning views, owning tensors, and their products with matrices.
 #pragma once
 
 #include <Eigen/Core>
 #include <utility>
 #include <vector>
+#include "base/progress.h"
 #include "math/tensor/matrix_product.h"
 
 namespace velour {
+
+// Dense tensors: non-owning views and owning tensors.
 
 // Row-major matrices, the layout of tensors and images.
 
@@ -85,5 +88,16 @@ class Unfolding {
   Index rows_, columns_ = 1, row_stride_, column_stride_ = 1;
   std::vector<Index> first_;
 };
+
+// Products of tensors with matrices.
+
+/// view x_mode matrix: multiplies every column of the mode's unfolding by `matrix`, which has a column per index of the
+/// mode. The result is row-major and bit-identical for any number of threads.
+DenseTensor mode_product(const TensorView& view, size_t mode, const RowMatrix& matrix, int threads,
+                         const Progress& progress);
+
+/// The unfolding times its transpose, in double: inner products of all pairs of slices of the mode. Bit-identical for
+/// any number of threads.
+Eigen::MatrixXd slice_products(const TensorView& view, size_t mode, int threads, const Progress& progress);
 
 }  // namespace velour

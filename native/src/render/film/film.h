@@ -8,8 +8,7 @@
 #include <span>
 #include <string_view>
 #include <vector>
-#include "denoise/halves.h"
-#include "render/film/camera_sample.h"
+#include "denoise/denoiser.h"
 #include "render/film/pass_layout.h"
 #include "render/options.h"
 

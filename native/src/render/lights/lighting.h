@@ -4,10 +4,11 @@
 
 #include <span>
 #include <vector>
-
 #include "light/environment.h"
 #include "render/lights/area_light.h"
 #include "render/lights/emissive_meshes.h"
+#include "render/path/path_numbers.h"
+#include "render/path/vertex.h"
 #include "scene/scene.h"
 
 namespace velour {
@@ -83,5 +84,22 @@ class Lighting {
   size_t sharp_suns_ = 0;
   LightTree sharp_near_;  // delta lights except suns
 };
+
+// Delta lights, which no sampled direction can hit, at one vertex.
+
+/// Light of a delta light that is above both the shading horizon and the surface; ignores shadows.
+struct SharpLight {
+  const Lamp* lamp;
+  float distance;
+  Vec3 wl, wl_world;
+  Rgb irradiance;  // perpendicular, divided by the selection probability
+};
+
+inline constexpr size_t kMaxDeltaLights = 64;
+
+/// Finds each delta light once if `found` has room for all (up to kMaxDeltaLights), otherwise as many as it has room
+/// for, sampled by contribution (Lighting::sharp_view). Returns the number of lights in `found`: those that illuminate
+/// the vertex.
+int find_sharp_light(const Lighting& lighting, const Vertex& vertex, PathNumbers& numbers, std::span<SharpLight> found);
 
 }  // namespace velour

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include "image/half_image.h"
+#include "image/texels.h"
 
 namespace velour {
 

@@ -7,7 +7,6 @@
 #include "btf/measure/btf_measurement.h"
 #include "model/model.h"
 #include "usage/scene_domain.h"
-#include "usage/view_weights.h"
 
 namespace velour {
 
@@ -26,7 +25,7 @@ SeenPairs pairs_around(const PairLayout& layout, const ViewWeights& seen);
 bool has_lower_side(const PairLayout& layout);
 
 /// The given pairs of `fine` (complete) at mip level `halvings`: values and structure are means over the areas that its
-/// texels cover (half_image.h). Reads from `fine` image by image on demand; `fine` must outlive the result. Keeps the
+/// texels cover (half_image). Reads from `fine` image by image on demand; `fine` must outlive the result. Keeps the
 /// provenance of `fine`; values that are not finite stay so.
 std::unique_ptr<const BtfMeasurement> scene_btf(const BtfMeasurement& fine, uint32_t halvings, SeenPairs pairs);
 

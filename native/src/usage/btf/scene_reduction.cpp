@@ -1,13 +1,242 @@
 #include "usage/btf/scene_reduction.h"
 
+#include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <map>
+#include <numeric>
+
 #include "base/error.h"
+#include "base/parallel.h"
+#include "btf/fit/btf_compare.h"
+#include "btf/fit/btf_fit.h"
+#include "image/picture.h"
+#include "math/sphere/frame.h"
 #include "usage/btf/scene_btf.h"
-#include "usage/btf/scene_refit.h"
 
 namespace velour {
+
+namespace {
+
+/// Number of times `grid` must be halved to have `width` texels.
+uint32_t halvings_to(const TexelGrid& grid, uint32_t width) {
+  uint32_t halvings = 0;
+  for (uint32_t w = grid.width; w > width; w /= 2) ++halvings;
+  return halvings;
+}
+
+/// The squared relative error, from the product of the errors a - b of two independent halves.
+double relmse(const std::array<std::vector<float>, 2>& a, const std::array<const std::vector<float>*, 2>& b) {
+  const size_t count = a[0].size();
+  double error = 0;
+  for (size_t c = 0; c < 3; ++c) {
+    double mean = 0;
+    for (size_t i = c; i < count; i += 3) mean += 0.5 * (static_cast<double>((*b[0])[i]) + (*b[1])[i]);
+    mean *= 3 / static_cast<double>(count);
+    for (size_t i = c; i < count; i += 3) {
+      const double first = static_cast<double>(a[0][i]) - (*b[0])[i],
+                   second = static_cast<double>(a[1][i]) - (*b[1])[i];
+      const double y = 0.5 * (static_cast<double>((*b[0])[i]) + (*b[1])[i]);
+      if (y != 0 || mean != 0) error += first * second / (y * y + relmse_floor(mean));
+    }
+  }
+  return error / static_cast<double>(count);
+}
+
+}  // namespace
+
+SeenPictures::SeenPictures(const BtfMeasurement& truth, const SceneObservation& observation, const Progress& progress)
+    : truth_(truth), between_(truth.layout()) {
+  const bool two_sided = has_lower_side(truth.layout());
+  for (const ObservedHit& hit : observation.hits) {
+    if (pictures_.size() == kPictures) return;
+    const bool mirrored = hit.back && two_sided;
+    Picture picture{mirrored ? velour::mirrored(hit.wv) : hit.wv,
+                    {half_of_hit(hit, false, observation, mirrored), half_of_hit(hit, true, observation, mirrored)}};
+    if (!between_.view(picture.wv) || picture.half[0].light.empty() || picture.half[1].light.empty()) continue;
+    for (Half& half : picture.half) half.radiance = true_radiance(picture.wv, half, progress);
+    pictures_.push_back(std::move(picture));
+  }
+}
+
+SeenPictures::Half SeenPictures::half_of_hit(const ObservedHit& hit, bool second, const SceneObservation& observation,
+                                             bool mirrored) const {
+  Half half;
+  for (uint32_t i = second ? hit.middle : hit.first; i < (second ? hit.last : hit.middle); ++i) {
+    const Vec3 wl = mirrored ? velour::mirrored(observation.wl[i]) : observation.wl[i];
+    const float amount = luminance(observation.light[i]);
+    if (amount > 0 && between_.light(wl)) half.light.push_back({wl, amount});
+  }
+  return half;
+}
+
+std::vector<float> SeenPictures::true_radiance(const Vec3& wv, const Half& half, const Progress& progress) const {
+  std::map<uint64_t, float> pairs;  // weight of each pair
+  const auto views = between_.view(wv);
+  for (const Light& light : half.light) {
+    const auto lights = between_.light(light.wl);
+    for (size_t v = 0; v < 3; ++v) {
+      for (size_t l = 0; l < 3; ++l) {
+        const float weight = light.amount * views->weight[v] * lights->weight[l];
+        if (weight > 0) pairs[truth_.layout().first(views->index[v]) + lights->index[l]] += weight;
+      }
+    }
+  }
+  std::vector<HalfBits> halves(truth_.grid().texels() * 3);
+  std::vector<float> rgb(halves.size()), sum(halves.size(), 0.0f);
+  for (const auto& [pair, weight] : pairs) {
+    progress.check();
+    truth_.read_pairs(pair, 1, halves);
+    halves_to_floats(halves, rgb);
+    for (size_t i = 0; i < sum.size(); ++i) sum[i] += weight * rgb[i];
+  }
+  return halved_image(std::move(sum), truth_.grid(), 3, 1);
+}
+
+std::vector<float> SeenPictures::picture_of(const BtfImages& images, const TexelGrid& grid, const Vec3& wv,
+                                            const Half& half, const Progress& progress) const {
+  std::vector<float> rgb, sum(grid.texels() * 3, 0.0f);
+  for (const Light& light : half.light) {
+    progress.check();
+    images({light.wl, wv}, rgb);
+    for (size_t i = 0; i < sum.size(); ++i) sum[i] += light.amount * rgb[i];
+  }
+  return halved_image(std::move(sum), grid, 3, halvings_to(grid, truth_.grid().width) + 1);
+}
+
+double SeenPictures::error(const ModelBody& body, const Progress& progress) const {
+  const BtfImages images = images_of(body);
+  const TexelGrid grid = with_btf(body, [](const auto& btf) { return btf.grid; });
+  std::vector<double> errors(pictures_.size());
+  tbb::parallel_for(size_t{0}, pictures_.size(), [&](size_t p) {
+    const Picture& picture = pictures_[p];
+    const auto& [one, other] = picture.half;
+    errors[p] = relmse(
+        {picture_of(images, grid, picture.wv, one, progress), picture_of(images, grid, picture.wv, other, progress)},
+        {&one.radiance, &other.radiance});
+  });
+  return std::max(0.0, std::accumulate(errors.begin(), errors.end(), 0.0) / static_cast<double>(errors.size()));
+}
+
+namespace {
+
+constexpr uint64_t kMaxReduction = 64;  // smallest model tried: the full model's bytes over this
+constexpr double kRefitSetup = 0.3;     // fraction of the progress
+constexpr size_t kJudgedSize = 15;      // size at which the relief and the plane are compared
+constexpr int kMaxRefitTrials = 9;      // trials of least_size: doublings from the smallest model on, and two more
+
+CompressMethod method_of(const ModelBody& full) {
+  const auto* factored = std::get_if<FactoredBtf>(&full);
+  if (!factored) return CompressMethod::srbf;
+  return factored->by_view() ? CompressMethod::svd_view : CompressMethod::svd;
+}
+
+size_t levels_in(const FactoredBtf& btf) { return btf.levels.size(); }
+template <typename Btf>
+size_t levels_in(const Btf& btf) {
+  return btf.sides.at(0).levels.size();
+}
+size_t levels_of(const ModelBody& body) {
+  return with_btf(body, [](const auto& btf) { return levels_in(btf); });
+}
+
+class Refit {
+ public:
+  Refit(const BtfMeasurement& seen, const ModelBody& full, const CompressOptions& options, Progress& progress)
+      : seen_(seen),
+        full_(full),
+        options_(options),
+        progress_(progress),
+        arena_(arena_concurrency(options.threads)),
+        pictures_(seen, *options.for_scene, progress) {
+    options_.companding = with_btf(full, [](const auto& btf) { return btf.companding; });
+    options_.tolerance = 0;
+    options_.method = method_of(full);
+  }
+
+  /// A refit that is better than `levels`, if there is one.
+  std::optional<SceneRefit> best(const ModelBody& levels) {
+    if (pictures_.empty()) return std::nullopt;
+    full_error_ = error(full_);
+    if (!std::isfinite(full_error_)) return std::nullopt;  // the BTF has entries that are not finite
+    auto fitter = fitter_within(parameter_bytes(levels));
+    if (!fitter) return std::nullopt;
+    if (options_.method == CompressMethod::srbf && seen_.has_structure()) fitter = better_of(std::move(fitter));
+    least_size(fitter->largest() + 1, [&](size_t size) { return is_good(*fitter, size); });
+    if (good_) return std::move(good_);
+    return last_ && last_->error < error(levels) ? std::move(last_) : std::nullopt;
+  }
+
+ private:
+  double error(const ModelBody& body) {
+    return arena_.execute([&] { return pictures_.error(body, progress_); });
+  }
+
+  /// Chooses between the relief and the plane by a fit of a fixed size, whatever size is requested. The relief's
+  /// heights are as coarse as the texels, and for views that lie close together some tiles look better as a plane.
+  std::unique_ptr<BtfFitter> better_of(std::unique_ptr<BtfFitter> over_relief) {
+    const double begin = done_;
+    done_ = kRefitSetup;
+    const Progress::Span setups(progress_, begin, done_);
+    const size_t size = std::min(kJudgedSize, over_relief->largest());
+    const double with_relief = error(over_relief->fit(size));
+    options_.relief = false;
+    auto on_plane = fitter_within(options_.bytes);
+    if (on_plane && error(on_plane->fit(size)) < with_relief) return on_plane;
+    options_.relief = true;
+    return over_relief;
+  }
+
+  /// Null if so few bytes do not hold a model.
+  std::unique_ptr<BtfFitter> fitter_within(uint64_t bytes) {
+    options_.bytes = bytes;
+    const Progress::Span setup(progress_, 0, kRefitSetup / 3);
+    try {
+      return make_fitter(seen_, options_, none_, progress_);
+    } catch (const Error& refused) {
+      if (refused.status() == Status::invalid_argument) return nullptr;
+      throw;
+    }
+  }
+
+  /// Fits this size unless it is below the smallest one tried. Keeps the smallest good fit, otherwise the largest.
+  bool is_good(BtfFitter& fitter, size_t size) {
+    if (fitter.curve().points[size].parameter_bytes < parameter_bytes(full_) / kMaxReduction) return false;
+    const double begin = done_;
+    done_ = std::min(1.0, begin + (1 - kRefitSetup) / kMaxRefitTrials);
+    const Progress::Span trial(progress_, begin, done_);
+    SceneRefit refit{fitter.fit(size), 0, full_error_};
+    refit.error = error(refit.body);
+    const bool good = refit.error <= kMoreError * full_error_;
+    (good ? good_ : last_) = std::move(refit);
+    return good;
+  }
+
+  const BtfMeasurement& seen_;
+  const ModelBody& full_;
+  CompressOptions options_;
+  Progress& progress_;
+  FitCheckpoint none_;
+  double done_ = kRefitSetup / 3;  // fraction of the progress
+  double full_error_ = 0;
+  std::optional<SceneRefit> good_, last_;
+  tbb::task_arena arena_;
+  const SeenPictures pictures_;
+};
+
+}  // namespace
+
+std::optional<SceneRefit> refit_for_scene(const BtfMeasurement& measurement, const ModelBody& full,
+                                          const ModelBody& levels, const CompressOptions& options, Progress& progress) {
+  if (std::holds_alternative<TensorBtf>(full)) return std::nullopt;
+  const auto halvings = static_cast<uint32_t>(levels_of(full) - levels_of(levels));
+  SeenPairs pairs = pairs_around(measurement.layout(), options.for_scene->domain.directions());
+  if (pairs.views.empty() || pairs.lights.empty()) return std::nullopt;
+  const auto seen = scene_btf(measurement, halvings, std::move(pairs));
+  return Refit(*seen, full, options, progress).best(levels);
+}
 
 namespace {
 

@@ -9,11 +9,10 @@
 #include "base/parallel.h"
 #include "material/material.h"
 #include "math/sphere/directions.h"
+#include "render/path/vertex.h"
 #include "render/preparation.h"
-#include "render/vertex.h"
-#include "usage/observation_hash.h"
-#include "usage/observe/hit_light.h"
-#include "usage/observe/view_tracer.h"
+#include "usage/observation.h"
+#include "usage/observe/hits.h"
 
 namespace velour {
 

@@ -8,7 +8,6 @@
 #include "base/warning.h"
 #include "capture/btf/repeated_tile.h"
 #include "votf/eval/occlusion_volume.h"
-#include "votf/eval/visibility_mask.h"
 
 namespace velour {
 

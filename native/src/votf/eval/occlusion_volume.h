@@ -1,8 +1,10 @@
-// VOTF volume: which points of the shell over a surface are solid.
+// VOTF volume: which points of the shell over a surface are solid, and which texels are occluded in a view.
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <vector>
+#include "math/sphere/vec.h"
 
 namespace velour {
 
@@ -40,5 +42,60 @@ struct VotfErrors {
 
 /// Byte that encodes a distance, given as a share of the reach.
 uint8_t distance_byte(float share);
+
+// Look-up of distances in a shell.
+
+/// The data of a volume that the look-up kernels need.
+struct ShellTable {
+  const uint8_t* column;          // [y][x][z], y and x one longer (periodic); readable for 4 bytes from each point
+  uint32_t width, height, depth;  // points
+  uint32_t row;                   // points between consecutive y
+  float bottom, top, pitch;       // tile widths
+  float per_step;                 // points along z per tile width
+  float per_aspect;               // periods along y per tile width
+  float unit;                     // tile widths per unit of the bytes
+};
+
+/// Immutable, thread-safe.
+class ShellField {
+ public:
+  explicit ShellField(std::shared_ptr<const VotfVolume> volume);
+
+  const VotfVolume& volume() const { return *volume_; }
+  const ShellTable& table() const { return table_; }
+  /// Signed distance at `q` in tile widths, trilinear; x and y repeat, z is clamped to the volume.
+  float distance(const Vec3& q) const;
+  /// Gradient of the distance: the outward normal near the surface, not normalized.
+  Vec3 gradient(const Vec3& q) const;
+
+ private:
+  std::shared_ptr<const VotfVolume> volume_;
+  std::vector<uint8_t> column_;  // the points of a column, along z, are contiguous
+  ShellTable table_;
+};
+
+// Texels of a tile that are occluded in a view.
+
+/// Texels over one period of a tile, [row][column]; row 0 is at y = 0.
+struct TileTexels {
+  uint32_t width, height;
+  float aspect;  // height / width of the tile
+
+  size_t size() const { return size_t{width} * height; }
+  /// Center of a texel, in tile widths.
+  Vec2 center(uint32_t x, uint32_t y) const {
+    return {(static_cast<float>(x) + 0.5f) / static_cast<float>(width),
+            (static_cast<float>(y) + 0.5f) / static_cast<float>(height) * aspect};
+  }
+  Vec2 center(size_t texel) const {
+    return center(static_cast<uint32_t>(texel % width), static_cast<uint32_t>(texel / width));
+  }
+};
+
+/// View `i` for validating a volume: uniform in solid angle up to 75 degrees.
+Vec3 check_view(uint64_t seed, uint32_t i);
+
+/// V at the texel centers for a view: 1 where the line through the center along `wv` meets the structure.
+std::vector<uint8_t> visibility_mask(const ShellField& field, const TileTexels& texels, const Vec3& wv);
 
 }  // namespace velour

@@ -1,5 +1,5 @@
 // Highway compiles this file once for each instruction set.
-#include "votf/eval/shell_depth.h"
+#include "votf/eval/shell_trace.h"
 
 #include <algorithm>
 #include <cmath>

@@ -9,7 +9,7 @@
 
 #include <hwy/highway.h>
 
-#include "votf/eval/shell_field.h"
+#include "votf/eval/occlusion_volume.h"
 #include "votf/eval/shell_trace.h"
 
 HWY_BEFORE_NAMESPACE();

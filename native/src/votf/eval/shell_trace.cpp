@@ -5,8 +5,6 @@
 #include <limits>
 #include <vector>
 
-#include "votf/eval/shell_kernels.h"
-
 namespace velour {
 namespace {
 

@@ -1,10 +1,9 @@
-// Rays through the shell of a curved surface.
+// Rays through the shell of a curved surface, and their depth within the structure.
 #pragma once
 
 #include <cstdint>
 #include <span>
-
-#include "votf/eval/shell_field.h"
+#include "votf/eval/occlusion_volume.h"
 
 namespace velour {
 
@@ -86,5 +85,37 @@ ShellWay line_through(const VotfVolume& volume, const Vec2& place, const Vec3& w
 /// V of points: 1 where the line through one of `places` along `w` meets the structure, otherwise 0.
 void lines_meet(const ShellField& field, std::span<const Vec2> places, const Vec3& w, uint8_t* meets);
 bool line_meets(const ShellField& field, const Vec2& place, const Vec3& w);
+
+// Vectorized look-ups and ray marching in a shell.
+
+/// ShellField::distance at each of `places`.
+void shell_distances(const ShellTable& table, std::span<const Vec3> places, float* distance);
+
+/// trace_shells() for at most kWaysTogether ways.
+inline constexpr size_t kWaysTogether = 256;
+void march_shells(const ShellTable& table, std::span<const ShellWay> ways, ShellHit* hits);
+
+/// Implementation of ShellRay::at.
+Vec3 place_on_ray(const ShellRay& ray, float s);
+
+// Depth of rays within a structure.
+
+struct ShellDepth {
+  float depth;  // tile widths; negative: distance outside
+  float s;      // meters past the crossing
+};
+
+/// Deepest point of a way between `from`, meters past the crossing, and its end, sampled a pitch apart or at
+/// kMaxDepthLooks points, whichever is coarser. Stops once the depth reaches `most`.
+ShellDepth deepest_behind(const ShellField& field, const ShellWay& way, float from, float most);
+
+inline constexpr int kMaxDepthLooks = 256;
+
+/// Silhouette of the structure beside a ray, relative to the point where the ray hits the structure.
+struct ShellOutline {
+  float depth;   // maximum depth within the structure past that point, tile widths; not below `most`: no silhouette
+  Vec3 outside;  // tile, unit: toward the nearest outside, perpendicular to the ray; zero if there is none
+};
+ShellOutline outline_beside(const ShellField& field, const ShellWay& way, float s, float most);
 
 }  // namespace velour

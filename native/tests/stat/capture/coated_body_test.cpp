@@ -6,7 +6,6 @@
 #include <cmath>
 
 #include "capture/goniometer/goniometer.h"
-#include "capture/goniometer/microsurface_brdf.h"
 #include "math/sphere/directions.h"
 
 namespace velour {

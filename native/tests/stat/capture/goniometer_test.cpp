@@ -6,7 +6,6 @@
 #include <cmath>
 #include <functional>
 
-#include "capture/goniometer/microsurface_brdf.h"
 #include "support/beckmann.h"
 #include "support/statistics.h"
 

@@ -2,7 +2,6 @@
 #include "light/environment.h"
 #include "math/sphere/directions.h"
 #include "math/sphere/random.h"
-#include "math/sphere/sobol.h"
 #include "support/sampler_proof.h"
 
 namespace velour {

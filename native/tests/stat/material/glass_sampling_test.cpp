@@ -1,5 +1,5 @@
 // Samplers of glass, translucency, clear coat and sheen against their densities over the whole sphere.
-#include "material/glass_material.h"
+#include "material/bsdf_materials.h"
 #include "material/normal_map.h"
 #include "material/principled/principled_material.h"
 #include "material/shader_layers.h"

@@ -1,9 +1,9 @@
 // The sampler of parametric models against the density that it claims: all angles of the view, all widths of the
 // highlight.
 #include "brdf/eval/parametric_material.h"
-#include "brdf/eval/parametric_values.h"
+#include "brdf/eval/parametric_table.h"
 #include "math/sphere/random.h"
-#include "math/srbf/plain_draws.h"
+#include "math/srbf/warped_mixture.h"
 #include "support/parametric_models.h"
 #include "support/statistics.h"
 #include "support/warped_sampler.h"

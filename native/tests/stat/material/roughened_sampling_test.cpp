@@ -1,6 +1,6 @@
 // Models with wider lobes are sampled as exactly as any: their samples follow the density that they claim.
-#include "math/srbf/widened_lobe.h"
-#include "model/model_material.h"
+#include "math/srbf/kernel.h"
+#include "model/model.h"
 #include "model/roughened_model.h"
 #include "support/parametric_models.h"
 #include "support/warped_sampler.h"

@@ -1,9 +1,8 @@
 // Mixed materials and the lobes of single nodes: samples against their density.
 #include "brdf/eval/parametric_material.h"
-#include "material/glossy_material.h"
+#include "material/bsdf_materials.h"
 #include "material/normal_map.h"
 #include "material/principled/principled_material.h"
-#include "material/rough_diffuse_material.h"
 #include "material/shader_layers.h"
 #include "math/sphere/quadrature.h"
 #include "math/sphere/random.h"

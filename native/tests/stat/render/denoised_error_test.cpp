@@ -7,7 +7,7 @@
 #include "base/error.h"
 #include "denoise/denoiser.h"
 #include "image/picture.h"
-#include "render/denoised_target.h"
+#include "render/film/noise_target.h"
 #include "support/level.h"
 #include "support/proof_scenes.h"
 #include "support/test_scene.h"

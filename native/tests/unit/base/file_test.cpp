@@ -11,7 +11,6 @@
 #include <csignal>
 #include <fstream>
 
-#include "base/atomic_file.h"
 #include "base/byte_reader.h"
 #include "base/error.h"
 #include "support/test_data.h"

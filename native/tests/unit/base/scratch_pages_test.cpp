@@ -1,5 +1,5 @@
 // Memory that may lie in a file.
-#include "base/scratch_pages.h"
+#include "base/memory.h"
 
 #include <gtest/gtest.h>
 

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "btf/measure/held_out_pairs.h"
+#include "btf/measure/pair_layout.h"
 #include "support/captured.h"
 
 namespace velour {

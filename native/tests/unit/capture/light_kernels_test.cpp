@@ -1,4 +1,4 @@
-#include "capture/btf/light_kernels.h"
+#include "capture/btf/view_capture.h"
 
 #include <gtest/gtest.h>
 

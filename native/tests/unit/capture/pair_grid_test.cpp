@@ -1,4 +1,4 @@
-#include "capture/goniometer/pair_grid.h"
+#include "capture/goniometer/bins.h"
 
 #include <gtest/gtest.h>
 

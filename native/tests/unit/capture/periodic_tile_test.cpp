@@ -1,4 +1,4 @@
-#include "capture/goniometer/periodic_tile.h"
+#include "capture/goniometer/height_field.h"
 
 #include <gtest/gtest.h>
 

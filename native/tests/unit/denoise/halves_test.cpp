@@ -1,6 +1,6 @@
 // The error that two halves tell of a denoised picture, with a filter whose true error is known: the mean over
 // neighbors.
-#include "denoise/halves.h"
+#include "denoise/denoiser.h"
 
 #include <gtest/gtest.h>
 

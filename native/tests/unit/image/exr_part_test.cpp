@@ -1,5 +1,5 @@
 // Parts of pictures as OpenEXR files: where they lie, and what their headers say.
-#include "image/formats/exr_part.h"
+#include "image/formats/exr_picture.h"
 
 #include <gtest/gtest.h>
 

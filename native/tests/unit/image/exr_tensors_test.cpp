@@ -16,7 +16,7 @@
 
 #include "base/error.h"
 #include "image/formats/exr_scan.h"
-#include "image/tensors/tensor_pixels.h"
+#include "image/tensors/tensor_pack.h"
 
 namespace velour {
 namespace {

@@ -1,4 +1,4 @@
-#include "image/flip/flip.h"
+#include "image/flip.h"
 
 #include <gtest/gtest.h>
 

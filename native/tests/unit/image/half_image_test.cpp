@@ -1,4 +1,4 @@
-#include "image/half_image.h"
+#include "image/texels.h"
 
 #include <gtest/gtest.h>
 

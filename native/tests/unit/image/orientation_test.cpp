@@ -5,9 +5,8 @@
 
 #include "base/error.h"
 #include "base/file.h"
-#include "image/orientation.h"
+#include "image/open_picture.h"
 #include "image/picture.h"
-#include "image/picture_format.h"
 #include "support/inputs.h"
 #include "support/test_data.h"
 

@@ -9,7 +9,6 @@
 #include <nlohmann/json.hpp>
 
 #include "base/error.h"
-#include "image/tensors/zlib_stream.h"
 #include "math/sphere/random.h"
 
 namespace velour {

@@ -1,5 +1,5 @@
 // The kernels of the sky's fit against a scalar reference in double, on every instruction set.
-#include "light/environment_kernels.h"
+#include "light/environment_fit.h"
 
 #include <cmath>
 
@@ -47,7 +47,7 @@ double kernel(const EnvironmentPoints& p, size_t i, const Vec3d& center, float b
 
 Vec3d center_of(const EnvironmentLobes& l, size_t k) { return {l.x[k], l.y[k], l.z[k]}; }
 
-/// As environment_kernels.h defines the moments.
+/// As environment_fit.h defines the moments.
 std::vector<EnvironmentMoments> reference(const EnvironmentPoints& p, size_t first, const EnvironmentLobes& l) {
   std::vector<EnvironmentMoments> moments(l.size());
   for (size_t i = first; i < std::min(first + kEnvironmentBlock, p.size()); ++i) {

@@ -7,11 +7,10 @@
 
 #include "brdf/eval/parametric_material.h"
 #include "btf/eval/factored_material.h"
-#include "material/glossy_material.h"
+#include "material/bsdf_materials.h"
 #include "material/microfacet/ggx_sampler.h"
 #include "material/normal_map.h"
 #include "material/principled/principled_material.h"
-#include "material/rough_diffuse_material.h"
 #include "material/shader_layers.h"
 #include "math/sphere/random.h"
 #include "math/sphere/warp.h"

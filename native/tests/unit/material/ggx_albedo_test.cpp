@@ -1,8 +1,7 @@
-#include "material/microfacet/ggx_albedo.h"
+#include "material/microfacet/ggx.h"
 
 #include <gtest/gtest.h>
 
-#include "material/microfacet/ggx.h"
 #include "material/microfacet/ggx_sampler.h"
 
 namespace velour {

@@ -1,9 +1,9 @@
 // Glass: energy, reciprocity, lobes without width, and what mixes and normal maps make of them.
-#include "material/glass_material.h"
+#include "material/bsdf_materials.h"
 
 #include <gtest/gtest.h>
 
-#include "material/microfacet/ggx_albedo.h"
+#include "material/microfacet/ggx.h"
 #include "material/principled/principled_material.h"
 #include "material/shader_layers.h"
 #include "math/sphere/frame.h"

@@ -1,4 +1,4 @@
-#include "brdf/eval/parametric_nodes.h"
+#include "brdf/eval/parametric_table.h"
 
 #include <gtest/gtest.h>
 

@@ -3,10 +3,9 @@
 
 #include <gtest/gtest.h>
 
-#include "material/glossy_material.h"
+#include "material/bsdf_materials.h"
 #include "material/normal_map.h"
 #include "material/principled/principled_material.h"
-#include "material/rough_diffuse_material.h"
 #include "material/shader_layers.h"
 #include "math/sphere/random.h"
 #include "support/materials.h"

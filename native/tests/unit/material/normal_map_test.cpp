@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "material/glossy_material.h"
+#include "material/bsdf_materials.h"
 #include "material/principled/principled_material.h"
 #include "math/sphere/frame.h"
 #include "math/sphere/random.h"

@@ -3,10 +3,9 @@
 #include <gtest/gtest.h>
 
 #include "brdf/eval/parametric_material.h"
-#include "brdf/eval/parametric_nodes.h"
 #include "math/sphere/directions.h"
 #include "math/sphere/random.h"
-#include "math/srbf/plain_draws.h"
+#include "math/srbf/warped_mixture.h"
 #include "support/materials.h"
 #include "support/parametric_models.h"
 #include "support/simd_targets.h"
@@ -81,7 +80,7 @@ TEST(ParametricTable, IsTheModelToAThousandth) {
   });
 }
 
-/// What f of the table lacks, as parametric_nodes.h measures it.
+/// What f of the table lacks, as parametric_table.h measures it.
 struct Lost {
   double albedo = 0, norm = 0, value = 0;
 

@@ -5,7 +5,7 @@
 #include <optional>
 #include <vector>
 
-#include "material/microfacet/ggx_albedo.h"
+#include "material/microfacet/ggx.h"
 #include "material/principled/principled_material.h"
 #include "math/sphere/directions.h"
 #include "support/simd_targets.h"

@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 
 #include "material/microfacet/ggx.h"
-#include "material/microfacet/ggx_albedo.h"
 #include "material/microfacet/ggx_sampler.h"
 #include "math/sphere/quadrature.h"
 #include "support/materials.h"

@@ -3,10 +3,9 @@
 
 #include <gtest/gtest.h>
 
-#include "material/glossy_material.h"
-#include "material/placed_material.h"
+#include "material/bsdf_materials.h"
+#include "material/derived_materials.h"
 #include "material/principled/principled_material.h"
-#include "material/rough_diffuse_material.h"
 #include "math/sphere/random.h"
 #include "support/albedo.h"
 #include "support/materials.h"

@@ -1,10 +1,10 @@
-#include "material/through_material.h"
+#include "material/derived_materials.h"
 
 #include <gtest/gtest.h>
 
 #include "btf/eval/measured_btf_material.h"
 #include "math/sphere/frame.h"
-#include "model/model_material.h"
+#include "model/model.h"
 #include "support/striped_btf.h"
 #include "support/through_btfs.h"
 

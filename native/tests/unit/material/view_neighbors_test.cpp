@@ -1,4 +1,4 @@
-#include "brdf/eval/view_neighbors.h"
+#include "brdf/eval/per_view_lobes.h"
 
 #include <gtest/gtest.h>
 

@@ -4,7 +4,7 @@
 
 #include "base/error.h"
 #include "image/tensors/exr_tensors.h"
-#include "model/model_file.h"
+#include "model/file/model_file.h"
 #include "support/warnings.h"
 #include "unit/model/example_model.h"
 #include "unit/model/refusals.h"

@@ -4,7 +4,7 @@
 #include "btf/model/factored_btf.h"
 #include "example_model.h"
 #include "math/sphere/random.h"
-#include "model/model_material.h"
+#include "model/model.h"
 #include "unit/model/refusals.h"
 
 namespace velour {

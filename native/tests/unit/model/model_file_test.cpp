@@ -1,4 +1,4 @@
-#include "model/model_file.h"
+#include "model/file/model_file.h"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 #include "base/file.h"
 #include "brdf/model/per_view_brdf.h"
 #include "example_model.h"
-#include "model/model_material.h"
+#include "model/model.h"
 #include "support/test_data.h"
 #include "support/warnings.h"
 

@@ -8,7 +8,7 @@
 
 #include "base/error.h"
 #include "image/tensors/exr_tensors.h"
-#include "model/model_file.h"
+#include "model/file/model_file.h"
 
 namespace velour::test {
 

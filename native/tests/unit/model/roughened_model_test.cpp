@@ -6,8 +6,8 @@
 #include <limits>
 
 #include "base/error.h"
-#include "model/model_file.h"
-#include "model/model_material.h"
+#include "model/file/model_file.h"
+#include "model/model.h"
 #include "support/albedo.h"
 #include "support/parametric_models.h"
 #include "support/proof_materials.h"

@@ -1,4 +1,4 @@
-#include "plot/axes.h"
+#include "plot/plot.h"
 
 #include <gtest/gtest.h>
 

@@ -3,9 +3,9 @@
 #include <gtest/gtest.h>
 
 #include "base/error.h"
-#include "plot/axes.h"
 #include "plot/font.h"
-#include "plot/raster.h"
+#include "plot/output.h"
+#include "plot/plot.h"
 
 namespace velour {
 namespace {

@@ -8,7 +8,7 @@
 
 #include "base/error.h"
 #include "brdf/fit/error/evaluate.h"
-#include "model/model_material.h"
+#include "model/model.h"
 #include "support/analytic_measurement.h"
 #include "support/example_srbf.h"
 #include "support/materials.h"

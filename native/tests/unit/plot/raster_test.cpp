@@ -1,11 +1,10 @@
-#include "plot/raster.h"
+#include "plot/output.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
 #include "plot/font.h"
-#include "plot/svg.h"
 
 namespace velour {
 namespace {

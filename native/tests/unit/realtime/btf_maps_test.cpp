@@ -1,4 +1,4 @@
-#include "realtime/btf_maps.h"
+#include "realtime/maps.h"
 
 #include <gtest/gtest.h>
 

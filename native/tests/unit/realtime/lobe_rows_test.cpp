@@ -7,7 +7,7 @@
 #include "base/error.h"
 #include "material/principled/principled_material.h"
 #include "math/sphere/directions.h"
-#include "model/model_material.h"
+#include "model/model.h"
 #include "realtime/light_map.h"
 #include "support/example_srbf.h"
 #include "support/parametric_models.h"

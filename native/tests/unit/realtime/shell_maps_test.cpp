@@ -1,10 +1,10 @@
-#include "realtime/votf_maps.h"
+#include "realtime/maps.h"
 
 #include <gtest/gtest.h>
 
 #include "base/error.h"
 #include "support/example_shell.h"
-#include "votf/eval/shell_field.h"
+#include "votf/eval/occlusion_volume.h"
 
 namespace velour {
 namespace {

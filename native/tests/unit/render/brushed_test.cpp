@@ -7,7 +7,7 @@
 
 #include "material/microfacet/ggx_sampler.h"
 #include "math/sphere/directions.h"
-#include "render/vertex.h"
+#include "render/path/vertex.h"
 #include "support/textured_scenes.h"
 
 namespace velour {

@@ -8,8 +8,8 @@
 #include "base/error.h"
 #include "material/principled/principled_material.h"
 #include "material/shader_layers.h"
-#include "render/footprint.h"
-#include "render/lights/emissive_group.h"
+#include "render/lights/emissive_meshes.h"
+#include "render/path/vertex.h"
 #include "support/textured_scenes.h"
 
 namespace velour {

@@ -5,8 +5,8 @@
 
 #include "base/error.h"
 #include "math/sphere/random.h"
-#include "render/path_numbers.h"
-#include "render/vertex.h"
+#include "render/path/path_numbers.h"
+#include "render/path/vertex.h"
 
 namespace velour {
 namespace {

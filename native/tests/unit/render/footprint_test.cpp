@@ -1,10 +1,9 @@
-#include "render/footprint.h"
+#include "render/path/vertex.h"
 
 #include <gtest/gtest.h>
 
 #include <optional>
 
-#include "render/vertex.h"
 #include "support/textured_scenes.h"
 
 namespace velour {

@@ -3,7 +3,7 @@
 
 #include <numbers>
 
-#include "material/glass_material.h"
+#include "material/bsdf_materials.h"
 #include "material/shader_layers.h"
 #include "support/test_scene.h"
 

@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "base/error.h"
-#include "material/glossy_material.h"
+#include "material/bsdf_materials.h"
 #include "support/test_scene.h"
 
 namespace velour {

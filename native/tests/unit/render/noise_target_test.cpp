@@ -1,4 +1,4 @@
-#include "render/noise_target.h"
+#include "render/film/noise_target.h"
 
 #include <gtest/gtest.h>
 
@@ -6,8 +6,8 @@
 
 #include <algorithm>
 
-#include "render/direction_sampling.h"
-#include "render/path_numbers.h"
+#include "render/path/direction_sampling.h"
+#include "render/path/path_numbers.h"
 #include "support/test_scene.h"
 
 namespace velour {

@@ -8,7 +8,7 @@
 #include "base/error.h"
 #include "btf/eval/factored_material.h"
 #include "material/principled/principled_material.h"
-#include "render/vertex.h"
+#include "render/path/vertex.h"
 #include "support/example_btf.h"
 #include "support/textured_scenes.h"
 

@@ -1,4 +1,4 @@
-#include "render/point_batch.h"
+#include "render/path/path_numbers.h"
 
 #include <gtest/gtest.h>
 

@@ -6,9 +6,9 @@
 #include <numeric>
 
 #include "material/shader_layers.h"
-#include "render/continuation.h"
+#include "render/path/direction_sampling.h"
 #include "support/observed_scenes.h"
-#include "usage/observation_hash.h"
+#include "usage/observation.h"
 
 namespace velour {
 namespace {

@@ -2,7 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "material/principled/principled_material.h"
-#include "render/vertex.h"
+#include "render/path/vertex.h"
 #include "support/test_scene.h"
 
 namespace velour {

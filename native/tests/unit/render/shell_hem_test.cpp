@@ -6,8 +6,8 @@
 
 #include "math/sphere/directions.h"
 #include "math/sphere/random.h"
-#include "render/shadow_queue.h"
-#include "render/vertex.h"
+#include "render/path/shadow_queue.h"
+#include "render/path/vertex.h"
 #include "support/example_shell.h"
 #include "support/test_scene.h"
 

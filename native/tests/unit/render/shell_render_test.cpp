@@ -2,13 +2,13 @@
 #include <gtest/gtest.h>
 
 #include "btf/eval/sided_btf_material.h"
-#include "image/bilinear_texels.h"
+#include "image/texels.h"
 #include "math/sphere/directions.h"
 #include "math/sphere/frame.h"
 #include "math/sphere/random.h"
-#include "render/shadow_queue.h"
-#include "render/shell_crossing.h"
-#include "render/vertex.h"
+#include "render/path/shadow_queue.h"
+#include "render/path/shell_crossing.h"
+#include "render/path/vertex.h"
 #include "support/example_shell.h"
 #include "support/test_scene.h"
 #include "support/warnings.h"

@@ -1,8 +1,7 @@
-#include "scene/mesh_arrays.h"
+#include "scene/mesh.h"
 
 #include <gtest/gtest.h>
 
-#include "scene/mesh.h"
 #include "support/textured_scenes.h"
 
 namespace velour {

@@ -11,7 +11,6 @@
 #include "scene/camera.h"
 #include "scene/embree_scene.h"
 #include "scene/mesh.h"
-#include "scene/shutter.h"
 #include "support/significance.h"
 
 namespace velour {

@@ -1,5 +1,5 @@
 // Wavefront OBJ as other programs write it, and polygons cut into triangles.
-#include "scene/obj_file.h"
+#include "scene/mesh_file.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "scene/ply_file.h"
+#include "scene/mesh_file.h"
 
 #include <gtest/gtest.h>
 
@@ -9,7 +9,6 @@
 #include <fstream>
 
 #include "base/error.h"
-#include "scene/mesh_file.h"
 #include "support/inputs.h"
 #include "support/test_data.h"
 

@@ -1,5 +1,5 @@
 // Files of observations: round trips, and files that lie, end early or were damaged.
-#include "usage/observation_file.h"
+#include "usage/observation.h"
 
 #include <gtest/gtest.h>
 
@@ -12,7 +12,6 @@
 #include "base/json_fields.h"
 #include "support/example_observation.h"
 #include "support/test_data.h"
-#include "usage/observation_hash.h"
 
 namespace velour {
 namespace {

@@ -4,7 +4,6 @@
 #include <gtest/gtest.h>
 
 #include "support/example_observation.h"
-#include "usage/observation_hash.h"
 
 namespace velour {
 namespace {

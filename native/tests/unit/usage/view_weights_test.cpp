@@ -1,5 +1,5 @@
 // From which directions a tile was seen.
-#include "usage/view_weights.h"
+#include "usage/scene_domain.h"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,6 @@
 
 #include "math/sphere/directions.h"
 #include "usage/observation.h"
-#include "usage/scene_domain.h"
 
 namespace velour {
 namespace {

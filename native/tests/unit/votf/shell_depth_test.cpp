@@ -1,4 +1,4 @@
-#include "votf/eval/shell_depth.h"
+#include "votf/eval/shell_trace.h"
 
 #include <gtest/gtest.h>
 

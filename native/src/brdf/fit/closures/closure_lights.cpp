@@ -5,7 +5,7 @@
 #include <cmath>
 #include <utility>
 #include "math/sphere/directions.h"
-#include "math/sphere/sobol.h"
+#include "math/sphere/random.h"
 
 namespace velour {
 

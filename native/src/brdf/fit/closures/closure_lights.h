@@ -4,7 +4,7 @@
 #include <functional>
 #include <span>
 #include <vector>
-#include "base/aligned_array.h"
+#include "base/memory.h"
 #include "brdf/fit/direction_tree.h"
 #include "math/sphere/vec.h"
 

@@ -1,15 +1,55 @@
 // A BRDF as nodes of Blender: a Diffuse BSDF and up to three Glossy BSDFs whose colors and shapes are curves over the
-// view angle.
+// view angle; and the unknowns of its fit.
 #pragma once
 
 #include <array>
+#include <cstddef>
+#include <Eigen/Core>
 #include <vector>
-#include "base/aligned_array.h"
+#include "base/memory.h"
 #include "brdf/fit/closures/closure_lights.h"
-#include "brdf/fit/closures/lobe_columns.h"
 #include "math/sphere/vec.h"
 
 namespace velour {
+
+// A Glossy BSDF of Cycles with a tilted normal, and its derivatives, at all lights of a view. Formulas are those of
+// kernel/closure/bsdf_microfacet.h.
+
+enum class LobeDistribution { ggx, beckmann };
+
+/// Masking and shadowing of microfacets by Smith's function.
+enum class LobeMasking {
+  separable,          // G1(wv) G1(wl): Blender before 3.5
+  height_correlated,  // 1 / (1 + Lambda(wv) + Lambda(wl)): later versions
+};
+
+/// A lobe at a view in the x-z plane.
+struct ClosureLobeShape {
+  LobeDistribution distribution = LobeDistribution::ggx;
+  LobeMasking masking = LobeMasking::separable;
+  float alpha_x = 1, alpha_y = 1;  // along and across the plane of incidence
+  float tilt = 0;                  // radians; N' = (sin(tilt), 0, cos(tilt)); the viewer is in front of N'
+};
+
+// Arrays of floats are aligned to cache lines (AlignedArray).
+
+/// D G / (4 wv.N') (1/sr, without the cosine of the light) times root_weight, for each light; 0 behind N'.
+void fill_lobe(const ClosureLights& lights, const ClosureLobeShape& shape, float* value);
+
+/// Factors of the derivatives by log(alpha_x), log(alpha_y) and the tilt in those by three other parameters.
+struct LobeChain {
+  float alpha_x, alpha_y;      // parameter 0
+  float tilt;                  // parameter 1
+  float stretch_x, stretch_y;  // parameter 2
+};
+
+/// fill_lobe(), and its derivatives by the three parameters of `chain`. Rows of `out` are padded() apart.
+void fill_lobe_slopes(const ClosureLights& lights, const ClosureLobeShape& shape, const LobeChain& chain, float* out);
+
+/// Dot products of `rows` rows of `count` floats each, a multiple of 16: `gram` gets those of each pair (row-major,
+/// only j <= i is set), `moments` those with each of the four arrays of `fixed`.
+void fill_products(const float* data, int rows, size_t count, const float* const fixed[4], float* gram,
+                   float (*moments)[4]);
 
 /// Samples of a curve at theta_v = 90 degrees * i / (kClosureSamples - 1), linear between them.
 inline constexpr int kClosureSamples = 65;
@@ -45,5 +85,50 @@ AlignedArray<float> closure_values(const ClosureNetwork& network, LobeMasking ma
 float incoming_factor(float tilt, float theta_v);
 /// Anisotropy of a Glossy (or Anisotropic) BSDF whose tangent lies in the plane of incidence.
 float anisotropy_input(float anisotropy);
+
+// Unknowns of a fit of closures: values at knots in theta_v of a cubic spline, mapped smoothly to bounded parameters.
+
+inline constexpr int kClosureKnots = 10;
+/// Maximum number of unknowns per view: three roots of diffuse albedos, and of each lobe three roots of weights, alpha,
+/// tilt and anisotropy.
+inline constexpr int kMaxClosureLobes = 3, kMaxClosureUnknowns = 3 + 6 * kMaxClosureLobes;
+
+/// Polar angles of the knots (radians), from 0 to 89 degrees, denser at the limb.
+std::array<double, kClosureKnots> closure_knots();
+
+/// Factors of the values at the knots in the spline at `theta_v` (radians, held beyond the last knot). The spline has
+/// slope 0 at the first knot and no curvature at the last.
+Eigen::Matrix<double, kClosureKnots, 1> closure_taps(double theta_v);
+
+/// Range of the parameters of lobes; that of tilts is given by lowest_closure_tilt().
+struct ClosureBounds {
+  double min_alpha = 0.02;
+};
+
+/// Parameters of a lobe at a view and their derivatives by the unknowns. alpha e^|anisotropy| stays below 1.
+struct ClosureShape {
+  double alpha, tilt, anisotropy;           // tilt: relative to theta_v
+  double log_alpha_by_alpha, tilt_by_tilt;  // derivatives by the unknown named last
+  double anisotropy_by_alpha, anisotropy_by_anisotropy;
+};
+ClosureShape closure_shape(double alpha_unknown, double tilt_unknown, double anisotropy_unknown, double theta_v,
+                           const ClosureBounds& bounds);
+/// The unknown that closure_shape() maps to `alpha`, moved inside the bounds.
+double closure_alpha_unknown(double alpha, const ClosureBounds& bounds);
+/// The unknown that closure_shape() maps to the relative tilt `tilt` at `theta_v`, in (-1, 1) and moved inside.
+double closure_tilt_unknown(double tilt, double theta_v);
+
+/// The unknowns of a network: a column per unknown of a view, a row per knot. Trivial to copy; no heap memory.
+using ClosureUnknowns =
+    Eigen::Matrix<double, kClosureKnots, Eigen::Dynamic, Eigen::ColMajor, kClosureKnots, kMaxClosureUnknowns>;
+/// The unknowns at one view.
+using ViewUnknowns = Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, kMaxClosureUnknowns, 1>;
+
+/// First of the six unknowns of lobe `k`: roots of the three weights, then alpha, tilt and anisotropy.
+constexpr int lobe_unknown(int k) { return 3 + 6 * k; }
+
+/// The network of the unknowns, sampled at the angles of ClosureCurve.
+ClosureNetwork closure_network(const ClosureUnknowns& unknowns, const std::vector<LobeDistribution>& distributions,
+                               const ClosureBounds& bounds);
 
 }  // namespace velour

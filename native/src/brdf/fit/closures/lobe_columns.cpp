@@ -1,4 +1,4 @@
-#include "brdf/fit/closures/lobe_columns.h"
+#include "brdf/fit/closures/closures.h"
 
 #include <algorithm>
 #include <cmath>

@@ -17,7 +17,7 @@ struct GrowthOptions {
   ViewRange views;
   int max_lobes = 12;
   double tolerance = 0.02;  // relative L2 of every view up to 75 degrees; twice that beyond
-  bool seen_evenly = true;  // sample weights are solid angles alone (brdf/fit/parametric/problem.h)
+  bool seen_evenly = true;  // sample weights are solid angles alone (brdf/fit/parametric/solver.h)
   int threads = 0;
 };
 

@@ -4,7 +4,7 @@
 #include <chrono>
 
 #include "brdf/eval/parametric_material.h"
-#include "brdf/fit/error/albedo.h"
+#include "brdf/fit/error/evaluate.h"
 #include "brdf/fit/fit_input.h"
 #include "brdf/fit/fit_report.h"
 #include "brdf/fit/parametric/growth.h"

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "base/progress.h"
-#include "brdf/fit/options.h"
+#include "brdf/fit/fit_model.h"
 #include "brdf/fit/parametric/growth.h"
 #include "brdf/fit/slice_sampling.h"
 

@@ -1,4 +1,4 @@
-#include "brdf/fit/parametric/residual_sums.h"
+#include "brdf/fit/parametric/warped_columns.h"
 
 #include <algorithm>
 

@@ -1,8 +1,10 @@
-// Loops over the samples of a view for lobes with their own parameterization: columns and their derivatives. SIMD
-// through Highway with run-time dispatch; the other linear algebra is in brdf/fit/slice_columns.h.
+// Loops over the samples of a view: columns of lobes with their own parameterization and their derivatives, and sums
+// of the residual. SIMD through Highway with run-time dispatch; the other linear algebra is in
+// brdf/fit/slice_columns.h.
 #pragma once
 
 #include "brdf/fit/slice_columns.h"
+#include "brdf/fit/slice_sampling.h"
 #include "math/srbf/warped_lobe.h"
 
 namespace velour {
@@ -27,5 +29,16 @@ void fill_warped_slopes(const WarpedShape& shape, const Vec3d& wv, const SliceSa
 /// project() of brdf/fit/slice_columns.h for this shape, over every `stride`-th block of kPadding samples.
 Projection project_warped(const WarpedShape& shape, const Vec3d& wv, const SliceSamples& samples,
                           const float* const residual[3], size_t stride);
+
+// Sums over the samples of a view's residual. SIMD through Highway with run-time dispatch.
+
+/// Sums of the squares of a residual: of all, and of each sample's share. In float within a block, with the same number
+/// of lanes on every machine, then in double.
+struct ResidualSums {
+  double all = 0, shared = 0;
+};
+
+/// `residual` and `share` have the same length, a multiple of SliceSamples::kPadding.
+ResidualSums residual_sums(const AlignedFloats& residual, const AlignedFloats& share);
 
 }  // namespace velour

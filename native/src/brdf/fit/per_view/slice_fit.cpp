@@ -3,8 +3,256 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <Eigen/Cholesky>
+#include <Eigen/LU>
+
+#include "math/optimize/nnls.h"
 
 namespace velour {
+
+namespace {
+
+using Index = Eigen::Index;
+
+// Minimum sharpness: broader lobes are constant over the hemisphere, whatever their center.
+constexpr double kMinSharpness = 0.02;
+// Maximum ratio of the peak of a lobe to its largest visible value, if no sample is near its center.
+constexpr double kMaxPeakToSeen = 100;
+constexpr double kHole = 4;  // a point this many sample spacings from the nearest sample is in a hole
+// Column products are summed in float; a column below this share of its length is rounding.
+constexpr double kSliceRidge = 1e-7;
+// Maximum step of one refinement, in lobe widths and in log sharpness.
+constexpr double kMaxTurn = 1.0, kMaxLogStep = 1.0;
+
+Vec3d turned(const LobeShape& shape, double along_x, double along_y) {
+  const LobeTangents t = lobe_tangents(shape);
+  const double width = 1 / std::sqrt(shape.sharpness);
+  return glm::normalize(shape.center + width * (along_x * t.x + along_y * t.y));
+}
+
+}  // namespace
+
+SliceSolver::SliceSolver(Kernel kernel, const SliceSamples& samples, const Progress& progress)
+    : kernel_(kernel),
+      samples_(samples),
+      progress_(progress),
+      state_(samples.padded()),
+      trial_(samples.padded()),
+      derivatives_(samples.padded()),
+      cosine_(samples.padded()) {
+  for (size_t i = 0; i < samples.count(); ++i) cosine_[i] = samples.sqrt_weight()[i] * std::max(samples.z()[i], 0.0f);
+  solve(state_);
+}
+
+void SliceSolver::set_lobes(std::vector<LobeShape> shapes) {
+  state_.shapes = std::move(shapes);
+  solve(state_);
+}
+
+void SliceSolver::add_lobe(const LobeShape& shape) {
+  state_.shapes.push_back(shape);
+  solve(state_);
+}
+
+double SliceSolver::relative_l2() const {
+  const Eigen::Vector3d w(kLuminance);
+  const double error = std::max(0.0, w.dot(state_.residual_products * w));
+  if (samples_.luminance_energy() > 0) return std::sqrt(error / samples_.luminance_energy());
+  return error > 0 ? 1.0 : 0.0;
+}
+
+std::vector<SliceLobe> SliceSolver::lobes() const {
+  std::vector<SliceLobe> out;
+  for (int j = 0; j < count(); ++j) {
+    const auto peak = state_.peaks.row(j);
+    out.push_back({state_.shapes[static_cast<size_t>(j)], {peak[0], peak[1], peak[2]}});
+  }
+  return out;
+}
+
+Vec3d SliceSolver::diffuse() const {
+  const auto peak = state_.peaks.row(count());
+  return {peak[0], peak[1], peak[2]};
+}
+
+double SliceSolver::max_sharpness(const Vec3d& center) const {
+  const auto cx = static_cast<float>(center.x), cy = static_cast<float>(center.y), cz = static_cast<float>(center.z);
+  float nearest = -2, spacing = 1;
+  for (size_t i = 0; i < samples_.count(); ++i) {
+    const float t = samples_.x()[i] * cx + samples_.y()[i] * cy + samples_.z()[i] * cz;
+    if (t > nearest) nearest = t, spacing = samples_.sqrt_weight()[i];
+  }
+  const double half_width = 0.5 * std::clamp(static_cast<double>(spacing), 1e-4, 1.0);
+  const double s = std::sin(0.5 * half_width);
+  double limit = std::log(2.0) / (2 * s * s);
+  // Only the tail of a lobe below the horizon or in a hole of the data is visible: the peak of a sharp one would be
+  // unbounded.
+  const double to_nearest = 1 - static_cast<double>(nearest);
+  if (2 * to_nearest > kHole * kHole * spacing * spacing)
+    limit = std::min(limit, std::log(kMaxPeakToSeen) / to_nearest);
+  if (center.z >= 0) return limit;
+  const double cos_depth = std::sqrt(std::max(0.0, 1 - center.z * center.z));
+  return std::min(limit, std::log(kMaxPeakToSeen) / (1 - cos_depth));
+}
+
+/// Columns of the lobes, then of the cosine term.
+std::vector<const float*> SliceSolver::columns(const State& state) const {
+  auto out = state.values.first(state.shapes.size());
+  out.push_back(cosine_.data());
+  return out;
+}
+
+/// Computes peaks, residual and objective of the shapes.
+void SliceSolver::solve(State& state) const {
+  const size_t n = state.shapes.size(), padded = samples_.padded();
+  state.values.resize(n);
+  for (size_t j = 0; j < n; ++j) fill_value(kernel_, state.shapes[j], samples_, state.values[j]);
+  const auto all = columns(state);
+  Eigen::MatrixXd products, moments;
+  gram(all, padded, products);
+  const float* const targets[3] = {samples_.target(0), samples_.target(1), samples_.target(2)};
+  cross_gram(all, targets, padded, moments);
+  if (state.peaks.rows() != static_cast<Index>(n + 1))
+    state.peaks = Eigen::MatrixXd::Zero(static_cast<Index>(n + 1), 3);
+  for (int c = 0; c < 3; ++c) {
+    Eigen::VectorXd x = state.peaks.col(c);
+    solve_nnls(products, moments.col(c), kSliceRidge, x);
+    state.peaks.col(c) = x;
+  }
+  float* const residual[3] = {state.residual[0], state.residual[1], state.residual[2]};
+  subtract_columns(all, state.peaks, targets, padded, residual);
+  Eigen::MatrixXd residual_products;
+  gram(state.residual.first(3), padded, residual_products);
+  state.residual_products = residual_products;
+  state.objective = 0;
+  for (int c = 0; c < 3; ++c) state.objective += kLuminance[c] * residual_products(c, c);
+}
+
+/// Adds a channel to the normal equations, eliminating its positive peaks; peaks of 0 stay fixed.
+void SliceSolver::eliminate_peaks(const Eigen::MatrixXd& products, int channel, Step& step) const {
+  const Index n = count();
+  std::vector<Index> term, row;
+  for (Index j = 0; j <= n; ++j) {
+    if (!(state_.peaks(j, channel) > 0)) continue;
+    term.push_back(j);
+    for (Index a = 0; a < 3 && j < n; ++a) row.push_back(3 * j + a);
+  }
+  if (row.empty()) return;
+  std::vector<Index> derivative;
+  for (const Index r : row) derivative.push_back(n + 1 + r);
+  Eigen::MatrixXd values = products(term, term);
+  values.diagonal() *= 1 + kSliceRidge;
+  const Eigen::MatrixXd mixed = products(term, derivative);
+  const Eigen::MatrixXd own = products(derivative, derivative);
+  const Eigen::MatrixXd reduced = own - mixed.transpose() * values.ldlt().solve(mixed);
+  const double weight = kLuminance[channel];
+  for (size_t p = 0; p < row.size(); ++p) {
+    const double peak_p = weight * state_.peaks(row[p] / 3, channel);
+    step.scale[row[p]] +=
+        peak_p * state_.peaks(row[p] / 3, channel) * own(static_cast<Index>(p), static_cast<Index>(p));
+    for (size_t q = 0; q < row.size(); ++q) {
+      step.normal(row[p], row[q]) +=
+          peak_p * state_.peaks(row[q] / 3, channel) * reduced(static_cast<Index>(p), static_cast<Index>(q));
+    }
+  }
+}
+
+SliceSolver::Step SliceSolver::linearize() {
+  const size_t n = state_.shapes.size();
+  derivatives_.resize(3 * n);
+  for (size_t j = 0; j < n; ++j) {
+    fill_derivatives(kernel_, state_.shapes[j], samples_, derivatives_[3 * j], derivatives_[3 * j + 1],
+                     derivatives_[3 * j + 2]);
+  }
+  auto all = columns(state_);
+  const auto derivatives = derivatives_.first(3 * n);
+  all.insert(all.end(), derivatives.begin(), derivatives.end());
+  Eigen::MatrixXd products, slopes;
+  gram(all, samples_.padded(), products);
+  cross_gram(derivatives, state_.residual.first(3), samples_.padded(), slopes);
+
+  const auto unknowns = static_cast<Index>(3 * n);
+  Step step{Eigen::MatrixXd::Zero(unknowns, unknowns), Eigen::VectorXd::Zero(unknowns),
+            Eigen::VectorXd::Zero(unknowns)};
+  for (int c = 0; c < 3; ++c) {
+    eliminate_peaks(products, c, step);
+    for (Index r = 0; r < unknowns; ++r) {
+      step.slope[r] += kLuminance[c] * state_.peaks(r / 3, c) * slopes(r, c);
+    }
+  }
+  // Both tangents share one scale, so that the step does not depend on their rotation about the center.
+  for (Index j = 0; j < unknowns; j += 3) {
+    step.scale[j] = step.scale[j + 1] = 0.5 * (step.scale[j] + step.scale[j + 1]);
+  }
+  step.scale.array() += 1e-12 * step.scale.maxCoeff() + 1e-300;
+  return step;
+}
+
+std::vector<LobeShape> SliceSolver::moved(const Eigen::VectorXd& by) const {
+  std::vector<LobeShape> out = state_.shapes;
+  for (size_t j = 0; j < out.size(); ++j) {
+    const auto r = static_cast<Index>(3 * j);
+    const double turn = std::hypot(by[r], by[r + 1]);
+    const double shorten = turn > kMaxTurn ? kMaxTurn / turn : 1.0;
+    const double log_step = std::clamp(by[r + 2], -kMaxLogStep, kMaxLogStep);
+    const Vec3d center = turned(out[j], shorten * by[r], shorten * by[r + 1]);
+    const double sharpness = out[j].sharpness * std::exp(log_step);
+    out[j] = {center, std::max(kMinSharpness, std::min(sharpness, max_sharpness(center)))};
+  }
+  return out;
+}
+
+void SliceSolver::refine(int steps, double goal, double least_gain) {
+  double damping = 1e-2, growth = 2;
+  Step step;
+  bool fresh = false;
+  for (int k = 0; k < steps && count() > 0 && relative_l2() > goal; ++k) {
+    progress_.check();
+    if (!fresh) step = linearize();
+    fresh = true;
+    Eigen::MatrixXd damped = step.normal;
+    damped.diagonal() += damping * step.scale;
+    const Eigen::VectorXd by = damped.ldlt().solve(step.slope);
+    if (!by.allFinite()) return;
+    trial_.shapes = moved(by);
+    trial_.peaks = state_.peaks;
+    solve(trial_);
+    const double gain = state_.objective - trial_.objective;
+    if (!(gain > 0)) {
+      damping *= growth;
+      growth *= 2;
+      if (damping > 1e8) return;
+      continue;
+    }
+    const double promised = by.dot(step.slope) + damping * by.dot(step.scale.cwiseProduct(by));
+    const double ratio = promised > 0 ? gain / promised : 1.0;
+    // Nielsen's rule (1999): the damping depends on how well the linear model predicted the gain.
+    damping = std::max(1e-9, damping * std::max(1.0 / 3.0, 1.0 - std::pow(2.0 * ratio - 1.0, 3.0)));
+    growth = 2;
+    const bool slow = gain < least_gain * state_.objective;
+    std::swap(state_, trial_);
+    fresh = false;
+    if (slow) return;
+  }
+}
+
+int SliceSolver::least_important() const {
+  if (count() == 0) return -1;
+  Eigen::MatrixXd products;
+  gram(columns(state_), samples_.padded(), products);
+  products.diagonal() *= 1 + kSliceRidge;
+  const Eigen::MatrixXd inverse = products.inverse();
+  int least = 0;
+  double least_cost = std::numeric_limits<double>::infinity();
+  for (int j = 0; j < count(); ++j) {
+    double cost = 0;  // rise of E if lobe j is removed and the other peaks are solved for again
+    for (int c = 0; c < 3; ++c) {
+      cost += kLuminance[c] * state_.peaks(j, c) * state_.peaks(j, c) / std::max(inverse(j, j), 1e-300);
+    }
+    if (cost < least_cost) least_cost = cost, least = j;
+  }
+  return least;
+}
 
 namespace {
 

@@ -1,5 +1,5 @@
 // Highway compiles this file once for each instruction set.
-#include "btf/fit/srbf/row_products.h"
+#include "btf/fit/srbf/texel_solver.h"
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "btf/fit/srbf/row_products.cpp"

@@ -10,8 +10,7 @@
 #include "btf/fit/fitted_sides.h"
 #include "btf/fit/relief_pyramid.h"
 #include "btf/fit/srbf/lobe_order.h"
-#include "btf/fit/srbf/lobe_refinement.h"
-#include "btf/fit/srbf/texel_levels.h"
+#include "btf/fit/srbf/texel_solver.h"
 #include "btf/model/srbf_btf.h"
 
 namespace velour {

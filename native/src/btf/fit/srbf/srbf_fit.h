@@ -2,8 +2,7 @@
 #pragma once
 
 #include "btf/fit/btf_fitter.h"
-#include "btf/fit/color_axes.h"
-#include "btf/fit/fit_memory.h"
+#include "btf/fit/fitted_sides.h"
 #include "btf/fit/side_views.h"
 #include "btf/fit/srbf/lobe_order.h"
 #include "btf/measure/relief.h"

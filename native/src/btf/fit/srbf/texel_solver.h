@@ -1,14 +1,27 @@
-// Solver for the coefficients of all texels of a level with given lobes.
+// Solver for the coefficients of all texels with given lobes, level by level.
 #pragma once
 
+#include <cstdint>
 #include <functional>
-
 #include "btf/fit/byte_rounding.h"
+#include "btf/fit/fit_checkpoint.h"
 #include "btf/fit/side_views.h"
 #include "btf/fit/srbf/srbf_fit.h"
 #include "btf/measure/relief.h"
+#include "btf/model/srbf_btf.h"
 
 namespace velour {
+
+// Products of a small matrix, row by row, with three vectors: the inner loop of a texel's solve.
+
+/// `rows`: [count][stride], stride a multiple of 16, aligned to 64 bytes, as are all arrays here.
+/// value[3 i + a] = row i . coefficient[a], where coefficient is [3][stride].
+void rows_times(const float* rows, uint32_t count, uint32_t stride, const float* coefficient, float* value);
+
+/// sum[a][k] = sum over i of rows[i][k] value[3 i + a].
+void times_rows(const float* rows, uint32_t count, uint32_t stride, const float* value, float* sum);
+
+// Solver for the coefficients of all texels of a level with given lobes.
 
 /// Least squares over every pair and texel of a level: a value is the sum of lobes with coefficients interpolated where
 /// the view ray hits the relief. Neighbors are therefore coupled, and all texels are solved for together, by conjugate
@@ -61,5 +74,21 @@ class TexelSolver {
   RowMatrix data_;                         // moments of the data with each coefficient's function
   double measured_ = 0;
 };
+
+// Solves for the texels of a side level by level.
+
+struct TexelLevelsInput {
+  const TexelGrid& grid;
+  const SideDirections& side;
+  const std::vector<Relief>& relief;  // per level, finest first
+  const SharedLobes& lobes;
+  Companding companding;
+  int threads;
+};
+
+/// Sets the levels of `side`, which has the input's lobes, from one texel to the finest level, each from the coarser
+/// one. Reads every view once, unless the checkpoint has all levels under `stage`. Progress covers the stage.
+void solve_levels(CompandedViews& views, const TexelLevelsInput& input, FitCheckpoint& checkpoint,
+                  const std::string& stage, Progress& progress, SrbfSide& side);
 
 }  // namespace velour

@@ -1,13 +1,228 @@
 #include "btf/fit/svd/svd_fit.h"
 
 #include <algorithm>
+#include <cmath>
 #include <string>
+#include <tuple>
+
+#include "base/error.h"
 #include "base/parallel.h"
+#include "btf/fit/relief_pyramid.h"
+#include "btf/fit/side_views.h"
+#include "image/texels.h"
 #include "math/sphere/random.h"
 #include "math/tensor/decompositions.h"
-#include "math/tensor/mode_product.h"
+#include "math/tensor/tensor_view.h"
 
 namespace velour {
+
+namespace {
+
+// Components with less relative energy are rounding error: their functions are not orthogonal to the others.
+constexpr double kRounding = 1e-9;
+
+// Default size: this fraction of the measurement, and a minimum number of components.
+constexpr uint64_t kDefaultFactoredRatio = 200, kDefaultMinComponents = 8;
+
+uint64_t component_bytes(const BtfMeasurement& measurement, bool by_view) {
+  const PairLayout& layout = measurement.layout();
+  const uint64_t rows = by_view ? layout.lights().size() : layout.pairs();
+  return (rows + pyramid_texels(measurement.grid())) * sizeof(HalfBits);
+}
+
+/// Maximum number of components of any model.
+uint64_t most_ever(bool by_view) { return by_view ? FactoredBtf::kMaxOfViews : FactoredBtf::kMaxComponents; }
+
+uint64_t bytes_of(const BtfMeasurement& measurement, const BtfFitOptions& options, bool by_view) {
+  if (options.bytes > 0) return options.bytes;
+  const uint64_t one = component_bytes(measurement, by_view);
+  if (options.tolerance > 0) return most_ever(by_view) * one;
+  return std::max(measurement.raw_bytes() / kDefaultFactoredRatio, kDefaultMinComponents * one);
+}
+
+/// Extent with the number of components that is computed if memory allows.
+FitExtent extent_of(const BtfMeasurement& measurement, const BtfFitOptions& options, bool by_view) {
+  const uint64_t within = bytes_of(measurement, options, by_view) / component_bytes(measurement, by_view);
+  return {.texels = measurement.grid().texels(),
+          .pyramid_texels = pyramid_texels(measurement.grid()),
+          .pairs = measurement.layout().pairs(),
+          .lights = measurement.layout().lights().size(),
+          .coefficients = std::clamp<uint64_t>(within, 1, most_ever(by_view)),
+          .threads = static_cast<uint64_t>(arena_concurrency(options.threads)),
+          .by_view = by_view};
+}
+
+void require_complete_pairs(const PairLayout& layout) {
+  if (layout.complete()) return;
+  throw Error(Status::unsupported,
+              "The BTF has only " + std::to_string(layout.pairs()) +
+                  " view-light pairs, but a model requires every view under every light. Use a BTF with all pairs.");
+}
+
+}  // namespace
+
+FitSize factored_fit_size(const BtfMeasurement& measurement, const BtfFitOptions& options, bool by_view) {
+  require_complete_pairs(measurement.layout());
+  FitExtent extent = extent_of(measurement, options, by_view);
+  FitSize size{.memory = memory_for_components(extent), .bytes = bytes_of(measurement, options, by_view)};
+  if (options.tolerance > 0) extent.coefficients = 1;
+  size.least_memory = memory_for_components(extent);
+  return size;
+}
+
+FactoredFitter::FactoredFitter(const BtfMeasurement& measurement, const BtfFitOptions& options,
+                               FitCheckpoint& checkpoint, Progress& progress, bool by_view)
+    : measurement_(measurement),
+      options_(options),
+      checkpoint_(checkpoint),
+      progress_(progress),
+      views_(measurement, options.companding, options.threads, progress),
+      by_view_(by_view),
+      one_(component_bytes(measurement, by_view)) {
+  require_complete_pairs(measurement.layout());
+  curve_.points = {{1, one_, 0, 1}};
+  bound(bytes(), "One component");
+}
+
+uint64_t FactoredFitter::bytes() const { return bytes_of(measurement_, options_, by_view_); }
+
+void FactoredFitter::find_axes() {
+  const ColorAxes colors = find_colors(views_, measurement_.layout(), checkpoint_);
+  axes_ = colors.axes;
+  all_ = colors.all_energy();
+  not_finite_ = colors.not_finite;
+}
+
+uint64_t FactoredFitter::most_components() const {
+  const FitExtent extent = extent_of(measurement_, options_, by_view_);
+  if (options_.memory == 0) return extent.coefficients;
+  if (options_.tolerance > 0) return components_within(options_.memory, extent);
+  require_components(options_.memory, extent);
+  return extent.coefficients;
+}
+
+void FactoredFitter::rank(std::vector<Component> components, size_t most) {
+  ranked_ = std::move(components);
+  std::stable_sort(ranked_.begin(), ranked_.end(), [](const auto& x, const auto& y) { return x.energy > y.energy; });
+  const double least = kRounding * ranked_.front().energy;
+  ranked_.erase(std::find_if(ranked_.begin() + 1, ranked_.end(), [&](const auto& x) { return x.energy <= least; }),
+                ranked_.end());
+  if (ranked_.size() > most) ranked_.resize(most);
+  curve_ = {};
+  double left = all_;
+  for (size_t k = 0; k < ranked_.size(); ++k) {
+    left = std::max(0.0, left - ranked_[k].energy);
+    curve_.points.push_back({static_cast<int>(k + 1), (k + 1) * one_, 0, all_ > 0 ? std::sqrt(left / all_) : 0.0});
+  }
+}
+
+ModelBody FactoredFitter::fit(size_t point) {
+  FactoredBtf btf{measurement_.layout(), measurement_.grid(), options_.companding, axes_, {}, {}, {}};
+  choose(point + 1, btf);
+  progress_.stage("fitting texels", 0, 1);
+  project(btf);
+  return btf;
+}
+
+void FactoredFitter::choose(size_t components, FactoredBtf& btf) {
+  std::vector<Component> chosen(ranked_.begin(), ranked_.begin() + static_cast<ptrdiff_t>(components));
+  std::sort(chosen.begin(), chosen.end(), [](const Component& x, const Component& y) {
+    return std::tuple(x.view, x.axis, x.column) < std::tuple(y.view, y.axis, y.column);
+  });
+  for (const Component& c : chosen) {
+    btf.axis.push_back(c.axis);
+    if (by_view_) btf.view.push_back(static_cast<uint16_t>(c.view));
+  }
+  function_.resize(static_cast<Eigen::Index>(btf.function_rows()), static_cast<Eigen::Index>(chosen.size()));
+  Eigen::VectorXf values(function_.rows());
+  for (Eigen::Index k = 0; k < function_.cols(); ++k) {
+    copy_function(chosen[static_cast<size_t>(k)], values);
+    function_.col(k) = values;
+  }
+  // Texels are projected on the functions as stored.
+  btf.pair_value.resize(static_cast<size_t>(function_.size()));
+  const std::span<float> stored(function_.data(), btf.pair_value.size());
+  floats_to_halves(stored, btf.pair_value);
+  halves_to_floats(btf.pair_value, stored);
+}
+
+/// Computes the coefficients of every level: products of the functions with the filtered measurement.
+void FactoredFitter::project(FactoredBtf& btf) {
+  const ComponentRanges ranges(btf);
+  std::vector<Level> levels;
+  uint32_t width = measurement_.grid().width, height = measurement_.grid().height;
+  for (;; width = half_of(width), height = half_of(height)) {
+    levels.push_back({width, height, RowMatrix::Zero(Eigen::Index{width} * height, function_.cols()),
+                      std::vector<double>(ranges.groups(), 0.0)});
+    if (width == 1 && height == 1) break;
+  }
+  for (uint32_t v = 0; v < views_.views(); ++v) {
+    progress_.check();
+    views_.read(v, f_);
+    for (size_t l = 0; l < levels.size(); ++l) {
+      if (l > 0) f_ = halved_images(f_, levels[l - 1].width, levels[l - 1].height);
+      project(btf, ranges, v, levels[l]);
+    }
+    progress_.update(static_cast<double>(v + 1) / views_.views());
+  }
+  for (Level& level : levels) {
+    brighten(btf, ranges, level);
+    TexelLevel stored{level.width, level.height, std::vector<HalfBits>(static_cast<size_t>(level.value.size()))};
+    floats_to_halves({level.value.data(), stored.value.size()}, stored.value);
+    btf.levels.push_back(std::move(stored));
+  }
+}
+
+void FactoredFitter::project(const FactoredBtf& btf, const ComponentRanges& ranges, uint32_t view, Level& level) {
+  views_.planes(f_, static_cast<uint64_t>(level.value.rows()), planes_);
+  const auto first_pair = static_cast<Eigen::Index>(measurement_.layout().first(view));
+  const auto first_row = static_cast<Eigen::Index>(btf.first_row(view));
+  double& measured = level.measured[ranges.groups() == 1 ? 0 : view];
+  for (size_t a = 0; a < 3; ++a) {
+    for (Eigen::Index light = 0; light < planes_[a].rows(); ++light) {
+      measured += cosine(first_pair + light) * static_cast<double>(planes_[a].row(light).squaredNorm());
+    }
+    const auto range = ranges.of(view, a);
+    const Eigen::Index column = range.begin, count = range.count();
+    if (count == 0) continue;
+    const RowMatrix functions = function_.block(first_row, column, planes_[a].rows(), count);
+    for_blocks(level.value.rows(), kBlockColumns, options_.threads, progress_, [&](Eigen::Index t, Eigen::Index n) {
+      level.value.block(t, column, n, count).noalias() += planes_[a].middleCols(t, n).transpose() * functions;
+    });
+  }
+}
+
+/// Corrects each group of components separately, because no view can make up for another.
+void FactoredFitter::brighten(const FactoredBtf& btf, const ComponentRanges& ranges, Level& level) const {
+  for (size_t group = 0; group < ranges.groups(); ++group) {
+    const auto range = ranges.of(group);
+    const double sum = modelled(btf, ranges, group, level.value);
+    level.value.middleCols(range.begin, range.count()) *= brightening(options_.companding, level.measured[group], sum);
+  }
+}
+
+/// Cosine of the light times that of the view.
+double FactoredFitter::cosine(Eigen::Index pair) const {
+  const DirectionPair directions = measurement_.layout().directions(static_cast<uint64_t>(pair));
+  return static_cast<double>(std::abs(directions.wl.z * directions.wv.z));
+}
+
+/// Sum of squares of a level as modeled by a group's components, times both cosines.
+double FactoredFitter::modelled(const FactoredBtf& btf, const ComponentRanges& ranges, size_t group,
+                                const RowMatrix& value) const {
+  const Eigen::Index first = btf.by_view() ? static_cast<Eigen::Index>(btf.layout.first(group)) : 0;
+  Eigen::VectorXf weight(function_.rows());
+  for (Eigen::Index row = 0; row < weight.size(); ++row) weight[row] = static_cast<float>(cosine(first + row));
+  double sum = 0;
+  for (size_t a = 0; a < 3; ++a) {
+    const auto range = ranges.of(group, a);
+    const auto function = function_.middleCols(range.begin, range.count());
+    const Eigen::MatrixXf gram = function.transpose() * weight.asDiagonal() * function;
+    const auto values = value.middleCols(range.begin, range.count());
+    sum += static_cast<double>((values * gram).cwiseProduct(values).sum());
+  }
+  return sum;
+}
 
 namespace {
 

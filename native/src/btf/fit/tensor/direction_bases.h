@@ -1,4 +1,4 @@
-// Bases of a BTF's views and lights, in which its texels are described before clustering.
+// Bases of a BTF's views and lights, and its texels in them: the tensor to be clustered.
 #pragma once
 
 #include <Eigen/Core>
@@ -6,7 +6,7 @@
 #include "base/progress.h"
 #include "btf/fit/side_views.h"
 #include "btf/measure/relief.h"
-#include "image/bilinear_texels.h"
+#include "image/texels.h"
 #include "math/tensor/tensor_view.h"
 
 namespace velour {
@@ -58,5 +58,16 @@ DirectionBases direction_bases(CompandedViews& views, const TensorSource& source
 
 /// Indices of `count` different random texels, in random order; all texels if there are no more.
 std::vector<uint32_t> random_texels(uint64_t texels, size_t count, uint64_t seed);
+
+struct ReducedTexels {
+  std::vector<uint32_t> texel;  // on the finest level
+  DenseTensor slices;           // [texel][view basis][light basis][axis]
+  double relief_share;          // ReliefGap::share()
+};
+
+/// Values of `texels` in all views, projected on the bases. Texels hidden from some views are solved for by least
+/// squares over the others, with the bases' energies as a prior. Reads every view once.
+ReducedTexels reduced_texels(CompandedViews& views, const TensorSource& source, const DirectionBases& bases,
+                             std::vector<uint32_t> texels, Progress& progress);
 
 }  // namespace velour

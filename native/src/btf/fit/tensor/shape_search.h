@@ -7,7 +7,7 @@
 #include "base/progress.h"
 #include "btf/model/tensor_btf.h"
 #include "math/tensor/tensor_view.h"
-#include "model/btf_record.h"
+#include "model/records.h"
 
 namespace velour {
 

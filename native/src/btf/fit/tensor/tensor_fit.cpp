@@ -8,7 +8,7 @@
 #include "btf/fit/relief_pyramid.h"
 #include "btf/fit/tensor/tensor_checkpoint.h"
 #include "btf/fit/tensor/tensor_functions.h"
-#include "btf/fit/tensor/tensor_levels.h"
+#include "btf/fit/tensor/tensor_texels.h"
 #include "math/tensor/cluster_fit.h"
 
 namespace velour {

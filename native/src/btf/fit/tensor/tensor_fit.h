@@ -3,10 +3,8 @@
 
 #include "btf/fit/btf_fitter.h"
 #include "btf/fit/fit_checkpoint.h"
-#include "btf/fit/fit_memory.h"
 #include "btf/fit/fitted_sides.h"
 #include "btf/fit/tensor/direction_bases.h"
-#include "btf/fit/tensor/reduced_texels.h"
 #include "btf/fit/tensor/shape_search.h"
 
 namespace velour {

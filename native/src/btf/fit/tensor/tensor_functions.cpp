@@ -2,7 +2,7 @@
 
 #include <algorithm>
 #include "base/parallel.h"
-#include "btf/fit/surface_points.h"
+#include "btf/fit/relief_pyramid.h"
 
 namespace velour {
 

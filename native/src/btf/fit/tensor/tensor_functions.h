@@ -3,10 +3,9 @@
 
 #include <array>
 #include "btf/fit/seen_texels.h"
-#include "btf/fit/shown_views.h"
 #include "btf/fit/tensor/direction_bases.h"
 #include "btf/model/tensor_btf.h"
-#include "math/tensor/clustered_tensor.h"
+#include "math/tensor/cluster_choice.h"
 
 namespace velour {
 

@@ -1,4 +1,4 @@
-#include "btf/fit/tensor/tensor_levels.h"
+#include "btf/fit/tensor/tensor_texels.h"
 
 #include <algorithm>
 #include <cmath>
@@ -10,7 +10,6 @@
 #include "btf/fit/relief_pyramid.h"
 #include "btf/fit/tensor/function_refit.h"
 #include "btf/fit/tensor/tensor_checkpoint.h"
-#include "btf/fit/tensor/tensor_texels.h"
 
 namespace velour {
 

@@ -6,7 +6,7 @@
 #include <numeric>
 
 #include "base/parallel.h"
-#include "btf/fit/surface_points.h"
+#include "btf/fit/relief_pyramid.h"
 #include "btf/model/srbf_btf.h"
 
 namespace velour {

@@ -1,11 +1,12 @@
-// Solver for the texels of one level of a clustered-tensor model with given clusters.
+// Solver for the texels of a clustered-tensor model with given clusters, of one level and of all.
 #pragma once
 
 #include <functional>
-
+#include "btf/fit/fit_checkpoint.h"
 #include "btf/fit/seen_texels.h"
-#include "btf/fit/shown_views.h"
+#include "btf/fit/tensor/direction_bases.h"
 #include "btf/fit/tensor/tensor_functions.h"
+#include "btf/model/tensor_btf.h"
 
 namespace velour {
 
@@ -54,5 +55,20 @@ class TensorTexels {
 /// The sum over texels, views and lights of the squares of the modeled values, times both cosines.
 double modelled_squares(const TensorSource& source, const SeenTexels& seen, const TensorFunctions& functions,
                         const TensorTexelValues& values, const Progress& progress);
+
+// Solves for the texels of a side of clustered tensors on all levels.
+
+/// Sets the levels and scales of `side`, whose clusters are set, and refits its clusters: each level is solved for on
+/// its own, scaled to the brightness of its images and rounded. Reads every view up to four times; steps in the
+/// checkpoint under `stage` are reused. Progress covers the stage.
+void solve_tensor_levels(CompandedViews& views, const TensorSource& source, Companding companding,
+                         FitCheckpoint& checkpoint, const std::string& stage, Progress& progress, TensorSide& side);
+
+// Rounding of the coefficients of clustered tensors to bytes.
+
+/// Sets the scales of the clusters and the members and bytes of the levels of `side`, whose clusters and level sizes
+/// are set. A scale spans the values of all levels; the effect of rounding a coefficient on a texel is compensated by
+/// the coefficients after it (rounding_moves).
+void set_rounded(const TensorFunctions& functions, std::vector<TensorTexelValues> levels, TensorSide& side);
 
 }  // namespace velour

@@ -1,4 +1,4 @@
-#include "brdf/fit/error/albedo.h"
+#include "brdf/fit/error/evaluate.h"
 
 #include <gtest/gtest.h>
 

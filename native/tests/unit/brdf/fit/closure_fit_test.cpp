@@ -6,8 +6,7 @@
 
 #include "base/error.h"
 #include "brdf/fit/closures/closure_problem.h"
-#include "brdf/fit/closures/closure_starts.h"
-#include "brdf/fit/closures/model_closures.h"
+#include "brdf/fit/closures/closure_search.h"
 #include "brdf/fit/error/evaluate.h"
 #include "closure_examples.h"
 #include "material/microfacet/ggx_sampler.h"

@@ -5,7 +5,6 @@
 
 #include <cmath>
 
-#include "brdf/fit/closures/closure_curves.h"
 #include "closure_examples.h"
 #include "math/sphere/directions.h"
 #include "math/sphere/quadrature.h"

@@ -1,11 +1,9 @@
-#include "brdf/fit/parametric/problem.h"
+#include "brdf/fit/parametric/solver.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <Eigen/Cholesky>
-
-#include "brdf/fit/parametric/solver.h"
 
 namespace velour {
 namespace {

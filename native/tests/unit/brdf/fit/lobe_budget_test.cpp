@@ -1,4 +1,4 @@
-#include "brdf/fit/per_view/fitted_slices.h"
+#include "brdf/fit/per_view/per_view_fit.h"
 
 #include <gtest/gtest.h>
 

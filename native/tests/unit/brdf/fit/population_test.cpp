@@ -8,8 +8,8 @@
 
 #include "brdf/fit/fit_model.h"
 #include "brdf/measure/held_out.h"
-#include "model/model_file.h"
-#include "model/model_material.h"
+#include "model/file/model_file.h"
+#include "model/model.h"
 #include "support/hostile_measurements.h"
 #include "support/true_error.h"
 

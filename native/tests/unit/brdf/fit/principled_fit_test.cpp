@@ -1,9 +1,8 @@
-#include "brdf/fit/principled_fit.h"
+#include "brdf/fit/peer.h"
 
 #include <gtest/gtest.h>
 
 #include "brdf/fit/error/evaluate.h"
-#include "brdf/fit/peer.h"
 #include "material/principled/principled_material.h"
 #include "support/analytic_measurement.h"
 #include "support/test_data.h"

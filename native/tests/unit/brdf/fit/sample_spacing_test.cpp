@@ -1,11 +1,10 @@
-#include "brdf/fit/parametric/sample_spacing.h"
+#include "brdf/fit/parametric/view.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
 
-#include "brdf/fit/parametric/view.h"
 #include "brdf/measure/held_out.h"
 
 namespace velour {

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "brdf/fit/view_grid.h"
+#include "brdf/fit/slice_sampling.h"
 #include "math/sphere/directions.h"
 
 namespace velour {

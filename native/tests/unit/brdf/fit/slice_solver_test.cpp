@@ -1,4 +1,4 @@
-#include "brdf/fit/per_view/slice_solver.h"
+#include "brdf/fit/per_view/slice_fit.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "brdf/fit/view_grid.h"
+#include "brdf/fit/slice_sampling.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // Scattered samples of brushed surfaces are told from those of plain ones, noisy or glossy as those may be.
-#include "brdf/fit/error/measurement_warnings.h"
+#include "brdf/fit/fit_report.h"
 
 #include <gtest/gtest.h>
 

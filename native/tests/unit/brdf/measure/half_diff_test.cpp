@@ -1,10 +1,9 @@
-#include "brdf/measure/half_diff.h"
+#include "brdf/measure/brdf_table.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "brdf/measure/brdf_table.h"
 #include "measurement_support.h"
 
 namespace velour {

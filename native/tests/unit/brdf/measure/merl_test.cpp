@@ -10,7 +10,6 @@
 
 #include "base/file.h"
 #include "brdf/measure/brdf_table.h"
-#include "brdf/measure/half_diff.h"
 #include "measurement_support.h"
 #include "support/inputs.h"
 #include "support/test_data.h"

@@ -4,7 +4,6 @@
 
 #include <cmath>
 
-#include "brdf/formats/bilinear_warp.h"
 #include "measurement_support.h"
 #include "support/test_data.h"
 

@@ -8,7 +8,7 @@
 #include <functional>
 
 #include "base/file.h"
-#include "brdf/formats/klems_basis.h"
+#include "brdf/formats/bsdf_xml.h"
 #include "brdf/measure/spectrum.h"
 #include "math/sphere/directions.h"
 #include "measurement_support.h"

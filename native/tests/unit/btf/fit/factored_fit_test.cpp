@@ -1,9 +1,8 @@
-#include "btf/fit/svd/factored_fit.h"
+#include "btf/fit/svd/svd_fit.h"
 
 #include <gtest/gtest.h>
 
 #include "base/error.h"
-#include "btf/fit/svd/svd_fit.h"
 #include "unit/btf/fit/factored_fits.h"
 
 namespace velour {

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "btf/fit/btf_compare.h"
-#include "btf/fit/svd/factored_fit.h"
+#include "btf/fit/svd/svd_fit.h"
 #include "math/sphere/random.h"
 #include "support/memory_btf.h"
 #include "support/singular_values.h"

@@ -1,4 +1,4 @@
-#include "btf/fit/fit_memory.h"
+#include "btf/fit/btf_fitter.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "btf/fit/srbf/lobe_refinement.h"
+#include "btf/fit/srbf/lobe_order.h"
 
 #include <gtest/gtest.h>
 

@@ -5,8 +5,8 @@
 
 #include "base/error.h"
 #include "math/sphere/directions.h"
-#include "model/model_file.h"
-#include "model/model_material.h"
+#include "model/file/model_file.h"
+#include "model/model.h"
 #include "support/example_tensor.h"
 #include "support/sized_srbf.h"
 #include "support/striped_btf.h"

@@ -1,5 +1,5 @@
 // Models of BTFs that are fitted anew to what scenes show.
-#include "usage/btf/scene_refit.h"
+#include "usage/btf/scene_reduction.h"
 
 #include <gtest/gtest.h>
 
@@ -9,12 +9,10 @@
 #include "math/sphere/frame.h"
 #include "math/sphere/random.h"
 #include "math/sphere/warp.h"
-#include "model/model_file.h"
-#include "model/model_material.h"
+#include "model/file/model_file.h"
+#include "model/model.h"
 #include "support/striped_btf.h"
 #include "usage/btf/scene_btf.h"
-#include "usage/btf/scene_reduction.h"
-#include "usage/btf/seen_pictures.h"
 #include "usage/observation.h"
 
 namespace velour {

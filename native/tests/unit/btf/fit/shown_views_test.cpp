@@ -1,4 +1,4 @@
-#include "btf/fit/shown_views.h"
+#include "btf/fit/seen_texels.h"
 
 #include <gtest/gtest.h>
 

@@ -10,7 +10,7 @@
 #include "btf/fit/btf_compare.h"
 #include "btf/fit/relief_pyramid.h"
 #include "btf/model/srbf_evaluator.h"
-#include "image/half_image.h"
+#include "image/texels.h"
 #include "math/sphere/random.h"
 #include "support/example_srbf.h"
 #include "support/fitted_btfs.h"

@@ -1,4 +1,4 @@
-#include "btf/fit/surface_points.h"
+#include "btf/fit/relief_pyramid.h"
 
 #include <gtest/gtest.h>
 

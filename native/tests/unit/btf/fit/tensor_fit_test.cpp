@@ -7,7 +7,7 @@
 #include <thread>
 
 #include "btf/fit/btf_compare.h"
-#include "btf/model/tensor_images.h"
+#include "btf/model/tensor_evaluator.h"
 #include "support/example_tensor.h"
 #include "support/fitted_btfs.h"
 #include "support/striped_btf.h"

@@ -2,11 +2,9 @@
 
 #include <gtest/gtest.h>
 
-#include "base/aligned_array.h"
-#include "btf/fit/srbf/row_products.h"
+#include "base/memory.h"
 #include "btf/model/srbf_btf.h"
-#include "image/bilinear_texels.h"
-#include "image/half_image.h"
+#include "image/texels.h"
 #include "math/sphere/random.h"
 #include "support/example_srbf.h"
 #include "support/simd_targets.h"

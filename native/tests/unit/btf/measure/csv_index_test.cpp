@@ -1,4 +1,4 @@
-#include "btf/formats/csv_index.h"
+#include "btf/formats/picture_index.h"
 
 #include <gtest/gtest.h>
 

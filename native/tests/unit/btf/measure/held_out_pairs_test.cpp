@@ -1,4 +1,4 @@
-#include "btf/measure/held_out_pairs.h"
+#include "btf/measure/pair_layout.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "btf/formats/image_names.h"
+#include "btf/formats/picture_index.h"
 
 #include <gtest/gtest.h>
 

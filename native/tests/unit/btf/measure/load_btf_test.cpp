@@ -9,7 +9,7 @@
 
 #include "base/file.h"
 #include "btf_support.h"
-#include "image/formats/exr_part.h"
+#include "image/formats/exr_picture.h"
 #include "image/picture.h"
 #include "support/test_data.h"
 #include "ubo_support.h"

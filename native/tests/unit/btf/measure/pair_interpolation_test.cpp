@@ -1,4 +1,4 @@
-#include "btf/measure/pair_interpolation.h"
+#include "btf/measure/pair_layout.h"
 
 #include <gtest/gtest.h>
 

@@ -4,8 +4,6 @@
 
 #include <memory>
 
-#include "btf/model/tensor_contraction.h"
-#include "btf/model/tensor_images.h"
 #include "math/sphere/directions.h"
 #include "support/example_tensor.h"
 #include "support/simd_targets.h"

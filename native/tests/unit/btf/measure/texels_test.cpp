@@ -4,10 +4,9 @@
 #include <set>
 #include <vector>
 
-#include "base/aligned_array.h"
-#include "btf/model/byte_rows.h"
+#include "base/memory.h"
 #include "btf/model/srbf_evaluator.h"
-#include "image/bilinear_texels.h"
+#include "image/texels.h"
 #include "math/sphere/random.h"
 #include "support/simd_targets.h"
 

@@ -1,4 +1,4 @@
-#include "capture/tile/chainmail.h"
+#include "capture/tile/bodies.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "capture/tile/gravel.h"
+#include "capture/tile/bodies.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "capture/tile/knit.h"
+#include "capture/tile/fabrics.h"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 namespace velour::testing {
 namespace {
 
-/// The middle line of a course, in wales, as knit.h states it.
+/// The middle line of a course, in wales, as fabrics.h states it.
 Vec3d middle(double t, double course) {
   return {t / (2 * kPiD) + kLoopWidth * std::sin(2 * t), kLoopHeight * std::cos(t) + course * kCourse,
           -kLoopDepth * std::cos(2 * t)};

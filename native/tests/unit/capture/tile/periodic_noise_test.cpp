@@ -1,4 +1,4 @@
-#include "capture/tile/periodic_noise.h"
+#include "capture/tile/mesh_builder.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "capture/tile/sheets.h"
+#include "capture/tile/fabrics.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "math/sphere/sobol.h"
+#include "math/sphere/random.h"
 
 #include <gtest/gtest.h>
 
@@ -6,8 +6,6 @@
 #include <bit>
 #include <cmath>
 #include <vector>
-
-#include "math/sphere/random.h"
 
 namespace velour {
 namespace {

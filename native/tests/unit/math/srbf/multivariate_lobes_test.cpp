@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "base/aligned_array.h"
+#include "base/memory.h"
 #include "math/sphere/random.h"
 #include "math/sphere/warp.h"
 #include "support/simd_targets.h"

@@ -1,4 +1,4 @@
-#include "math/srbf/widened_lobe.h"
+#include "math/srbf/kernel.h"
 
 #include <gtest/gtest.h>
 

@@ -1,8 +1,7 @@
-#include "math/tensor/leading_vectors.h"
+#include "math/tensor/decompositions.h"
 
 #include <gtest/gtest.h>
 
-#include "math/tensor/decompositions.h"
 #include "support/random_tensor.h"
 
 namespace velour {

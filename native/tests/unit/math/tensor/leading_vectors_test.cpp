@@ -1,9 +1,8 @@
-#include "math/tensor/leading_vectors.h"
+#include "math/tensor/decompositions.h"
 
 #include <gtest/gtest.h>
 
-#include "math/tensor/decompositions.h"
-#include "math/tensor/mode_product.h"
+#include "math/tensor/tensor_view.h"
 #include "support/random_tensor.h"
 #include "support/singular_values.h"
 

@@ -1,4 +1,4 @@
-#include "math/tensor/mode_product.h"
+#include "math/tensor/tensor_view.h"
 
 #include <gtest/gtest.h>
 
