@@ -45,3 +45,22 @@ def test_journeys_run_alone_and_are_long():
         assert run._ALONE.search(text), path
         assert run._LONG.search(text), path
         assert run._OWN_PROCESS.search(text), path
+
+
+def test_what_passed_is_kept_until_it_or_the_sources_change(tmp_path):
+    run = load()
+    program, file = tmp_path / "test_a.py", tmp_path / "kept.json"
+    program.write_text("1")
+    passed, failed = run.report.Test("x", run.report.PASSED, 1.5), run.report.Test("y", run.report.FAILED)
+    kept = run.Kept(file, "sources")
+    kept.keep("test_a", program, [passed, failed])
+    assert kept.tests("test_a", program) is None
+    kept.keep("test_a", program, [passed])
+    assert run.Kept(file, "sources").tests("test_a", program) == [passed]
+    assert run.Kept(file, "others").tests("test_a", program) is None
+    assert run.Kept(file, "sources").tests("test_b", program) is None
+    assert run.Kept(None, "").tests("test_a", program) is None
+    program.write_text("2")
+    assert run.Kept(file, "sources").tests("test_a", program) is None
+    file.write_text("{")
+    assert run.Kept(file, "sources").tests("test_a", program) is None

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shutil
 import subprocess
 import sys
 
@@ -105,6 +106,18 @@ def test_a_campaign_repeats_only_what_a_change_may_break(tmp_path):
     assert after_a_change_of("docs/new.md") == {"python", "blender", "blender 5.2"}
     (tmp_path / "tree/docs/new.md").unlink()
     assert campaign.Campaign(file, tmp_path / "tree").kept("style") is None
+
+    def hash_but_files():
+        return run.sources_but_files("blender 5.2")
+
+    # blend-tests/run itself sees changes of the files of tests.
+    before, files = hash_but_files(), tmp_path / "tree/blend-tests"
+    files.mkdir()
+    (files / "test_a.py").write_text("1")
+    assert hash_but_files() == before
+    (files / "harness.py").write_text("1")
+    assert hash_but_files() != before
+    shutil.rmtree(files)
     file.write_text("{")
     assert repeated() == all_groups
 

@@ -10,6 +10,7 @@ import subprocess
 import sys
 import time
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 
 from checks import campaign, cases, groups, measured_pages
@@ -76,11 +77,11 @@ def main() -> int:
         built = _build(run, total, "native" in arguments.groups)
     for name in arguments.groups:
         needs_build = name != "style"
-        _step(name, kept, total, built or not needs_build, lambda name=name: GROUPS[name](run))
+        _step(name, run, kept, total, built or not needs_build, GROUPS[name])
     for version in arguments.blender:
-        _step(f"blender {version}", kept, total, built, lambda v=version: groups.other_blender(run, v))
+        _step(f"blender {version}", run, kept, total, built, groups.other_blender)
     if arguments.all:
-        _step("fuzz", kept, total, built, lambda: groups.fuzz(run))
+        _step("fuzz", run, kept, total, built, groups.fuzz)
         for sentence in measured_pages.told(ROOT):
             say(sentence)
     seconds, processor = clock.read()
@@ -131,10 +132,11 @@ def _build(run: Run, total: Total, with_native_tests: bool) -> bool:
 
 def _step(
     name: str,
+    run: Run,
     kept: campaign.Campaign | None,
     total: Total,
     is_built: bool,
-    work: Callable[[], list[Case]],
+    work: Callable[[Run], list[Case]],
 ) -> None:
     say(f"== {name}")
     clock = Clock()
@@ -142,7 +144,7 @@ def _step(
     if found is not None:
         say(f"{name} passed in an earlier run of these sources")
     elif is_built:
-        found = work()
+        found = work(replace(run, sources=kept.sources_but_files(name)) if kept else run)
         if kept and found and not cases.count(found)[FAILED]:
             kept.keep(name, found)
     else:

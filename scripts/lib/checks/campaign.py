@@ -6,6 +6,7 @@ import contextlib
 import hashlib
 import json
 import os
+import re
 import subprocess
 from pathlib import Path
 
@@ -19,6 +20,7 @@ _UNREAD: dict[str, tuple[str, ...]] = {
     "scenes": ("addon/tests/", "native/tests/", "native/fuzz/"),
     "blender": ("addon/tests/", "native/tests/", "native/fuzz/"),
 }
+_TESTS_IN_BLENDER = re.compile(r"blend-tests/(parity/)?(test|window)_\w+\.py$")
 
 
 class Campaign:
@@ -50,14 +52,20 @@ class Campaign:
         partial.write_text(json.dumps(self._ended))
         os.replace(partial, self._file)
 
-    def _sources(self, name: str) -> str:
-        """A hash of all files that git does not ignore, except those that no test of the group reads.
-        "blender 5.2" reads the same as "blender"."""
+    def sources_but_files(self, name: str) -> str:
+        """A hash of what each file of tests in Blender reads except itself."""
+        return self._sources(name, _TESTS_IN_BLENDER)
+
+    def _sources(self, name: str, without: re.Pattern[str] | None = None) -> str:
+        """A hash of all files that git does not ignore, except those that no test of the group reads and
+        what `without` matches. "blender 5.2" reads the same as "blender"."""
         unread = _UNREAD.get(name.split()[0], ())
         listed = ["git", "-C", self._root, "ls-files", "--cached", "--others", "--exclude-standard", "-z"]
         names = subprocess.run(listed, capture_output=True, check=True).stdout.split(b"\0")[:-1]
         digest = hashlib.sha256()
         for file in sorted(map(os.fsdecode, names)):
-            if not file.startswith(unread) and (path := self._root / file).is_file():
+            if file.startswith(unread) or (without and without.match(file)):
+                continue
+            if (path := self._root / file).is_file():
                 digest.update(os.fsencode(file) + b"\0" + hashlib.sha256(path.read_bytes()).digest())
         return digest.hexdigest()

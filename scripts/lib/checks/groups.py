@@ -28,6 +28,7 @@ class Run:
     long: bool = False  # run the tests that only scripts/test --all runs
     scenes: Sequence[str] = ()
     update: bool = False
+    sources: str = ""  # their hash, if files of tests in Blender that passed before are not run again
 
     @property
     def build(self) -> Path:
@@ -114,6 +115,8 @@ def blender(run: Run) -> list[Case]:
 
 def _in_blender(run: Run, name: str, *options: str | Path, before: Sequence[str | Path] = ()) -> list[Case]:
     command = [*before, PYTHON, ROOT / "blend-tests/run", *options, "--junit"]
+    if run.sources:
+        command[-1:] = ["--keep", run.results / f"{name}.json", "--sources", run.sources, "--junit"]
     return _reported(run, name, command, running.matches(r": (ok|FAILED), ", "files"), leave_out=_PASSED)
 
 
