@@ -100,6 +100,7 @@ struct PrepareOptions {
   /// For paths of a render: smooth glass has delta_lobes() in place of very sharp ones, and rough glass is evaluated as
   /// in Cycles (glass_lobe.h).
   bool of_path = false;
+  bool facets_only = false;  // with of_path: rough glass has nothing where no facet refracts (glass_lobe.h)
   LobeFilter filter{};
 };
 

@@ -28,7 +28,7 @@ Vec2 slope_of(float roughness, const LobeFilter& filter) {
 }  // namespace
 
 GlassLobe::GlassLobe(const GlassParameters& parameters, const Vec3& wv, bool back, const PrepareOptions& options)
-    : wv_(wv), p_(parameters), as_cycles_(options.of_path) {
+    : wv_(wv), p_(parameters), as_cycles_(options.of_path && !options.facets_only) {
   const float index = std::max(p_.index, 1e-5f);
   eta_ = back ? 1 / index : index;
   if (options.filter.diffuse_only) p_.reflected = Rgb(0.0f);

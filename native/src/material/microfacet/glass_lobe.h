@@ -34,7 +34,7 @@ struct GlassParameters {
 /// Samples the visible normals, and reflects or refracts in them by F. Where h faces away from the surface or from
 /// either direction, there is no facet and f is 0. Cycles evaluates f and the density there as elsewhere, although it
 /// samples no such direction, which brightens rough refraction under sampled lights; so does a lobe that is `of_path`
-/// (PrepareOptions). There the density is above 0 but that of no sample.
+/// and not `facets_only` (PrepareOptions). There the density is above 0 but that of no sample.
 class GlassLobe {
  public:
   /// Requires wv.z > 0. `back`: seen from behind, where the relative index is the reciprocal.

@@ -49,6 +49,12 @@ void DirectLight::prepare(const Receiver& receiver, bool go_on, Output output, W
                                .of_path = !output.is_incident(),
                                .filter = lobe_filter(options_.light_paths, receiver.past)};
   work.prepared = PreparedSurface(sampling_, vertex, options, arena_);
+  work.under_sky = nullptr;
+  if (vertex.transmits && options.of_path && even_sky_) {
+    PrepareOptions facets = options;
+    facets.facets_only = true;
+    work.under_sky = &PreparedSurface(sampling_, vertex, facets, arena_).brdf();
+  }
   work.deltas.count = 0;
   work.deltas.rest = 1.0f;
   if (vertex.transmits && options.of_path) work.prepared.brdf().delta_lobes(work.deltas);
@@ -221,21 +227,31 @@ void DirectLight::go_on_along(const Receiver& receiver, int i, int term, Work& w
 
 void DirectLight::settle(std::span<const Receiver> receivers, Output output) {
   terms_.look_up(lighting_, views_, options_.heuristic);
-  const auto add = [&](int i, const Rgb& weighed, float far, bool casts_shadow) {
+  const auto add = [&](int i, const Rgb& light, float far, bool casts_shadow) {
     const Receiver& receiver = receivers[terms_.receiver[i]];
-    const Rgb light = weighed * terms_.reflected.get(i);
     settle_term(receivers, i,
                 {terms_.world.get(i), light, limit_of_term(receiver), far, casts_shadow, terms_.light_pdf.v[i]},
                 output);
   };
   for (int i = 0; i < terms_.world.count; ++i) {
-    add(i, terms_.weight.v[i] * terms_.environment.get(i), std::numeric_limits<float>::infinity(), true);
+    const Rgb of_sky = terms_.weight.v[i] * terms_.environment.get(i);
+    add(i, of_sky * reflected_sky(receivers, i), std::numeric_limits<float>::infinity(), true);
   }
   for (const LampHit& hit : terms_.lamp_hits) {
     const int i = hit.direction;
     const Rgb radiance = hit.lamp->radiance(terms_.world.get(i));
-    add(i, terms_.lamp_weight.v[i] * radiance, hit.distance, hit.lamp->casts_shadow());
+    add(i, terms_.lamp_weight.v[i] * radiance * terms_.reflected.get(i), hit.distance, hit.lamp->casts_shadow());
   }
+}
+
+Rgb DirectLight::reflected_sky(std::span<const Receiver> receivers, int term) const {
+  const size_t place = terms_.receiver[term];
+  const PreparedBrdf* brdf = work_[place].under_sky;
+  if (brdf == nullptr || along_deltas_) return terms_.reflected.get(term);
+  const Receiver& receiver = receivers[place];
+  const Vec3 wl = receiver.vertex.frame.to_local(terms_.world.get(term));
+  const Rgb f = in_working_space(working_space_, receiver.vertex, brdf->eval_one(wl).f);
+  return receiver.throughput * f * (std::abs(wl.z) / static_cast<float>(receiver.directions));
 }
 
 void DirectLight::settle_emissive(std::span<const Receiver> receivers, Output output) {

@@ -118,6 +118,7 @@ class DirectLight {
         sampling_(surface_sampling(options.strategy)),
         meets_surfaces_(shares(options, 0.0f).surface > 0.0f),
         shares_rays_(VisibleRays(scene).plain()),
+        even_sky_(!lighting.environment().black() && lighting.environment().equirectangular() == nullptr),
         sky_(sky) {}
 
   /// Number of vertices with up to `directions` directions each that gather() takes.
@@ -180,8 +181,9 @@ class DirectLight {
  private:
   /// State of a vertex until its batch is done.
   struct Work {
-    PreparedSurface prepared;  // in arena_
-    LobeMixture product;       // world frame
+    PreparedSurface prepared;       // in arena_
+    const PreparedBrdf* under_sky;  // in arena_; replaces `prepared` under an environment of one color if not null
+    LobeMixture product;            // world frame
     Shares shares;
     PathNumbers::Run from_product, from_surface, from_lights;
     int product_point, surface_point, light_point;  // index of the first of each in points_
@@ -229,6 +231,8 @@ class DirectLight {
   /// Continues the path along direction `i` of the vertex, which is term `term`.
   void go_on_along(const Receiver& receiver, int i, int term, Work& work);
   void settle(std::span<const Receiver> receivers, Output output);
+  /// Throughput times f cos of a term over the number of directions, for the environment.
+  Rgb reflected_sky(std::span<const Receiver> receivers, int term) const;
   void settle_emissive(std::span<const Receiver> receivers, Output output);
   struct Contribution {
     Vec3 wl_world;
@@ -258,6 +262,7 @@ class DirectLight {
   const SurfaceSampling sampling_;
   const bool meets_surfaces_;  // whether any directions are sampled from the surface
   const bool shares_rays_;     // whether a continuation ray may also serve as a shadow ray
+  const bool even_sky_;        // the environment has one color
   const EnvironmentProductSampler* sky_;
 
   ScratchArena arena_;  // for the points of a batch, until the next gather()

@@ -97,6 +97,27 @@ TEST(GlassRender, MixesShowBothLobesAndLayers) {
   }
 }
 
+/// Where no facet refracts, Cycles evaluates f although no sample goes there; it draws none from a sky of one color.
+TEST(GlassRender, AnEvenSkyShinesThroughFacetsAlone) {
+  const auto seen = [](const Environment& sky, Strategy strategy) {
+    Scene scene;
+    const auto pane = make_glass_material({.roughness = 0.8f, .index = 1.3f, .only_refracts = true});
+    scene.add_instance(scene.add_mesh(test::square(3)), {}, {scene.add_material({.material = pane})});
+    scene.set_environment(sky);
+    scene.set_camera(test::camera_above(0.8f));
+    scene.commit(2);
+    return mean(scene, strategy, 1, 256);
+  };
+  const std::vector<float> ones(size_t{8} * 4 * 3, 1.0f);
+  const auto image = Environment::image({8, 4, 3, ones}, 1, Mat3(1.0f));
+  const double expected = seen(image, Strategy::srbf);
+  EXPECT_LT(expected, 1);
+  for (const Strategy strategy : {Strategy::srbf, Strategy::mis, Strategy::light, Strategy::product}) {
+    EXPECT_NEAR(seen(Environment::constant(Rgb(1.0f)), strategy), expected, 2e-3) << static_cast<int>(strategy);
+  }
+  EXPECT_GT(seen(image, Strategy::mis), expected + 0.02);
+}
+
 /// As in Cycles: without a lobe that has a width, no ray finds a sharp sun, and shadow rays do not pass.
 TEST(GlassRender, IsOpaqueToShadowRays) {
   const auto under_sun = [](std::shared_ptr<const Material> pane) {
