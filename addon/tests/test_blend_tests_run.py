@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import importlib.util
+import sys
 from importlib.machinery import SourceFileLoader
 from pathlib import Path
 
@@ -47,8 +48,10 @@ def test_journeys_run_alone_and_are_long():
         assert run._OWN_PROCESS.search(text), path
 
 
-def test_what_passed_is_kept_until_it_or_the_sources_change(tmp_path):
+def test_what_passed_is_kept_until_it_or_the_sources_change(tmp_path, monkeypatch):
     run = load()
+    monkeypatch.setattr(sys.modules[run.Kept.__module__], "_ROOT", tmp_path)
+    (tmp_path / "README.md").write_text("1")
     program, file = tmp_path / "test_a.py", tmp_path / "kept.json"
     program.write_text("1")
     passed, failed = run.report.Test("x", run.report.PASSED, 1.5), run.report.Test("y", run.report.FAILED)
@@ -60,7 +63,13 @@ def test_what_passed_is_kept_until_it_or_the_sources_change(tmp_path):
     assert run.Kept(file, "others").tests("test_a", program) is None
     assert run.Kept(file, "sources").tests("test_b", program) is None
     assert run.Kept(None, "").tests("test_a", program) is None
-    program.write_text("2")
+    (tmp_path / "README.md").write_text("2")
+    assert run.Kept(file, "sources").tests("test_a", program) == [passed]
+    program.write_text("reads docs")
+    assert run.Kept(file, "sources").tests("test_a", program) is None
+    run.Kept(file, "sources").keep("test_a", program, [passed])
+    assert run.Kept(file, "sources").tests("test_a", program) == [passed]
+    (tmp_path / "README.md").write_text("3")
     assert run.Kept(file, "sources").tests("test_a", program) is None
     file.write_text("{")
     assert run.Kept(file, "sources").tests("test_a", program) is None

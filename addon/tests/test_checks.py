@@ -110,11 +110,13 @@ def test_a_campaign_repeats_only_what_a_change_may_break(tmp_path):
     def hash_but_files():
         return run.sources_but_files("blender 5.2")
 
-    # blend-tests/run itself sees changes of the files of tests.
+    # blend-tests/run itself sees changes of the files of tests and of documents.
     before, files = hash_but_files(), tmp_path / "tree/blend-tests"
     files.mkdir()
     (files / "test_a.py").write_text("1")
+    (tmp_path / "tree/README.md").write_text("1")
     assert hash_but_files() == before
+    (tmp_path / "tree/README.md").unlink()
     (files / "harness.py").write_text("1")
     assert hash_but_files() != before
     shutil.rmtree(files)

@@ -5,8 +5,13 @@ import contextlib
 import hashlib
 import json
 import os
+import re
+from pathlib import Path
 
 from . import report
+
+_ROOT = Path(__file__).resolve().parents[2]
+_READS_DOCS = re.compile(rb"docs|guide|snippets")
 
 
 class Kept:
@@ -14,7 +19,7 @@ class Kept:
 
     def __init__(self, path, sources):
         """`path`: where they are kept between runs; None keeps nothing. `sources`: a hash of all that tests
-        read except their own files."""
+        read except their own files and the documents."""
         self._path, self._sources = path, sources
         self._files = {}
         if path:
@@ -42,4 +47,9 @@ class Kept:
         os.replace(partial, self._path)
 
     def _hash(self, program):
-        return hashlib.sha256(self._sources.encode() + program.read_bytes()).hexdigest()
+        text = program.read_bytes()
+        digest = hashlib.sha256(self._sources.encode() + text)
+        if _READS_DOCS.search(text):
+            for page in (_ROOT / "README.md", *sorted((_ROOT / "docs").rglob("*.md"))):
+                digest.update(page.read_bytes())
+        return digest.hexdigest()

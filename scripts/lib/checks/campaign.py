@@ -17,10 +17,11 @@ from .groups import ROOT
 _UNREAD: dict[str, tuple[str, ...]] = {
     "native": ("addon/", "blend-tests/", "docs/"),
     "fuzz": ("addon/", "blend-tests/", "docs/"),
-    "scenes": ("addon/tests/", "native/tests/", "native/fuzz/"),
+    "scenes": ("addon/tests/", "native/tests/", "native/fuzz/", "docs/"),
     "blender": ("addon/tests/", "native/tests/", "native/fuzz/"),
 }
-_TESTS_IN_BLENDER = re.compile(r"blend-tests/(parity/)?(test|window)_\w+\.py$")
+# blend-tests/run itself sees whether these have changed.
+_SEEN_BY_FILES = re.compile(r"blend-tests/(parity/)?(test|window)_\w+\.py$|docs/|README\.md$|CHANGELOG\.md$")
 
 
 class Campaign:
@@ -53,8 +54,8 @@ class Campaign:
         os.replace(partial, self._file)
 
     def sources_but_files(self, name: str) -> str:
-        """A hash of what each file of tests in Blender reads except itself."""
-        return self._sources(name, _TESTS_IN_BLENDER)
+        """A hash of what each file of tests in Blender reads except itself and the documents."""
+        return self._sources(name, _SEEN_BY_FILES)
 
     def _sources(self, name: str, without: re.Pattern[str] | None = None) -> str:
         """A hash of all files that git does not ignore, except those that no test of the group reads and
