@@ -85,7 +85,7 @@ def pictures_of_another_file(folder):
 
 # Quits 0.3 s after the job has begun, or is past what it begins with, and says when.
 _CHILD = """
-import sys, time
+import os, sys, time
 import addon_utils, bpy
 addon_utils.enable("velour", default_set=True)
 
@@ -97,7 +97,7 @@ def begin():
 
 def leave():
     state = bpy.context.window_manager.velour
-    if not state.running or state.stage in {before!r}:
+    if not state.running or state.stage in {before!r} or not {ready}:
         return 0.1
     print("leaves at", time.time(), flush=True)
     bpy.ops.wm.quit_blender()
@@ -106,12 +106,13 @@ bpy.app.timers.register(begin, first_interval=0.5)
 """
 
 
-def _quits(folder, name, begin, before=("",)):
+def _quits(folder, name, begin, before=("",), ready="True"):
     """Turns until a Blender of its own, whose job these lines begin, has left: in time, with status 0.
 
-    `before`: stages of the job that it does not leave in."""
+    `before`: stages of the job that it does not leave in; `ready`: an expression that is true once it may."""
     program, log = folder / f"{name}.py", folder / f"{name}.txt"
-    program.write_text(_CHILD.format(begin=begin.strip().replace("\n", "\n        "), before=before))
+    lines = begin.strip().replace("\n", "\n        ")
+    program.write_text(_CHILD.format(begin=lines, before=before, ready=ready))
     command = [bpy.app.binary_path, "--factory-startup", "--window-geometry", "0", "0", "600", "400"]
     with open(log, "wb") as output:
         child = subprocess.Popen(
@@ -175,13 +176,15 @@ bpy.ops.velour.fit("INVOKE_DEFAULT", material=name, model="SCATTERED", tolerance
 
 
 def quitting_a_capture(folder):
+    index = folder / "plane.btf/btf.json"
     yield from _quits(
         folder,
         "capturing",
         f"""
 bpy.ops.mesh.primitive_plane_add()
-path = {str(folder / "plane.btf")!r}
+path = {str(index.parent)!r}
 bpy.ops.velour.capture_btf("INVOKE_DEFAULT", directory=path, texels=512, samples=1024)
 """,
+        ready=f"os.path.isfile({str(index)!r})",
     )
-    assert (folder / "plane.btf/btf.json").is_file()
+    assert index.is_file()
