@@ -7,6 +7,7 @@ import subprocess
 import sys
 
 import pytest
+import test_run
 from bench import page
 from bench.pages import test_times
 from checks import campaign, cases, groups, measured_pages, running
@@ -122,6 +123,27 @@ def test_a_campaign_repeats_only_what_a_change_may_break(tmp_path):
     shutil.rmtree(files)
     file.write_text("{")
     assert repeated() == all_groups
+
+
+def test_all_runs_every_group_and_resumes(tmp_path, monkeypatch, capsys):
+    ran = []
+
+    def passes(name):
+        ran.append(name)
+        return [Case(name, PASSED, 1.0)]
+
+    monkeypatch.setattr(test_run, "GROUPS", {"style": lambda _run: passes("style")})
+    monkeypatch.setattr(groups, "other_blender", lambda _run, version: passes(version))
+    monkeypatch.setattr(groups, "fuzz", lambda _run: passes("fuzz"))
+    monkeypatch.setattr(groups.Run, "results", tmp_path)
+    monkeypatch.setattr(test_run, "_build", lambda *_arguments: True)
+    done = subprocess.CompletedProcess([], 0, stdout=b"")
+    monkeypatch.setattr(subprocess, "run", lambda *_arguments, **_options: done)
+    monkeypatch.setattr(sys, "argv", ["scripts/test", "--all"])
+    for _ in range(2):
+        assert test_run.main() == 0
+        assert capsys.readouterr().out.splitlines()[-1] == "5 passed, 0 failed, 0 not run"
+    assert ran == ["style", "4.3", "5.2", "4.5", "fuzz"]
 
 
 def test_the_table_of_times_has_groups_their_sum_and_the_slowest():

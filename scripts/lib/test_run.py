@@ -6,11 +6,13 @@ import argparse
 import json
 import os
 import resource
+import signal
 import subprocess
 import sys
 import time
 from collections.abc import Callable
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 
 from checks import campaign, cases, groups, measured_pages
@@ -79,7 +81,8 @@ def main() -> int:
         needs_build = name != "style"
         _step(name, run, kept, total, built or not needs_build, GROUPS[name])
     for version in arguments.blender:
-        _step(f"blender {version}", run, kept, total, built, groups.other_blender)
+        other = partial(groups.other_blender, version=version)
+        _step(f"blender {version}", run, kept, total, built, other)
     if arguments.all:
         _step("fuzz", run, kept, total, built, groups.fuzz)
         for sentence in measured_pages.told(ROOT):
@@ -152,7 +155,12 @@ def _step(
     total.add(name, found, clock)
 
 
+def _interrupt(*_: object) -> None:
+    raise KeyboardInterrupt
+
+
 if __name__ == "__main__":
+    signal.signal(signal.SIGTERM, _interrupt)  # as Ctrl-C: the programs that it has started end, too
     try:
         sys.exit(main())
     except KeyboardInterrupt:
