@@ -21,25 +21,37 @@ class Causes(CheckFolderTest):
     def test_each_change_is_named(self):
         self.save("shot")
         self.update()
-        for name, change in _CHANGES.items():
+        report = self.folder / "report.xml"
+        self._assert_named(_CHANGES, _EXPECTED, "--junit", report)
+        text = report.read_text()
+        self.assertEqual(text.count("<testcase"), 2 + len(_EXPECTED))
+        self.assertEqual(text.count("<failure message="), len(_EXPECTED))
+
+    def test_changes_are_named_through_an_open_lens(self):
+        """Every pixel mixes several objects."""
+        lens = bpy.context.scene.camera.data.dof
+        lens.use_dof, lens.focus_distance, lens.aperture_fstop = True, 2.0, 0.03
+        self.save("shot")
+        self.update(*_FEW)
+        self._assert_named(_LENS_CHANGES, _LENS_EXPECTED)
+
+    def _assert_named(self, changes, expected, *options):
+        """Of "shot", whose reference is there; "seed" is no change."""
+        for name, change in changes.items():
             bpy.ops.wm.open_mainfile(filepath=str(self.shots / "shot.blend"))
             change()
             self.save(name)
-        self.references(*_CHANGES)
-        report = self.folder / "report.xml"
-        status, said, outcomes = self.check("--junit", report)
+        self.references(*changes)
+        status, said, outcomes = self.check(*options)
         self.assertEqual(status, 1, said)
-        self.assertTrue(outcomes["shot"]["passed"], said)
-        self.assertTrue(outcomes["seed"]["passed"], said)
-        for name, (kind, words) in _EXPECTED.items():
+        for name in {"shot", *changes} - set(expected):
+            self.assertTrue(outcomes[name]["passed"], said)
+        for name, (kind, words) in expected.items():
             with self.subTest(name):
                 found = [(cause["kind"], cause["sentence"]) for cause in outcomes[name]["causes"]]
                 self.assertEqual([each for each, _ in found], [kind], said)
                 self.assertIn(words, found[0][1])
                 self.assertIn(f"{kind}: ", (self.shots / "velour-check/index.html").read_text())
-        text = report.read_text()
-        self.assertEqual(text.count("<testcase"), 2 + len(_EXPECTED))
-        self.assertEqual(text.count("<failure message="), len(_EXPECTED))
 
     def test_update_asks_before_it_replaces(self):
         self.save("shot")
@@ -161,6 +173,10 @@ def _move_camera():
     bpy.context.scene.camera.location.z += 0.05
 
 
+def _focus():
+    bpy.context.scene.camera.data.dof.focus_distance *= 1.5
+
+
 # Kind of cause and words of its sentence, by file.
 _EXPECTED = {
     "exposed": ("exposure", "times 1.0"),
@@ -179,6 +195,9 @@ _CHANGES = {
     "shifted": _shift_uv_map,
     "camera": _move_camera,
 }
+_LENS_CHANGES = {"swapped": _swap_texture, "refitted": _refit, "shifted": _shift_uv_map, "focused": _focus}
+_LENS_EXPECTED = {name: _EXPECTED[name] for name in ("swapped", "refitted", "shifted")}
+_LENS_EXPECTED["focused"] = ("geometry", "depth of field")
 if level.LONG:
     _CHANGES |= {"moved": _move, "flat": _smooth, "dimmed": _dim}
     _EXPECTED |= {

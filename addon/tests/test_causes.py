@@ -47,6 +47,8 @@ class Scene:
         colors = np.where(surface, light * self.albedo + 0.05, sky)
         self.picture = np.dstack([colors, np.ones((HEIGHT, WIDTH))])
         self.world = random.uniform(0.1, 1.0, (WORLD, WORLD, 3))
+        self.larger_parts = None  # labels of pixels that are no one's alone
+        self.blurred = None
 
     def where(self, name):
         return np.abs(self.objects - 1 - NAMES.index(name)) < 0.5
@@ -62,8 +64,13 @@ class Scene:
             return simulated(random, values, noise, count)
 
         passes = {name: seen(name, getattr(self, name)) for name in CHANNELS if name != "picture"}
-        labels = {kind: Labels(getattr(self, kind), NAMES) for kind in ("objects", "materials")}
-        return seen("picture", self.picture), Passes(**passes, **labels, world=seen("world", self.world))
+        numbers = {kind: getattr(self, kind) for kind in ("objects", "materials")}
+        mostly = numbers if self.larger_parts is None else dict.fromkeys(numbers, self.larger_parts)
+        labels = {kind: Labels(numbers[kind], NAMES, mostly[kind]) for kind in numbers}
+        passes |= labels | {"world": seen("world", self.world)}
+        if self.blurred is not None:
+            passes["blurred"] = seen("shape", self.blurred)
+        return seen("picture", self.picture), Passes(**passes)
 
 
 def simulated(random, mean, noise, count):
@@ -184,8 +191,10 @@ def known():
     return Scene().renders(1, REFERENCE_SEEDS)
 
 
-def judged(scene, seed=2):
-    (picture, passes), (reference, its_passes) = scene.renders(seed), known()
+def judged(scene, seed=2, before=None):
+    """`before`: the scene of the reference (Scene())."""
+    picture, passes = scene.renders(seed)
+    reference, its_passes = (before or Scene()).renders(1, REFERENCE_SEEDS)
     comparison = compare(picture, reference, 50, (passes, its_passes))
     return comparison, causes.find(picture, reference, (passes, its_passes))
 
@@ -217,6 +226,37 @@ def test_material_and_exposure_are_both_named():
     _exposure(scene)
     _, found = judged(scene)
     assert [cause.kind for cause in found] == ["material", "exposure"]
+
+
+def _open_lens():
+    """Each pixel of the ball shows other things, too."""
+    scene = Scene()
+    scene.larger_parts = scene.objects.copy()
+    for labels in (scene.objects, scene.materials):
+        labels[labels == 2] = MIXED
+    scene.blurred = 0.9 * scene.shape
+    return scene
+
+
+def test_object_that_fills_no_pixel_alone_is_named():
+    scene = _open_lens()
+    mask = scene.larger_parts == 2
+    scene.albedo[mask] *= 1.05
+    scene.picture[mask, :3] *= 1.05
+    _, found = judged(scene, before=_open_lens())
+    assert [(cause.kind, cause.names) for cause in found] == [("material", ("Ball",))]
+
+
+def test_depth_of_field_is_named():
+    scene = _open_lens()
+    scene.blurred *= 1.05
+    scene.picture[10:30] *= 1.1
+    _, found = judged(scene, before=_open_lens())
+    assert len(found) == 1
+    assert str(found[0]).startswith("geometry: depth of field or motion blur")
+    scene.blurred = None
+    _, found = judged(scene, before=_open_lens())
+    assert str(found[0]) == "geometry: only one of both has depth of field or motion blur"
 
 
 def test_camera_is_named_where_everything_moves():
@@ -282,6 +322,8 @@ def judge_stored(path, renders=None):
 def test_passes_are_what_was_written(stored):
     _, passes = known()
     found = passes_file.read(stored, (HEIGHT, WIDTH))
+    assert found.blurred is None
+    np.testing.assert_array_equal(found.objects.mostly, passes.objects.mostly)
     np.testing.assert_array_equal(found.objects.numbers, passes.objects.numbers)
     assert found.materials.names == NAMES
     for name in ("shape", "coordinates", "albedo", "world"):
@@ -305,7 +347,7 @@ FAULTS = {
     "another picture": "belongs to another shot.exr",
     "cut": "cannot be read",
     "no archive": "cannot be read",
-    "newer": "has version 2, not 1",
+    "newer": "has version 3, not 2",
     "size": "cannot be read",
     "not finite": "cannot be read",
 }
@@ -343,7 +385,7 @@ def _spoil(path, fault):
         found = {name: arrays[name] for name in arrays.files}
     head = json.loads(found["head"].tobytes())
     if fault == "newer":
-        head["version"] = 2
+        head["version"] = 3
     elif fault == "size":
         found["albedo"] = found["albedo"][1:]
     else:

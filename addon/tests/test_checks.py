@@ -79,7 +79,13 @@ def test_progress_is_read_from_the_log():
 
 def test_a_campaign_repeats_only_what_a_change_may_break(tmp_path):
     subprocess.run(["git", "init", "-q", tmp_path / "tree"], check=True)
-    for name in ("native/src/a.cpp", "addon/velour/a.py", "native/tests/a_test.cpp", "docs/a.md"):
+    for name in (
+        "native/src/a.cpp",
+        "addon/velour/a.py",
+        "native/tests/a_test.cpp",
+        "docs/a.md",
+        "scripts/lib/test_run.py",
+    ):
         (tmp_path / "tree" / name).parent.mkdir(parents=True, exist_ok=True)
         (tmp_path / "tree" / name).write_text("1")
     file = tmp_path / "all.json"
@@ -103,6 +109,7 @@ def test_a_campaign_repeats_only_what_a_change_may_break(tmp_path):
     assert after_a_change_of("native/src/a.cpp") == all_groups
     assert after_a_change_of("addon/velour/a.py") == all_groups - {"native", "fuzz"}
     assert after_a_change_of("native/tests/a_test.cpp") == {"native", "python", "fuzz"}
+    assert after_a_change_of("scripts/lib/test_run.py") == {"python"}
     assert after_a_change_of("docs/a.md") == {"python", "blender", "blender 5.2"}
     assert after_a_change_of("docs/new.md") == {"python", "blender", "blender 5.2"}
     (tmp_path / "tree/docs/new.md").unlink()

@@ -17,6 +17,7 @@ from .passes import MIXED, NOTHING, Passes
 from .regions import EXPLAINED, FEWEST, LEVEL, Factor, Sides, both, changed, covered, largest, regions
 
 _MOST_NAMES = 3
+_LEAST_FACTOR = 0.002  # of exposure beside other causes, whose indirect light may change everything a little
 _DISTANCE = 3  # channel of "shape": grows with the distance
 
 
@@ -32,17 +33,24 @@ class Cause(NamedTuple):
 def find(ours: Estimate, reference: Estimate, passes: tuple[Passes, Passes]) -> list[Cause]:
     """The causes of a difference; never empty. `ours`, `reference`: RGB or RGBA."""
     sides = Sides((ours.channels(COLOR), reference.channels(COLOR)), *passes)
+    causes = _in_passes(sides) or _in_passes(sides.by_most()) or _light(sides)
+    return causes or [Cause("unknown", "the difference is too small, or too close to edges, to name")]
+
+
+def _in_passes(sides: Sides) -> list[Cause]:
+    """Causes that the passes tell; beside materials alone, exposure, too."""
+    passes = sides.ours, sides.known
     thinned, explained = _transparency(sides)
     causes, of_shape = _geometry(sides, ~explained)
     explained |= of_shape
     materials, of_materials = _materials(sides, ~explained)
     materials += thinned
     causes += materials + _world(passes)
-    if not causes:
-        causes = _light(sides)
-    elif materials and len(causes) == len(materials):
-        causes += _exposure(sides, ~explained & ~of_materials)
-    return causes or [Cause("unknown", "the difference is too small, or too close to edges, to name")]
+    if not any(cause.kind == "geometry" for cause in causes):
+        causes += _blur(passes)
+    if materials and len(causes) == len(materials):
+        causes += _exposure(sides, ~explained & ~of_materials, _LEAST_FACTOR)
+    return causes
 
 
 def _transparency(sides: Sides) -> tuple[list[Cause], np.ndarray]:
@@ -70,7 +78,7 @@ def _geometry(sides: Sides, usable: np.ndarray) -> tuple[list[Cause], np.ndarray
     if not names and usable.all():
         names = _on_edges(sides)
     if names:
-        seen = set(sides.known.objects.names)
+        seen = {name for name in sides.known.objects.names if sides.known.objects.where(name).any()}
         all_of_them = len(seen) > 1 and seen <= set(names)
         sentence = f"shape or place of {_listed('object', names)}"
         if all_of_them:
@@ -149,6 +157,19 @@ def _world(passes: tuple[Passes, Passes]) -> list[Cause]:
     return [Cause("world", "its directions or colors (turned, or another picture)")]
 
 
+def _blur(passes: tuple[Passes, Passes]) -> list[Cause]:
+    """Of shapes that agree where they are sharp."""
+    ours, known = (side.blurred for side in passes)
+    if ours is None and known is None:
+        return []
+    if ours is None or known is None:
+        return [Cause("geometry", "only one of both has depth of field or motion blur")]
+    blocks, whole = (scores(ours, known, block) for block in (BLOCK, WHOLE))
+    if max(blocks.z.max(), whole.z.max()) <= z_limit(blocks.z.size + whole.z.size, LEVEL):
+        return []
+    return [Cause("geometry", "depth of field or motion blur (focus, aperture, shutter or movement)")]
+
+
 def _light(sides: Sides) -> list[Cause]:
     """The picture alone differs: by a common factor, on one material, on the background, or anywhere."""
     everything = np.ones(sides.known.objects.numbers.shape, bool)
@@ -170,11 +191,12 @@ def _light(sides: Sides) -> list[Cause]:
     return [Cause("light", f"lamps, shadows or indirect light, on {_shortened(surfaces)}")]
 
 
-def _exposure(sides: Sides, mask: np.ndarray) -> list[Cause]:
+def _exposure(sides: Sides, mask: np.ndarray, least: float = 0.0) -> list[Cause]:
+    """`least`: difference of the factor from 1."""
     if np.count_nonzero(mask) < FEWEST:
         return []
     factor = Factor.of([scores(*sides.picture, BLOCK, mask)])
-    if factor.differs and factor.explains:
+    if factor.differs and factor.explains and abs(factor.value - 1) >= least:
         return [Cause("exposure", f"all colors times {factor} (or the power of all lights alike)")]
     return []
 

@@ -75,8 +75,9 @@ def read_frame(folder: Path, frame: int | None, seeds: list[int], layer: str | N
     if layer is None:
         found = Renders(estimate(images.read(path) for path in paths), None)
     else:
-        worlds = [path.with_name(f"world-{path.name}") for path in paths]
-        found = Renders(*read_renders(paths, worlds if worlds[0].is_file() else [], layer))
+        beside = [[path.with_name(f"{what}-{path.name}") for path in paths] for what in ("world", "sharp")]
+        worlds, sharp = (files if files[0].is_file() else [] for files in beside)
+        found = Renders(*read_renders(paths, worlds, sharp, layer))
     if not np.isfinite(found.picture.variance).all():
         raise ValueError(f"frame {name} has pixels that are not finite; look at its materials and lights.")
     return found

@@ -3,7 +3,8 @@
 The task: "blend", "scripts" (whether its own may run), "frames" (numbers, or [null] for the one that the file
 was saved at), "seeds" (added to the file's), "samples" (null: the file's), "passes" (whether the files get
 those that name causes, and the world gets files of its own), "folder" (of the pictures, FRAME-SEED.exr and
-world-FRAME-SEED.exr, FRAME being "own" for null) and "report", which gets "layer" (of the passes, or null).
+world-FRAME-SEED.exr, FRAME being "own" for null; of frames with depth of field or motion blur also
+sharp-FRAME-SEED.exr, without it) and "report", which gets "layer" (of the passes, or null).
 """
 
 from pathlib import Path
@@ -13,6 +14,7 @@ import inside
 import inside_world
 
 _MIST_METERS = 1000.0  # distances beyond look alike
+_LEAST_SAMPLES = 16  # of passes that are rendered by themselves, with a quarter of the picture's
 
 
 def main(task):
@@ -32,9 +34,29 @@ def main(task):
             scene.velour.seed = (first + seed) % (1 << 31)
             name = f"{'own' if frame is None else frame}-{seed}.exr"
             inside.render(scene, Path(task["folder"]) / name)
+            if task["passes"]:
+                _render_sharp(scene, Path(task["folder"]) / f"sharp-{name}")
             if ball:
                 ball.render(Path(task["folder"]) / f"world-{name}", scene.frame_current, scene.velour.seed)
     return {"layer": layer}
+
+
+def _render_sharp(scene, path):
+    """The passes without depth of field and motion blur, if any: they mix objects in every pixel."""
+    lens = scene.camera.data.dof if scene.camera and scene.camera.type == "CAMERA" else None
+    focused = lens is not None and lens.use_dof
+    if not focused and not scene.render.use_motion_blur:
+        return
+    kept = [(scene.render, "use_motion_blur"), (scene.velour, "samples"), (scene.velour, "bounces")]
+    kept += [(lens, "use_dof")] if focused else []
+    before = [getattr(owner, name) for owner, name in kept]
+    scene.render.use_motion_blur, scene.velour.bounces = False, 0
+    scene.velour.samples = min(scene.velour.samples, max(scene.velour.samples // 4, _LEAST_SAMPLES))
+    if focused:
+        lens.use_dof = False
+    inside.render(scene, path)
+    for (owner, name), value in zip(kept, before, strict=True):
+        setattr(owner, name, value)
 
 
 def _set_samples(scene, samples):

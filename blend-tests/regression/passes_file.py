@@ -15,7 +15,7 @@ from support.judge import Estimate
 from . import reference
 from .passes import MEASURED, Labels, Passes
 
-_VERSION = 1
+_VERSION = 2
 _AGAIN = "make the reference again with --update"
 
 
@@ -32,7 +32,7 @@ def write(path: Path, passes: Passes) -> None:
     """Atomic. Call it after the picture of the reference has been written: it is bound to its bytes."""
     head = {"version": _VERSION, "picture": files.sha256(path), "seeds": passes.shape.seeds}
     arrays = {}
-    for name in (*MEASURED, "world"):
+    for name in (*MEASURED, "world", "blurred"):
         found = getattr(passes, name)
         if found is not None:
             arrays[name] = reference.rounded_mean(found)
@@ -40,6 +40,7 @@ def write(path: Path, passes: Passes) -> None:
     for name in ("objects", "materials"):
         labels = getattr(passes, name)
         arrays[name], head[name] = labels.numbers, list(labels.names)
+        arrays[f"{name}_mostly"] = labels.mostly
     data = io.BytesIO()
     np.savez_compressed(data, head=np.frombuffer(json.dumps(head).encode(), np.uint8), **arrays)
     files.write_atomic(passes_path(path), lambda temporary: temporary.write_bytes(data.getvalue()))
@@ -78,9 +79,13 @@ def _passes(arrays: dict[str, np.ndarray], head: dict, size: tuple[int, int]) ->
 
     labels = {}
     for name in ("objects", "materials"):
-        if arrays[name].shape != size or arrays[name].max(initial=0) > len(head[name]):
-            raise ValueError(name)
-        labels[name] = Labels(arrays[name], tuple(head[name]))
+        numbers, mostly = (arrays[key] for key in (name, f"{name}_mostly"))
+        for each in (numbers, mostly):
+            if each.shape != size or each.max(initial=0) > len(head[name]):
+                raise ValueError(name)
+        labels[name] = Labels(numbers, tuple(head[name]), mostly)
     world = known("world", 3) if "world" in arrays else None
+    blurred = known("blurred", 4) if "blurred" in arrays else None
     channels = dict(zip(MEASURED, (4, 2, 3), strict=True))
-    return Passes(**{name: known(name, count) for name, count in channels.items()}, **labels, world=world)
+    measured = {name: known(name, count) for name, count in channels.items()}
+    return Passes(**measured, **labels, world=world, blurred=blurred)

@@ -12,13 +12,19 @@ from .passes import MIXED, NOTHING, Labels, Passes
 
 LEVEL = 1e-3  # chance that a list of comparisons names anything that has not changed
 EXPLAINED = 0.01  # chance that a common factor, or a change of one material only, is not taken for one
-FEWEST = 16  # pixels of an object or a material that is judged
+FEWEST = 8  # pixels of an object or a material that is judged
 
 
 class Sides(NamedTuple):
     picture: tuple[Estimate, Estimate]  # colors; ours, the reference's
     ours: Passes
     known: Passes
+    worst_only: bool = False  # of the names of a list
+
+    def by_most(self) -> Sides:
+        """What fills too few pixels alone gets those that it fills by half, which show others, too."""
+        ours, known = (side.by_most(FEWEST) for side in (self.ours, self.known))
+        return self._replace(ours=ours, known=known, worst_only=True)
 
     def stays(self, kind: str) -> np.ndarray:
         """[height x width] bool: pixels that show the same object or material in both."""
@@ -66,7 +72,8 @@ def changed(sides: Sides, kind: str, measured: str, usable: np.ndarray) -> list[
             tested[name] = both((first, second), mask)
     count = sum(each.z.size for pair in tested.values() for each in pair)
     z = {name: largest(pair) for name, pair in tested.items()}
-    return sorted((name for name in z if z[name] > z_limit(count, LEVEL)), key=lambda name: -z[name])
+    names = sorted((name for name in z if z[name] > z_limit(count, LEVEL)), key=lambda name: -z[name])
+    return names[:1] if sides.worst_only else names
 
 
 def regions(sides: Sides) -> dict[str, np.ndarray]:

@@ -13,12 +13,15 @@ from pathlib import Path
 from .cases import Case
 from .groups import ROOT
 
+# What runs the groups; the tests of this itself are in Python.
+_RUNNER = ("scripts/lib/checks/", "scripts/lib/test_run.py")
+_TESTS = ("addon/tests/", "native/tests/", "native/fuzz/")
 # Paths that no test of a group reads. Groups that are not listed may read everything.
 _UNREAD: dict[str, tuple[str, ...]] = {
-    "native": ("addon/", "blend-tests/", "docs/"),
-    "fuzz": ("addon/", "blend-tests/", "docs/"),
-    "scenes": ("addon/tests/", "native/tests/", "native/fuzz/", "docs/"),
-    "blender": ("addon/tests/", "native/tests/", "native/fuzz/"),
+    "native": ("addon/", "blend-tests/", "docs/", *_RUNNER),
+    "fuzz": ("addon/", "blend-tests/", "docs/", *_RUNNER),
+    "scenes": (*_TESTS, "docs/", *_RUNNER),
+    "blender": (*_TESTS, *_RUNNER),
 }
 # blend-tests/run itself sees whether these have changed.
 _SEEN_BY_FILES = re.compile(r"blend-tests/(parity/)?(test|window)_\w+\.py$|docs/|README\.md$|CHANGELOG\.md$")
