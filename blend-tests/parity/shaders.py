@@ -47,8 +47,10 @@ class Tree:
         self.links.new(second, node.inputs[1])
         return node.outputs[0]
 
-    def end(self, shader):
+    def end(self, shader, target="ALL"):
+        """`target`: the engines that use it. The last one is active."""
         output = self.nodes.new("ShaderNodeOutputMaterial")
+        output.target, output.is_active_output = target, True
         self.links.new(shader, output.inputs["Surface"])
 
     def diffuse(self, color=(0.8, 0.8, 0.8), **inputs):

@@ -136,6 +136,14 @@ class Groups(ShaderTest):
         links.new(mix.outputs[0], end.inputs[0])
         return group
 
+    def test_outputs_of_engines(self):
+        """Cycles has one of its own, which is not the active one."""
+        tree = self.tree
+        tree.end(tree.diffuse((0.1, 0.2, 0.9)), "ALL")
+        tree.end(tree.diffuse((0.2, 0.9, 0.1)), "CYCLES")
+        tree.end(tree.diffuse((0.9, 0.1, 0.1)), "EEVEE")
+        self.assert_parity("Material Output: of Cycles beside those of others")
+
     def test_group(self):
         tree = self.tree
         picture = tree.picture(image(9))

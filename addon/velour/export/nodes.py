@@ -124,9 +124,15 @@ def approximation_node(material):
 
 
 def active_output(tree, idname):
-    """The output node that Blender renders, or None."""
+    """The output node that Cycles renders, or None: its own before that of all engines, and the active one of
+    these. That of another engine only if there is no other."""
+    order = {"CYCLES": 0, "ALL": 1}
     outputs = [node for node in tree.nodes if node.bl_idname == idname]
-    return next((node for node in outputs if node.is_active_output), outputs[0] if outputs else None)
+    return min(
+        outputs,
+        key=lambda node: (order.get(getattr(node, "target", "ALL"), 2), not node.is_active_output),
+        default=None,
+    )
 
 
 def output(socket):
