@@ -8,7 +8,7 @@ from bench.pages import population as page
 from velour.native import Measurement
 
 
-@pytest.mark.parametrize("index", range(5))
+@pytest.mark.parametrize("index", range(7))
 def test_members_are_measurements_that_a_seed_determines(tmp_path, index):
     paths = [tmp_path / name for name in ("first", "second")]
     for path in paths:

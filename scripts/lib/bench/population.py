@@ -8,8 +8,12 @@ from pathlib import Path
 
 import numpy as np
 
+from . import population_rgl
+
 # f of wl [n, 3] and wv [n, 3], both above the horizon: [n, 3] in 1/sr
 Brdf = Callable[[np.ndarray, np.ndarray], np.ndarray]
+# Seven, so that every kind meets every layout.
+_LAYOUTS = ("merl", "rgl", "merl", "cornell", "merl", "rgl", "cornell")
 _SCALES = np.array([1.0, 1.15, 1.66]) / 1500  # of MERL's planes
 _WAVELENGTHS = (450, 550, 610)  # of the irregular samples: near the primaries
 
@@ -18,7 +22,7 @@ _WAVELENGTHS = (450, 550, 610)  # of the irregular samples: near the primaries
 class Member:
     name: str
     kind: str
-    layout: str  # "merl", "cornell"
+    layout: str  # "merl", "cornell", "rgl"
     defect: str
     write: Callable[[Path], None]
 
@@ -26,7 +30,7 @@ class Member:
 def member(seed: int, index: int) -> Member:
     random = np.random.default_rng([seed, index])
     kind, make = _KINDS[index % len(_KINDS)]
-    layout = "cornell" if index % 5 == 4 else "merl"
+    layout = _LAYOUTS[index % len(_LAYOUTS)]
     defect = _DEFECTS[int(random.integers(len(_DEFECTS)))]
     brdf = _with_defect(make(random), defect)
     noise = random.uniform(0.02, 0.15) if defect == "noise" else 0.0
@@ -37,6 +41,11 @@ def member(seed: int, index: int) -> Member:
             _write_merl(
                 path, brdf, (45, 15, 18) if coarse else (90, 30, 36), defect == "holes", noise, random
             )
+
+    elif layout == "rgl":
+
+        def write(path: Path) -> None:
+            population_rgl.write(path, brdf, 16 if coarse else 32, noise, random)
 
     else:
         count = int(random.integers(30, 100)) if coarse else int(random.integers(400, 1500))

@@ -13,6 +13,9 @@ CSV = "population/population.csv"
 SETTINGS = {"members": (60, 3), "population_seed": (1, 1)}
 VIEWS = ("5", "30", "60", "75", "85")
 PEERS = ("ggx", "principled")
+LAYOUTS = ("merl", "rgl", "cornell")
+QUALITIES = ("good", "fair", "poor")
+_VISIBLE = 0.1  # FLIP of a fit that must not pass for more than poor
 
 
 def measure(run: Run) -> dict:
@@ -36,6 +39,7 @@ def _row(run: Run, folder: Path, index: int) -> dict:
         "processor": report["processor_seconds"],
     }
     row |= {"bytes": report["bytes"], "error": report["relative_l2"]}
+    row |= {"verdict": report["verdict"]["quality"], "flip": report["verdict"]["flip_mean"]}
     row |= {f"error_{view}": report["by_view_angle"][view] for view in VIEWS}
     row["per_view"] = run.fit(path, "scattered", threads=run.threads)[1]["relative_l2"]
     peers = {peer: run.compare_peer(path, peer) for peer in PEERS}
@@ -70,7 +74,9 @@ def write(run: Run, found: dict) -> None:
     columns = {f"error at {view}°": [row[f"error_{view}"] for row in rows] for view in VIEWS}
     columns |= {"mean error": [row["error"] for row in rows]}
     columns |= {f"mean error, {name}": [row[name] for row in rows] for name in ("per_view", *PEERS)}
-    columns |= {name: [row[name] for row in rows] for name in ("seconds", "processor", "bytes")}
+    for layout in LAYOUTS:
+        columns[f"mean error, {layout}"] = [row["error"] for row in rows if row["layout"] == layout]
+    columns |= {name: [row[name] for row in rows] for name in ("flip", "seconds", "processor", "bytes")}
     spreads = [{"what": what, **spread(values)} for what, values in columns.items()]
     worst = sorted(rows, key=lambda row: -row["error"])[:12]
     values = {
@@ -80,11 +86,13 @@ def write(run: Run, found: dict) -> None:
         ),
         "worst": page.table(
             worst,
-            "measurement | layout | defect | model | error | per-view | GGX | Principled",
+            "measurement | layout | defect | model | error | per-view | GGX | Principled | verdict",
             "{member} | {layout} | {defect} | {model} | {error:.3f} | {per_view:.3f} | {ggx:.3f} |"
-            " {principled:.3f}",
+            " {principled:.3f} | {verdict}",
         ),
         "beaten": sum(map(beaten, rows)),
         "per_view": sum(row["model"] == "per-view" for row in rows),
+        "hidden": sum(row["flip"] > _VISIBLE and row["verdict"] != "poor" for row in rows),
+        **{quality: sum(row["verdict"] == quality for row in rows) for quality in QUALITIES},
     }
     page.write(run.output, "population.md", page.text("population", found["conditions"] | values))
