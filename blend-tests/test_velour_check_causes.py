@@ -36,7 +36,7 @@ class Causes(CheckFolderTest):
         self._assert_named(_LENS_CHANGES, _LENS_EXPECTED)
 
     def _assert_named(self, changes, expected, *options):
-        """Of "shot", whose reference is there; "seed" is no change."""
+        """The changes are those of "shot", whose reference is there; "seed" is none."""
         for name, change in changes.items():
             bpy.ops.wm.open_mainfile(filepath=str(self.shots / "shot.blend"))
             change()

@@ -158,7 +158,7 @@ def _world(passes: tuple[Passes, Passes]) -> list[Cause]:
 
 
 def _blur(passes: tuple[Passes, Passes]) -> list[Cause]:
-    """Of shapes that agree where they are sharp."""
+    """Blur that differs where sharp shapes agree."""
     ours, known = (side.blurred for side in passes)
     if ours is None and known is None:
         return []

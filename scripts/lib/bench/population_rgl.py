@@ -8,7 +8,7 @@ from pathlib import Path
 
 import numpy as np
 
-# Of the database's isotropic files: radians, and nodes along each axis.
+# The database's isotropic files have these views (radians) and nodes along each axis.
 _VIEWS = np.array([0.0, 0.48, 0.694, 0.872, 1.037, 1.2, 1.373, 0.5 * np.pi])
 _NORMALS, _WARP = 128, 128
 _LAST_VIEW = np.radians(88)  # formulas have no limit at the horizon
