@@ -11,6 +11,7 @@ from pathlib import Path
 from . import report
 
 _ROOT = Path(__file__).resolve().parents[2]
+# Words of the programs that read documents, by themselves or by support.guide and support.snippets.
 _READS_DOCS = re.compile(rb"docs|guide|snippets")
 
 

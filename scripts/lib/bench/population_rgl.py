@@ -1,4 +1,4 @@
-"""Writes a BRDF in the adaptive parameterization of the RGL material database [Dupuy and Jakob 2018]."""
+"""Writes a BRDF in the adaptive parameterization of the RGL material database [RGL]."""
 
 from __future__ import annotations
 
