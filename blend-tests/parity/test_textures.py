@@ -37,8 +37,8 @@ class WallTest(ParityTest):
 
 
 class UvMaps(WallTest):
-    def _picture(self, interpolation="Linear"):
-        image = bpy.data.images.new("checker", 8, 8, float_buffer=True)
+    def _picture(self, interpolation="Linear", is_float=True):
+        image = bpy.data.images.new("checker", 8, 8, float_buffer=is_float)
         pixels = np.random.default_rng(2).uniform(0.1, 0.9, (8, 8, 4)).astype(np.float32)
         pixels[..., 3] = 1
         image.pixels.foreach_set(pixels.ravel())
@@ -117,6 +117,23 @@ class UvMaps(WallTest):
         self._picture()
         self.assert_parity("Image Texture: linear")
 
+    def test_linear_bytes(self):
+        """Cycles interpolates bytes, which are sRGB."""
+        self._picture(is_float=False)
+        self.assert_parity("Image Texture: linear, sRGB")
+
+    def test_linear_number(self):
+        """The brightness of an sRGB picture as a factor."""
+        tree = self.material.node_tree
+        picture = self._picture(is_float=False)
+        other, mix = tree.nodes.new("ShaderNodeEmission"), tree.nodes.new("ShaderNodeMixShader")
+        shader = next(n for n in tree.nodes if n.bl_idname == "ShaderNodeBsdfDiffuse")
+        tree.links.new(picture.outputs[0], mix.inputs[0])
+        tree.links.new(shader.outputs[0], mix.inputs[1])
+        tree.links.new(other.outputs[0], mix.inputs[2])
+        tree.links.new(mix.outputs[0], tree.nodes["Material Output"].inputs["Surface"])
+        self.assert_parity("Image Texture: linear, sRGB, as a number")
+
 
 class Alpha(WallTest):
     """Pictures that are see-through in part, with and without the alpha being looked at."""
@@ -170,9 +187,11 @@ class Alpha(WallTest):
         self.assert_parity("Image Texture: no alpha")
 
     def test_linear_cut_out(self):
-        """Cycles divides by alpha between texels, Velour at them."""
-        self._cut_out(self._shown(True, "PREMUL", "Linear"))
-        self.assert_approximate("Image Texture: alpha, cut out, linear", 10)
+        """Cycles divides by alpha, and decodes sRGB, between texels."""
+        for is_float, mode in ((True, "PREMUL"), (False, "STRAIGHT")):
+            with self.subTest(mode):
+                self._cut_out(self._shown(is_float, mode, "Linear"))
+                self.assert_parity(f"Image Texture: alpha, cut out, linear, {mode.lower()}")
 
 
 class AlphaModes(BoardTest):

@@ -21,11 +21,30 @@ class _Stored(NamedTuple):
     is_straight: bool  # Cycles multiplies colors by alpha, if the alpha belongs to them
 
 
-def working_pixels(image, notes, beside_alpha=False):
+class Pixels(NamedTuple):
+    """What Cycles interpolates."""
+
+    values: np.ndarray  # [height x width x 4] float32, row 0 at the bottom
+    srgb: bool  # interpolated colors are decoded from sRGB; else they are in the working space
+    premultiplied: bool  # and divided by alpha before
+
+
+def working_pixels(image, notes):
     """[height x width x 4] float32, row 0 at the bottom, for any image source; None if it has no pixels.
 
     Colors are multiplied by alpha, as in Cycles, unless the alpha is unrelated to them (channel packed, or
-    data). `beside_alpha`: the image's alpha is used too, so Cycles divides by it afterwards.
+    data).
+    """
+    pixels = interpolated_pixels(image, notes)
+    if pixels is not None and pixels.srgb:
+        return bytes_to_working(pixels.values, image.colorspace_settings.name)[0]
+    return pixels and pixels.values
+
+
+def interpolated_pixels(image, notes, beside_alpha=False):
+    """Pixels of any image source; None if it has none.
+
+    `beside_alpha`: the image's alpha is used too, so Cycles divides colors by it.
     """
     note_header(image, notes)
     space = image.colorspace_settings.name
@@ -38,13 +57,17 @@ def working_pixels(image, notes, beside_alpha=False):
         values[..., 3] = 1
     if has_alpha and stored.is_straight:
         _multiply(values, stored.largest)
-    if has_alpha and beside_alpha:
+    divided = has_alpha and beside_alpha
+    if not stored.is_encoded:
+        return Pixels(values, False, divided)
+    if is_srgb(space):
+        return Pixels(values, True, divided)
+    if divided:  # other spaces than sRGB are decoded before
         _divide(values)
-    if stored.is_encoded:
-        values, known = bytes_to_working(values, space)
-        if not known:
-            notes.add(f"Image '{image.name}': its color space '{space}' is not supported; read as sRGB.")
-    return values
+    values, known = bytes_to_working(values, space)
+    if not known:
+        notes.add(f"Image '{image.name}': its color space '{space}' is not supported; read as sRGB.")
+    return Pixels(values, False, False)
 
 
 def multiplies_floats(image):

@@ -3,9 +3,9 @@
 import numpy as np
 
 from ..native import Texture, TextureSlot, VelourError
-from .color import luminance_weights
+from .color import luminance_weights, rec709_to_working
 from .files import FIND, absolute_path
-from .pixels import working_pixels
+from .pixels import interpolated_pixels
 
 
 class TextureTable:
@@ -45,7 +45,7 @@ class TextureTable:
 
     def _read(self, picture, is_color, owner, instead):
         try:
-            pixels = working_pixels(picture.image, self._notes, picture.beside_alpha)
+            pixels = interpolated_pixels(picture.image, self._notes, picture.beside_alpha)
         except VelourError as error:
             self._notes.add(f"{owner}: image '{picture.image.name}' is replaced by {instead}: {error}")
             return None
@@ -56,9 +56,14 @@ class TextureTable:
                 f" {instead}; {FIND}."
             )
             return None
-        options = {"wrap": picture.wrap, "filter": picture.filter}
-        if is_color and not picture.alpha:
-            return self._scene.texture(pixels, **options)
-        number = pixels[..., 3] if picture.alpha else pixels[..., :3] @ luminance_weights()
-        number = np.ascontiguousarray(number[..., None], np.float32)
-        return self._scene.texture(number, channel=-1 if is_color else 0, **options)
+        options = {"wrap": picture.wrap, "filter": picture.filter, "channel": -1 if is_color else 0}
+        if picture.alpha:
+            return self._scene.texture(np.ascontiguousarray(pixels.values[..., 3:]), **options)
+        if not (pixels.srgb or pixels.premultiplied or is_color):
+            number = pixels.values[..., :3] @ luminance_weights()
+            return self._scene.texture(np.ascontiguousarray(number[..., None], np.float32), **options)
+        colors = rec709_to_working() if pixels.srgb else np.eye(3)
+        if not is_color:
+            colors = np.outer((1, 0, 0), luminance_weights() @ colors)
+        options |= {"srgb": pixels.srgb, "premultiplied": pixels.premultiplied, "colors": tuple(colors.ravel())}
+        return self._scene.texture(pixels.values, **options)

@@ -237,6 +237,9 @@ class TextureOptions(Struct):
         ("filter", c_int32),
         ("channel", c_int32),
         ("raw", c_int32),
+        ("srgb", c_int32),
+        ("premultiplied", c_int32),
+        ("colors", c_float * 9),
     ]
 
 

@@ -26,7 +26,11 @@ class Texture(Handle):
 
     @classmethod
     def from_pixels(cls, pixels: np.ndarray, **options) -> Texture:
-        """[height x width x channels] float32, row 0 at the bottom, linear; colors in the working space."""
+        """[height x width x channels] float32, row 0 at the bottom, linear; colors in the working space.
+
+        srgb, premultiplied: 1: RGBA that is interpolated as stored, then divided by alpha, decoded, and
+        multiplied by `colors` [3 x 3], as in Cycles.
+        """
         pixels = checked("pixels", pixels, (None, None, None))
         height, width, channels = pixels.shape
         return cls._create("vlr_texture_create", width, height, channels, pointer(pixels), _options(options))

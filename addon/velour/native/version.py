@@ -1,7 +1,7 @@
 """The version of this package. A test compares it with CMakeLists.txt, bl_info and the manifest."""
 
 VERSION = (0, 1, 0)
-ABI_VERSION = 12
+ABI_VERSION = 13
 
 
 def packed(version: tuple[int, int, int] = VERSION) -> int:

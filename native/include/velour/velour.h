@@ -33,7 +33,7 @@ extern "C" {
 #endif
 
 /* Increases whenever a struct or the meaning of a call changes. */
-#define VLR_ABI_VERSION 12
+#define VLR_ABI_VERSION 13
 
 typedef int32_t vlr_status;
 enum {
@@ -637,11 +637,16 @@ typedef struct vlr_texture_options {
   int32_t filter;  /* VLR_FILTER_*: between magnified texels; minified ones are always averaged */
   int32_t channel; /* channel of a number; -1: a color from the first three channels (of one or two: the first) */
   int32_t raw;     /* vlr_texture_load: 1: integer values are numbers from 0 to 1; 0: they are sRGB colors */
+  /* If one is 1, the image has four channels and is interpolated as in Cycles, before it is decoded: the result is
+   * divided by alpha (`premultiplied`), made linear (`srgb`) and multiplied by `colors`; `channel` selects from that. */
+  int32_t srgb;          /* 1: colors have the sRGB curve */
+  int32_t premultiplied; /* 1: colors are multiplied by alpha and are to be divided by it, unless it is 0 */
+  float colors[9];       /* row-major, from the colors of the image to the working space; identity */
 } vlr_texture_options;
 VLR_API void vlr_texture_options_init(vlr_texture_options* options);
 /* Texture coordinates (0, 0) are the lower left corner of the picture, (1, 1) the upper right. `pixels` [height x width
- * x channels], row 0 at the bottom: linear, colors in the working space; they are copied. NaN counts as 0, infinity as
- * the largest finite value. */
+ * x channels], row 0 at the bottom: linear, colors in the working space, unless `options` says otherwise; they are
+ * copied. NaN counts as 0, infinity as the largest finite value. */
 VLR_API vlr_status vlr_texture_create(uint32_t width, uint32_t height, uint32_t channels, const float* pixels,
                                       const vlr_texture_options* options, vlr_texture** out);
 /* Loads an image file, whose colors are used as they are, in any working space. */

@@ -1,4 +1,6 @@
+#include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <iterator>
 #include <string>
 
@@ -158,6 +160,27 @@ struct Pixels {
   const float* at(size_t i) const { return first + i * static_cast<size_t>(channels); }
 };
 
+/// The first component of its colors is what options.channel selects.
+StoredTexels stored_texels(const Pixels& pixels, const vlr_texture_options& options) {
+  if (pixels.channels != 4 || options.channel > 2) {
+    throw Error(
+        Status::invalid_argument,
+        "vlr_texture_options.srgb and premultiplied need images of 4 channels and a channel up to 2; these have " +
+            std::to_string(pixels.channels) + ", and channel is " + std::to_string(options.channel) + ".");
+  }
+  StoredTexels stored;
+  stored.srgb = options.srgb != 0;
+  stored.premultiplied = options.premultiplied != 0;
+  stored.texels.resize(pixels.count());
+  std::memcpy(stored.texels.data(), pixels.first, pixels.count() * sizeof(glm::vec4));
+  const auto row = [&](int i) {
+    return Rgb(options.colors[3 * i], options.colors[3 * i + 1], options.colors[3 * i + 2]);
+  };
+  const int first = std::max(options.channel, 0);
+  stored.colors = glm::transpose(Mat3(row(first), row((first + 1) % 3), row((first + 2) % 3)));
+  return stored;
+}
+
 vlr_texture* texture_of(const Pixels& pixels, const vlr_texture_options& options) {
   if (options.channel < -1 || options.channel >= pixels.channels) {
     throw Error(Status::invalid_argument, "vlr_texture_options.channel is " + std::to_string(options.channel) +
@@ -166,19 +189,26 @@ vlr_texture* texture_of(const Pixels& pixels, const vlr_texture_options& options
   }
   const TextureOptions converted_options = converted(options);
   auto texture = std::make_unique<vlr_texture>();
-  if (options.channel >= 0) {
+  const auto made = [&](auto kind, auto texels) {
+    return std::make_shared<const Texture<decltype(kind)>>(pixels.width, pixels.height, std::move(texels),
+                                                           converted_options);
+  };
+  const bool is_stored = options.srgb != 0 || options.premultiplied != 0;
+  if (is_stored && options.channel >= 0) {
+    texture->number = made(float(), stored_texels(pixels, options));
+  } else if (is_stored) {
+    texture->color = made(Rgb(), stored_texels(pixels, options));
+  } else if (options.channel >= 0) {
     std::vector<float> texels(pixels.count());
     for (size_t i = 0; i < texels.size(); ++i) texels[i] = pixels.at(i)[options.channel];
-    texture->number =
-        std::make_shared<const Texture<float>>(pixels.width, pixels.height, std::move(texels), converted_options);
+    texture->number = made(float(), std::move(texels));
   } else {
     const int second = pixels.channels < 3 ? 0 : 1;
     std::vector<Rgb> texels(pixels.count());
     for (size_t i = 0; i < texels.size(); ++i) {
       texels[i] = {pixels.at(i)[0], pixels.at(i)[second], pixels.at(i)[2 * second]};
     }
-    texture->color =
-        std::make_shared<const Texture<Rgb>>(pixels.width, pixels.height, std::move(texels), converted_options);
+    texture->color = made(Rgb(), std::move(texels));
   }
   return texture.release();
 }
@@ -190,6 +220,7 @@ void vlr_texture_options_init(vlr_texture_options* options) {
   options->struct_size = sizeof(vlr_texture_options);
   options->filter = VLR_FILTER_LINEAR;
   options->channel = -1;
+  for (const int i : {0, 4, 8}) options->colors[i] = 1.0f;
 }
 
 vlr_status vlr_texture_create(uint32_t width, uint32_t height, uint32_t channels, const float* pixels,

@@ -1,6 +1,7 @@
 #include "material/texture.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstring>
 #include <string>
@@ -28,18 +29,72 @@ Rgb usable(const Rgb& c, const ValueFaults& faults) {
   return {faults.finite(c.r), faults.finite(c.g), faults.finite(c.b)};
 }
 
+void check_size(int width, int height, size_t texels) {
+  if (width <= 0 || height <= 0 || texels != static_cast<size_t>(width) * static_cast<size_t>(height)) {
+    throw Error(Status::invalid_argument, "A texture of " + std::to_string(width) + " x " + std::to_string(height) +
+                                              " texels cannot have " + std::to_string(texels) + " values.");
+  }
+}
+
+/// linear_from_srgb() from a table, whose error is at most 4e-7.
+float decoded_srgb(float v) {
+  constexpr int kSteps = 1024;
+  static const auto table = [] {
+    std::array<float, kSteps + 1> values;
+    for (int i = 0; i <= kSteps; ++i) values[static_cast<size_t>(i)] = linear_from_srgb(static_cast<float>(i) / kSteps);
+    return values;
+  }();
+  const float place = v * kSteps;
+  if (!(place >= 0.0f && place < static_cast<float>(kSteps))) return linear_from_srgb(v);
+  const auto i = static_cast<size_t>(place);
+  return table[i] + (place - static_cast<float>(i)) * (table[i + 1] - table[i]);
+}
+
+/// Texels times 255, if that makes all of them whole numbers up to 255; else none.
+std::vector<glm::u8vec4> as_bytes(const std::vector<glm::vec4>& texels) {
+  std::vector<glm::u8vec4> bytes;
+  bytes.reserve(texels.size());
+  for (const glm::vec4& texel : texels) {
+    const glm::vec4 scaled = 255.0f * texel, whole = glm::round(scaled);
+    const glm::vec4 error = glm::abs(scaled - whole);
+    const float worst = std::max({error.x, error.y, error.z, error.w});
+    if (!(worst < 1e-3f) || glm::clamp(whole, 0.0f, 255.0f) != whole) return {};
+    bytes.emplace_back(whole);
+  }
+  return bytes;
+}
+
 }  // namespace
 
 template <class T>
 Texture<T>::Texture(int width, int height, std::vector<T> texels, const TextureOptions& options) : options_(options) {
-  if (width <= 0 || height <= 0 || texels.size() != static_cast<size_t>(width) * static_cast<size_t>(height)) {
-    throw Error(Status::invalid_argument, "A texture of " + std::to_string(width) + " x " + std::to_string(height) +
-                                              " texels cannot have " + std::to_string(texels.size()) + " values.");
-  }
+  check_size(width, height, texels.size());
   const std::span<float> values(reinterpret_cast<float*>(texels.data()), texels.size() * sizeof(T) / sizeof(float));
   const ValueFaults faults = find_value_faults(values);
   for (T& t : texels) t = usable(t, faults);
   levels_.push_back({width, height, std::move(texels)});
+  add_levels();
+}
+
+template <class T>
+Texture<T>::Texture(int width, int height, StoredTexels texels, const TextureOptions& options)
+    : options_(options), stored_(std::move(texels)) {
+  check_size(width, height, stored_.texels.size());
+  const std::span<float> values(&stored_.texels.data()->x, stored_.texels.size() * 4);
+  const ValueFaults faults = find_value_faults(values);
+  for (float& v : values) v = faults.finite(v);
+  std::vector<T> finest;
+  finest.reserve(stored_.texels.size());
+  for (const glm::vec4& texel : stored_.texels) finest.push_back(decoded(texel));
+  levels_.push_back({width, height, std::move(finest)});
+  add_levels();
+  levels_[0].texels = {};
+  of_bytes_ = as_bytes(stored_.texels);
+  if (!of_bytes_.empty()) stored_.texels = {};
+}
+
+template <class T>
+void Texture<T>::add_levels() {
   while (levels_.back().width > 1 || levels_.back().height > 1) levels_.push_back(half(levels_.back()));
 }
 
@@ -71,10 +126,38 @@ int Texture<T>::wrapped(int i, int size) const {
 }
 
 template <class T>
-T Texture<T>::texel(const Level& level, int x, int y) const {
+template <class V>
+V Texture<T>::at(const std::vector<V>& texels, const Level& level, int x, int y) const {
   const int column = wrapped(x, level.width), row = wrapped(y, level.height);
-  if (column < 0 || row < 0) return T(0.0f);
-  return level.texels[static_cast<size_t>(row) * static_cast<size_t>(level.width) + static_cast<size_t>(column)];
+  if (column < 0 || row < 0) return V(0);
+  return texels[static_cast<size_t>(row) * static_cast<size_t>(level.width) + static_cast<size_t>(column)];
+}
+
+template <class T>
+glm::vec4 Texture<T>::stored(int x, int y) const {
+  if (of_bytes_.empty()) return at(stored_.texels, levels_[0], x, y);
+  return glm::vec4(at(of_bytes_, levels_[0], x, y)) * (1.0f / 255.0f);
+}
+
+template <class T>
+T Texture<T>::decoded(const glm::vec4& stored) const {
+  Rgb color(stored);
+  if (stored_.premultiplied && stored.a != 0.0f) color /= stored.a;
+  if (stored_.srgb) color = {decoded_srgb(color.r), decoded_srgb(color.g), decoded_srgb(color.b)};
+  return first_of<T>(stored_.colors * color);
+}
+
+template <class T>
+T Texture<T>::texel(const Level& level, int x, int y) const {
+  return level.texels.empty() ? decoded(stored(x, y)) : at(level.texels, level, x, y);
+}
+
+/// Between four values, those of the lower row first.
+template <class V>
+V between(const V& a, const V& b, const V& c, const V& d, const Vec2& part) {
+  const V bottom = (1 - part.x) * a + part.x * b;
+  const V top = (1 - part.x) * c + part.x * d;
+  return (1 - part.y) * bottom + part.y * top;
 }
 
 template <class T>
@@ -98,9 +181,10 @@ T Texture<T>::bilinear(const Level& level, const Vec2& uv) const {
   const Vec2 place = uv * Vec2(level.width, level.height) - 0.5f;
   const int x = floor_of(place.x), y = floor_of(place.y);
   const Vec2 part = place - Vec2(x, y);
-  const T bottom = (1 - part.x) * texel(level, x, y) + part.x * texel(level, x + 1, y);
-  const T top = (1 - part.x) * texel(level, x, y + 1) + part.x * texel(level, x + 1, y + 1);
-  return (1 - part.y) * bottom + part.y * top;
+  if (level.texels.empty()) {
+    return decoded(between(stored(x, y), stored(x + 1, y), stored(x, y + 1), stored(x + 1, y + 1), part));
+  }
+  return between(texel(level, x, y), texel(level, x + 1, y), texel(level, x, y + 1), texel(level, x + 1, y + 1), part);
 }
 
 template <class T>
@@ -127,7 +211,7 @@ T Texture<T>::look_up(const Vec2& uv, const Mat2& footprint) const {
 
 template <class T>
 uint64_t Texture<T>::bytes() const {
-  uint64_t sum = 0;
+  uint64_t sum = stored_.texels.size() * sizeof(glm::vec4) + of_bytes_.size() * sizeof(glm::u8vec4);
   for (const Level& level : levels_) sum += level.texels.size() * sizeof(T);
   return sum;
 }

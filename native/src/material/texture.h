@@ -23,6 +23,15 @@ struct TextureOptions {
   TextureFilter filter = TextureFilter::linear;
 };
 
+/// Texels as Cycles keeps an image's: it interpolates these, divides by alpha, and decodes what it gets, so an edge in
+/// an sRGB image is darker than the mean of its sides (kernel/svm/image.h, svm_image_texture).
+struct StoredTexels {
+  std::vector<glm::vec4> texels;  // color and alpha
+  bool srgb = false;              // colors have the sRGB curve
+  bool premultiplied = false;     // interpolated colors are divided by alpha, unless that is 0
+  Mat3 colors{1.0f};              // from decoded colors to those of the texture; a number is the first of them
+};
+
 /// An immutable image of T (float or Rgb, float32, linear) and its mip levels. Each level is half as large as the one
 /// below, rounded down, and its texels are exact means of the areas they cover, so every level has the image's mean.
 /// (0, 0) is the lower left corner of the image, (1, 1) the upper right. Thread-safe; no allocation after construction.
@@ -32,6 +41,8 @@ class Texture {
   /// `texels`: width x height, row 0 at the bottom; NaN counts as 0, infinity as the largest finite value. Throws
   /// Error(invalid_argument) if there are none or their number differs.
   Texture(int width, int height, std::vector<T> texels, const TextureOptions& options);
+  /// The finest level is interpolated before it is decoded; the others are means of decoded texels.
+  Texture(int width, int height, StoredTexels texels, const TextureOptions& options);
 
   /// Approximate mean over the parallelogram with sides `footprint` (columns) about `uv`, both in texture coordinates,
   /// from trilinear look-ups at footprint_taps(). A coordinate that is not finite counts as 0.
@@ -47,7 +58,12 @@ class Texture {
     std::vector<T> texels;
   };
   static Level half(const Level& level);
+  void add_levels();
   int wrapped(int i, int size) const;
+  template <class V>
+  V at(const std::vector<V>& texels, const Level& level, int x, int y) const;
+  glm::vec4 stored(int x, int y) const;
+  T decoded(const glm::vec4& stored) const;
   T texel(const Level& level, int x, int y) const;
   T closest(const Vec2& uv) const;
   T bilinear(const Level& level, const Vec2& uv) const;
@@ -55,7 +71,9 @@ class Texture {
   Vec2 reduced(const Vec2& uv) const;
 
   TextureOptions options_;
-  std::vector<Level> levels_;
+  std::vector<Level> levels_;          // without the texels of the finest, if they are in stored_
+  StoredTexels stored_;                // in 8 bits if that loses nothing
+  std::vector<glm::u8vec4> of_bytes_;  // texels of stored_, times 255
 };
 
 extern template class Texture<float>;
@@ -79,6 +97,15 @@ struct TextureMap {
     return std::isfinite(sum) && glm::determinant(glm::dmat2(map)) != 0.0;
   }
 };
+
+/// The color, or its first channel.
+template <class T>
+T first_of(const Rgb& color) {
+  if constexpr (std::is_same_v<T, Rgb>)
+    return color;
+  else
+    return color.r;
+}
 
 /// If empty, the parameter's own value applies.
 template <class T>
@@ -108,19 +135,11 @@ struct TextureSlot {
   bool given() const { return texture || of_corners || program; }
 
   T at(const SurfaceSite& site, const T& otherwise) const {
-    if (program) return first_of(site.computed[set]);
-    if (of_corners) return first_of(site.colors[set]);
+    if (program) return first_of<T>(site.computed[set]);
+    if (of_corners) return first_of<T>(site.colors[set]);
     if (!texture) return otherwise;
     const SitePlace place = site.place(set);
     return texture->look_up(map.point(place.uv), map.map * place.footprint);
-  }
-
- private:
-  static T first_of(const Rgb& color) {
-    if constexpr (std::is_same_v<T, Rgb>)
-      return color;
-    else
-      return color.r;
   }
 };
 

@@ -35,6 +35,8 @@ TEST(Texture, OptionsAreChecked) {
   expect_refused(options_with(&vlr_texture_options::filter, -1), "filter is -1");
   expect_refused(options_with(&vlr_texture_options::channel, 3), "channel is 3");
   expect_refused(options_with(&vlr_texture_options::channel, -2), "channel is -2");
+  expect_refused(options_with(&vlr_texture_options::srgb, 1), "4 channels");
+  expect_refused(options_with(&vlr_texture_options::premultiplied, 1), "have 3");
   TextureHandle handle;
   EXPECT_EQ(VLR_INVALID_ARGUMENT, vlr_texture_create(0, 2, 3, kPixels, nullptr, &handle.texture));
   EXPECT_EQ(VLR_IO, vlr_texture_load("/nowhere/x.png", nullptr, &handle.texture));

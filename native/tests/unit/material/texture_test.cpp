@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "base/error.h"
+#include "image/picture.h"
 #include "math/sphere/random.h"
 
 namespace velour {
@@ -73,6 +74,43 @@ TEST(Texture, GoesOnBeyondItsBorderAsAsked) {
   EXPECT_NEAR(at(TextureWrap::mirror, 2.375f), 2, 1e-5f);
   EXPECT_EQ(at(TextureWrap::clip, 1.25f), 0);
   EXPECT_EQ(at(TextureWrap::clip, -1e30f), 0);
+}
+
+StoredTexels edge(const glm::vec4& left, const glm::vec4& right, bool srgb, bool premultiplied) {
+  StoredTexels stored;
+  stored.texels = {left, right};
+  stored.srgb = srgb;
+  stored.premultiplied = premultiplied;
+  return stored;
+}
+
+/// Closed form: the sRGB curve of the mean. Also if the values are not those of bytes.
+TEST(Texture, SrgbTexelsAreInterpolatedBeforeTheyAreDecoded) {
+  for (const float value : {1.0f, 0.3003f}) {
+    const Texture<Rgb> texture(2, 1, edge({0, 0, 1, 1}, {value, 0, 0, 1}, true, false), {.wrap = TextureWrap::extend});
+    EXPECT_NEAR(texture.look_up({0.5f, 0.5f}, kPoint).r, linear_from_srgb(0.5f * value), 1e-6f);
+    EXPECT_NEAR(texture.look_up({0.5f, 0.5f}, kPoint).b, linear_from_srgb(0.5f), 1e-6f);
+    EXPECT_NEAR(texture.look_up({0.75f, 0.5f}, kPoint).r, linear_from_srgb(value), 1e-6f);
+    EXPECT_NEAR(texture.look_up({0.5f, 0.5f}, Mat2(1000)).r, 0.5f * linear_from_srgb(value), 1e-6f) << "a mean";
+  }
+}
+
+/// An opaque color keeps it up to where nothing is left of it; without alpha it darkens.
+TEST(Texture, PremultipliedColorsAreInterpolatedBeforeTheyAreDivided) {
+  for (const bool premultiplied : {true, false}) {
+    const Texture<Rgb> texture(2, 1, edge({0.8f, 0.4f, 0, 1}, glm::vec4(0), false, premultiplied),
+                               {.wrap = TextureWrap::extend});
+    EXPECT_NEAR(texture.look_up({0.5f, 0.5f}, kPoint).r, premultiplied ? 0.8f : 0.4f, 1e-6f);
+    EXPECT_EQ(texture.look_up({0.75f, 0.5f}, kPoint), Rgb(0));
+  }
+}
+
+TEST(Texture, AStoredColorBecomesANumberOnceItIsDecoded) {
+  StoredTexels stored = edge({1, 0, 0, 1}, {0, 1, 0, 1}, true, false);
+  stored.colors = glm::transpose(Mat3(Rgb(0.2f, 0.7f, 0.1f), Rgb(0), Rgb(0)));
+  const Texture<float> texture(2, 1, stored, {.wrap = TextureWrap::extend});
+  EXPECT_NEAR(texture.look_up({0.25f, 0.5f}, kPoint), 0.2f, 1e-6f);
+  EXPECT_NEAR(texture.look_up({0.5f, 0.5f}, kPoint), 0.9f * linear_from_srgb(0.5f), 1e-6f);
 }
 
 /// Also of sides that halve with a rest.
@@ -151,7 +189,8 @@ TEST(Texture, WhatIsNotFiniteCountsAsNothing) {
 
 TEST(Texture, NeedsAsManyTexelsAsItsSizeSays) {
   EXPECT_THROW(Texture<float>(2, 2, {1, 2, 3}, {}), Error);
-  EXPECT_THROW(Texture<float>(0, 2, {}, {}), Error);
+  EXPECT_THROW(Texture<float>(0, 2, std::vector<float>(), {}), Error);
+  EXPECT_THROW(Texture<float>(2, 2, edge({}, {}, true, true), {}), Error);
 }
 
 }  // namespace
