@@ -72,7 +72,7 @@ Texture<T>::Texture(int width, int height, std::vector<T> texels, const TextureO
   const std::span<float> values(reinterpret_cast<float*>(texels.data()), texels.size() * sizeof(T) / sizeof(float));
   const ValueFaults faults = find_value_faults(values);
   for (T& t : texels) t = usable(t, faults);
-  levels_.push_back({width, height, std::move(texels)});
+  levels_.push_back({width, height, std::move(texels), {}});
   add_levels();
 }
 
@@ -83,12 +83,16 @@ Texture<T>::Texture(int width, int height, StoredTexels texels, const TextureOpt
   const std::span<float> values(&stored_.texels.data()->x, stored_.texels.size() * 4);
   const ValueFaults faults = find_value_faults(values);
   for (float& v : values) v = faults.finite(v);
-  std::vector<T> finest;
-  finest.reserve(stored_.texels.size());
-  for (const glm::vec4& texel : stored_.texels) finest.push_back(decoded(texel));
-  levels_.push_back({width, height, std::move(finest)});
+  levels_.push_back({width, height, {}, {}});
+  Level& finest = levels_[0];
+  for (const glm::vec4& texel : stored_.texels) {
+    const Weighted value = weighted(texel);
+    finest.texels.push_back(value.value);
+    if (stored_.premultiplied) finest.weights.push_back(value.weight);
+  }
   add_levels();
   levels_[0].texels = {};
+  levels_[0].weights = {};
   of_bytes_ = as_bytes(stored_.texels);
   if (!of_bytes_.empty()) stored_.texels = {};
 }
@@ -98,15 +102,25 @@ void Texture<T>::add_levels() {
   while (levels_.back().width > 1 || levels_.back().height > 1) levels_.push_back(half(levels_.back()));
 }
 
+/// half_image() of texels of one or three channels.
+template <class T>
+std::vector<T> half_texels(const std::vector<T>& texels, uint32_t width, uint32_t height) {
+  constexpr uint32_t kChannels = sizeof(T) / sizeof(float);
+  const auto* floats = reinterpret_cast<const float*>(texels.data());
+  const std::vector<float> smaller = half_image({floats, texels.size() * kChannels}, width, height, kChannels);
+  std::vector<T> halved(smaller.size() / kChannels);
+  std::memcpy(halved.data(), smaller.data(), smaller.size() * sizeof(float));
+  return halved;
+}
+
 template <class T>
 typename Texture<T>::Level Texture<T>::half(const Level& level) {
-  constexpr uint32_t kChannels = sizeof(T) / sizeof(float);
   const auto width = static_cast<uint32_t>(level.width), height = static_cast<uint32_t>(level.height);
-  const auto* floats = reinterpret_cast<const float*>(level.texels.data());
-  const std::vector<float> smaller = half_image({floats, level.texels.size() * kChannels}, width, height, kChannels);
-  Level next{static_cast<int>(half_of(width)), static_cast<int>(half_of(height)), {}};
-  next.texels.resize(smaller.size() / kChannels);
-  std::memcpy(next.texels.data(), smaller.data(), smaller.size() * sizeof(float));
+  Level next{static_cast<int>(half_of(width)),
+             static_cast<int>(half_of(height)),
+             half_texels(level.texels, width, height),
+             {}};
+  if (!level.weights.empty()) next.weights = half_texels(level.weights, width, height);
   return next;
 }
 
@@ -148,8 +162,10 @@ T Texture<T>::decoded(const glm::vec4& stored) const {
 }
 
 template <class T>
-T Texture<T>::texel(const Level& level, int x, int y) const {
-  return level.texels.empty() ? decoded(stored(x, y)) : at(level.texels, level, x, y);
+typename Texture<T>::Weighted Texture<T>::weighted(const glm::vec4& stored) const {
+  constexpr float kLeast = 1e-6f;  // lets colors without any alpha have a mean
+  const float weight = stored_.premultiplied ? stored.a + kLeast : 1.0f;
+  return {weight * decoded(stored), weight};
 }
 
 /// Between four values, those of the lower row first.
@@ -173,28 +189,36 @@ template <class T>
 T Texture<T>::closest(const Vec2& uv) const {
   const Level& level = levels_[0];
   const Vec2 place = uv * Vec2(level.width, level.height);
-  return texel(level, floor_of(place.x), floor_of(place.y));
+  const int x = floor_of(place.x), y = floor_of(place.y);
+  return level.texels.empty() ? decoded(stored(x, y)) : at(level.texels, level, x, y);
 }
 
 template <class T>
-T Texture<T>::bilinear(const Level& level, const Vec2& uv) const {
+typename Texture<T>::Weighted Texture<T>::bilinear(const Level& level, const Vec2& uv) const {
   const Vec2 place = uv * Vec2(level.width, level.height) - 0.5f;
   const int x = floor_of(place.x), y = floor_of(place.y);
-  const Vec2 part = place - Vec2(x, y);
-  if (level.texels.empty()) {
-    return decoded(between(stored(x, y), stored(x + 1, y), stored(x, y + 1), stored(x + 1, y + 1), part));
-  }
-  return between(texel(level, x, y), texel(level, x + 1, y), texel(level, x, y + 1), texel(level, x + 1, y + 1), part);
+  const auto between = [&](const auto& texel) {
+    const Vec2 part = place - Vec2(x, y);
+    const auto bottom = (1 - part.x) * texel(x, y) + part.x * texel(x + 1, y);
+    const auto top = (1 - part.x) * texel(x, y + 1) + part.x * texel(x + 1, y + 1);
+    return (1 - part.y) * bottom + part.y * top;
+  };
+  if (level.texels.empty()) return weighted(between([&](int i, int j) { return stored(i, j); }));
+  const T value = between([&](int i, int j) { return at(level.texels, level, i, j); });
+  if (level.weights.empty()) return {value, 1.0f};
+  return {value, between([&](int i, int j) { return at(level.weights, level, i, j); })};
 }
 
 template <class T>
-T Texture<T>::trilinear(const Vec2& uv, float level) const {
+typename Texture<T>::Weighted Texture<T>::trilinear(const Vec2& uv, float level) const {
   const auto last = static_cast<float>(levels_.size() - 1);
   const float place = std::clamp(level, 0.0f, last);
   const auto i = static_cast<size_t>(place);
   const float part = place - static_cast<float>(i);
-  const T fine = bilinear(levels_[i], uv);
-  return part > 0.0f ? (1 - part) * fine + part * bilinear(levels_[i + 1], uv) : fine;
+  const Weighted fine = bilinear(levels_[i], uv);
+  if (!(part > 0.0f)) return fine;
+  const Weighted coarse = bilinear(levels_[i + 1], uv);
+  return {(1 - part) * fine.value + part * coarse.value, (1 - part) * fine.weight + part * coarse.weight};
 }
 
 template <class T>
@@ -202,17 +226,21 @@ T Texture<T>::look_up(const Vec2& uv, const Mat2& footprint) const {
   const FootprintTaps taps = footprint_taps(footprint, Vec2(width(), height()));
   if (taps.level <= 0.0f && taps.count == 1) {
     return options_.filter == TextureFilter::closest && taps.magnified ? closest(reduced(uv))
-                                                                       : bilinear(levels_[0], reduced(uv));
+                                                                       : bilinear(levels_[0], reduced(uv)).mean();
   }
-  T sum(0.0f);
-  for (int i = 0; i < taps.count; ++i) sum += trilinear(reduced(taps.place(uv, i)), taps.level);
-  return sum / static_cast<float>(taps.count);
+  Weighted sum{T(0.0f), 0.0f};
+  for (int i = 0; i < taps.count; ++i) {
+    const Weighted tap = trilinear(reduced(taps.place(uv, i)), taps.level);
+    sum.value += tap.value;
+    sum.weight += tap.weight;
+  }
+  return sum.mean();
 }
 
 template <class T>
 uint64_t Texture<T>::bytes() const {
   uint64_t sum = stored_.texels.size() * sizeof(glm::vec4) + of_bytes_.size() * sizeof(glm::u8vec4);
-  for (const Level& level : levels_) sum += level.texels.size() * sizeof(T);
+  for (const Level& level : levels_) sum += level.texels.size() * sizeof(T) + level.weights.size() * sizeof(float);
   return sum;
 }
 

@@ -41,7 +41,8 @@ class Texture {
   /// `texels`: width x height, row 0 at the bottom; NaN counts as 0, infinity as the largest finite value. Throws
   /// Error(invalid_argument) if there are none or their number differs.
   Texture(int width, int height, std::vector<T> texels, const TextureOptions& options);
-  /// The finest level is interpolated before it is decoded; the others are means of decoded texels.
+  /// The finest level is interpolated before it is decoded; the others are means of decoded texels, by their alpha if
+  /// they are premultiplied, so that mean colors times mean alpha are the mean of what is seen.
   Texture(int width, int height, StoredTexels texels, const TextureOptions& options);
 
   /// Approximate mean over the parallelogram with sides `footprint` (columns) about `uv`, both in texture coordinates,
@@ -55,7 +56,13 @@ class Texture {
  private:
   struct Level {
     int width, height;
-    std::vector<T> texels;
+    std::vector<T> texels;       // times their weights, if there are any
+    std::vector<float> weights;  // of premultiplied texels
+  };
+  struct Weighted {
+    T value;  // times weight
+    float weight;
+    T mean() const { return weight > 0.0f ? value / weight : T(0.0f); }
   };
   static Level half(const Level& level);
   void add_levels();
@@ -64,10 +71,10 @@ class Texture {
   V at(const std::vector<V>& texels, const Level& level, int x, int y) const;
   glm::vec4 stored(int x, int y) const;
   T decoded(const glm::vec4& stored) const;
-  T texel(const Level& level, int x, int y) const;
+  Weighted weighted(const glm::vec4& stored) const;
   T closest(const Vec2& uv) const;
-  T bilinear(const Level& level, const Vec2& uv) const;
-  T trilinear(const Vec2& uv, float level) const;
+  Weighted bilinear(const Level& level, const Vec2& uv) const;
+  Weighted trilinear(const Vec2& uv, float level) const;
   Vec2 reduced(const Vec2& uv) const;
 
   TextureOptions options_;

@@ -105,6 +105,16 @@ TEST(Texture, PremultipliedColorsAreInterpolatedBeforeTheyAreDivided) {
   }
 }
 
+/// Mean color times mean alpha is the mean of color times alpha.
+TEST(Texture, PremultipliedColorsAreAveragedByTheirAlpha) {
+  const Texture<Rgb> texture(2, 1, edge({0.8f, 0, 0, 1}, {0, 0.1f, 0, 0.25f}, true, true), {});
+  const Rgb mean = texture.look_up({0.3f, 0.5f}, Mat2(1000));
+  EXPECT_NEAR(mean.r, linear_from_srgb(0.8f) / 1.25f, 1e-5f);
+  EXPECT_NEAR(mean.g, linear_from_srgb(0.4f) * 0.25f / 1.25f, 1e-5f);
+  const Texture<Rgb> nothing(2, 1, edge({0.8f, 0, 0, 0}, {0.4f, 0, 0, 0}, false, true), {});
+  EXPECT_NEAR(nothing.look_up({0.3f, 0.5f}, Mat2(1000)).r, 0.6f, 1e-5f) << "seen without its alpha";
+}
+
 TEST(Texture, AStoredColorBecomesANumberOnceItIsDecoded) {
   StoredTexels stored = edge({1, 0, 0, 1}, {0, 1, 0, 1}, true, false);
   stored.colors = glm::transpose(Mat3(Rgb(0.2f, 0.7f, 0.1f), Rgb(0), Rgb(0)));
