@@ -193,7 +193,7 @@ class Textures(BlenderTest):
 
     def test_an_empty_node_is_named(self):
         self._plane(None)
-        self.assertIn("has no image", "".join(export_notes()))
+        self.assertIn("has no image and is magenta", "".join(export_notes()))
 
     def test_another_uv_map_is_named(self):
         self._plane(_image("mapped", _colors()))

@@ -155,6 +155,70 @@ class Principled(Plates):
                 self._assert_angles(feature, IOR=index, Specular=level, Roughness=roughness)
 
 
+class Linked(Plates):
+    """Inputs that nodes provide, other for each plate."""
+
+    def _of_plate(self, axis, low, high):
+        """A number from `low` to `high` by the plate's column (X) or row (Y)."""
+        place = self.tree.node("ShaderNodeTexCoord", "Object")
+        apart = self.tree.node("ShaderNodeSeparateXYZ", axis, Vector=place)
+        whole = self.tree.node("ShaderNodeMath", settings={"operation": "FLOOR"}, Value=apart)
+        count = len(_VIEWS) if axis == "X" else _ROWS
+        limits = {"From_Min": -count / 2, "From_Max": count / 2 - 1, "To_Min": low, "To_Max": high}
+        return self.tree.node("ShaderNodeMapRange", Value=whole, **limits)
+
+    def _color_of_plate(self):
+        parts = {"X": self._of_plate("X", 0.9, 0.2), "Y": self._of_plate("Y", 0.3, 1.0), "Z": 0.5}
+        return self.tree.node("ShaderNodeCombineXYZ", **parts)
+
+    def _shader(self, **inputs):
+        return self.tree.node("ShaderNodeBsdfPrincipled", settings={"distribution": "GGX"}, **inputs)
+
+    def test_specular(self):
+        def shader():
+            inputs = {"Specular": self._of_plate("X", 0.0, 1.0), "Base_Color": (0.1, 0.1, 0.1, 1)}
+            if bpy.app.version >= (4, 0, 0):
+                inputs |= {"Specular_Tint": self._color_of_plate(), "IOR": self._of_plate("Y", 0.8, 2.2)}
+            return self._shader(**inputs)
+
+        self.assert_angles("Principled BSDF: specular, linked", shader)
+
+    def test_coat_and_sheen(self):
+        is_newer = bpy.app.version >= (4, 0, 0)
+
+        def shader():
+            weight, roughness = self._of_plate("Y", 0.0, 1.0), self._of_plate("X", 0.8, 0.3)
+            if not is_newer:
+                return self._shader(Clearcoat=weight, Clearcoat_Roughness=roughness, Sheen=weight)
+            return self._shader(
+                Coat_Weight=weight,
+                Coat_Roughness=roughness,
+                Coat_IOR=self._of_plate("X", 1.3, 2.0),
+                Coat_Tint=self._color_of_plate(),
+                Sheen_Weight=self._of_plate("X", 0.0, 1.0),
+                Sheen_Roughness=self._of_plate("Y", 0.4, 1.0),
+                Sheen_Tint=self._color_of_plate(),
+            )
+
+        self.assert_angles("Principled BSDF: coat and sheen, linked", shader)
+
+    def test_coat_normal(self):
+        """The coat alone is tilted, or all but the coat."""
+        coat = "Coat" if bpy.app.version >= (4, 0, 0) else "Clearcoat"
+        weight = f"{coat}_Weight" if coat == "Coat" else coat
+        for name in (f"{coat}_Normal", "Normal"):
+
+            def shader(name=name):
+                own = self.tree.node("ShaderNodeNewGeometry", "Normal")
+                tilted = self.tree.node("ShaderNodeVectorMath", Vector=own)
+                tilted.node.inputs[1].default_value = (0.15, 0.1, 0.0)
+                unit = self.tree.node("ShaderNodeVectorMath", settings={"operation": "NORMALIZE"}, Vector=tilted)
+                return self._shader(**{weight: 1.0, f"{coat}_Roughness": 0.4, name: unit}, Roughness=0.6)
+
+            with self.subTest(name):
+                self.assert_angles(f"Principled BSDF: coat, {name.replace('_', ' ')} linked", shader)
+
+
 class Glossy(Plates):
     def _assert_angles(self, roughness, distribution):
         feature = f"Glossy BSDF: {distribution}, roughness {roughness:g}"

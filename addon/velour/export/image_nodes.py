@@ -16,7 +16,7 @@ _IDENTITY = np.eye(2, 3, dtype=np.float32)
 class Picture(NamedTuple):
     """Data of an Image Texture node, without the pixels."""
 
-    image: object  # bpy.types.Image
+    image: object  # bpy.types.Image, or None: magenta, as in Cycles
     alpha: bool  # use alpha instead of color
     beside_alpha: bool  # the node's alpha output is linked
     wrap: str
@@ -50,6 +50,8 @@ def unplaced_picture(plug, owner, notes):
     if node.velour.enabled:
         raise UnsupportedError(f"'{node.name}' holds a measured material")
     _check(node)
+    if node.image is None:
+        notes.add(f"{owner}: node '{node.name}' has no image and is magenta, as in Cycles; choose an image.")
     return Picture(
         node.image,
         plug.socket.name == "Alpha",
@@ -62,9 +64,7 @@ def unplaced_picture(plug, owner, notes):
 
 
 def _check(node):
-    if node.image is None:
-        raise UnsupportedError(f"'{node.name}' has no image")
-    if node.image.source not in _SOURCES:
+    if node.image is not None and node.image.source not in _SOURCES:
         raise UnsupportedError(f"the image '{node.image.name}' is not a single image")
     if node.projection != "FLAT":
         raise UnsupportedError(f"'{node.name}' is not projected with Flat")

@@ -16,6 +16,7 @@ from .shaders import (
     surface_layers,
     unlike_reflection,
 )
+from .shaders.layer import COLORS
 from .shaders.relief import correction
 from .textures import TextureTable
 from .uv_maps import UNUSED, UvMaps, shader_maps
@@ -246,6 +247,10 @@ class MaterialTable:
             values["normal"] = self._slot(layer.relief.picture, True, material)
             values["normal_strength"] = layer.relief.strength
             values["normal_correction"] = "as-it-is" if layer.relief.is_surface else correction(material)
+        if layer.coat_relief:
+            values["coat_normal"] = self._slot(layer.coat_relief.picture, True, material)
+            values["coat_normal_strength"] = layer.coat_relief.strength
+            values.setdefault("normal_correction", correction(material))
         if layer.measured:
             self._measured.of_layer(material, layer.measured).add_layer(shader, **values)
             shader.weigh_layer("tint", layer.measured.look.gain)
@@ -257,7 +262,7 @@ class MaterialTable:
 
     def _slots(self, layer, material):
         """TextureSlots of a Layer's readable images and of its CornerColors."""
-        slots = {n: self._slot(picture, n == "base_color", material) for n, picture in layer.pictures.items()}
+        slots = {n: self._slot(picture, n in COLORS, material) for n, picture in layer.pictures.items()}
         return {name: slot for name, slot in slots.items() if slot}
 
     def _slot(self, picture, is_color, material):
@@ -267,11 +272,8 @@ class MaterialTable:
         if isinstance(picture, CornerColors):
             colors = self._colors[_key(material)]
             return self._textures.of_corners(colors.index(picture)) if picture in colors else None
-        maps = self._uv_maps[_key(material)]
-        slot = self._textures.slot(picture, is_color, _owner(material), maps)
-        if slot:
-            self._textured.add(_key(material))
-        return slot
+        self._textured.add(_key(material))
+        return self._textures.slot(picture, is_color, _owner(material), self._uv_maps[_key(material)])
 
     def _note_measured(self, material, measured, info):
         """Records which coordinates a measured material needs. `info`: info of its model or measurement."""

@@ -5,7 +5,10 @@ import numpy as np
 from ..native import Texture, TextureSlot, VelourError
 from .color import luminance_weights, rec709_to_working
 from .files import FIND, absolute_path
-from .pixels import interpolated_pixels
+from .pixels import Pixels, interpolated_pixels
+
+# What Cycles shows in place of an image that is missing.
+_MAGENTA = Pixels(np.array((((1.0, 0.0, 1.0, 1.0),),), np.float32), srgb=False, premultiplied=False)
 
 
 class TextureTable:
@@ -16,18 +19,20 @@ class TextureTable:
         self._notes = notes
         self._textures = {}
 
-    def slot(self, picture, is_color, owner, uv_maps, instead="the value of its input"):
-        """TextureSlot of a Picture for a material's UvMaps, if any; None, with a note, if it cannot be read.
+    def slot(self, picture, is_color, owner, uv_maps):
+        """TextureSlot of a Picture for a material's UvMaps; magenta, with a note, if it cannot be read."""
+        number = uv_maps.number(picture.coordinates)
+        return TextureSlot(self.texture(picture, is_color, owner), picture.uv_map, number)
 
-        `instead`: what is shown then.
-        """
+    def texture(self, picture, is_color, owner):
+        """The Texture of a Picture, as slot()."""
         channels = (picture.alpha, picture.beside_alpha, is_color)
-        key = (picture.image.as_pointer(), *channels, picture.wrap, picture.filter)
+        image = picture.image.as_pointer() if picture.image else None
+        key = (image, *channels, picture.wrap, picture.filter)
         if key not in self._textures:
-            self._textures[key] = self._read(picture, is_color, owner, instead)
-        texture = self._textures[key]
-        number = uv_maps.number(picture.coordinates) if uv_maps else 0
-        return TextureSlot(texture, picture.uv_map, number) if texture else None
+            pixels = picture.image and self._read(picture, owner)
+            self._textures[key] = self._created(pixels or _MAGENTA, picture, is_color)
+        return self._textures[key]
 
     def of_corners(self, color_set):
         """TextureSlot of a set of corner colors."""
@@ -35,27 +40,22 @@ class TextureTable:
             self._textures[color_set] = Texture.of_corners(color_set)
         return TextureSlot(self._textures[color_set])
 
-    def texture(self, picture, is_color, owner):
-        """The Texture of a Picture in a program; if it cannot be read, magenta with a note, as in Cycles."""
-        slot = self.slot(picture, is_color, owner, None, "magenta")
-        if slot:
-            return slot.texture
-        pixels = np.array((((1.0, 0.0, 1.0),),), np.float32)
-        return self._scene.texture(pixels, channel=-1 if is_color else 0)
-
-    def _read(self, picture, is_color, owner, instead):
+    def _read(self, picture, owner):
+        """The image's Pixels; None, with a note, if it cannot be read."""
+        name = picture.image.name
         try:
             pixels = interpolated_pixels(picture.image, self._notes, picture.beside_alpha)
         except VelourError as error:
-            self._notes.add(f"{owner}: image '{picture.image.name}' is replaced by {instead}: {error}")
+            self._notes.add(f"{owner}: image '{name}' is replaced by magenta, as in Cycles: {error}")
             return None
         if pixels is None:
             path = absolute_path(picture.image) or "no file"
             self._notes.add(
-                f"{owner}: image '{picture.image.name}' ({path}) cannot be read and is replaced by"
-                f" {instead}; {FIND}."
+                f"{owner}: image '{name}' ({path}) cannot be read and is replaced by magenta, as in Cycles; {FIND}."
             )
-            return None
+        return pixels
+
+    def _created(self, pixels, picture, is_color):
         options = {"wrap": picture.wrap, "filter": picture.filter, "channel": -1 if is_color else 0}
         if picture.alpha:
             return self._scene.texture(np.ascontiguousarray(pixels.values[..., 3:]), **options)

@@ -42,12 +42,15 @@ class Shader(Handle):
         normal_strength: float = 1.0,
         normal_correction: str = "turned",
         interreflection: bool = False,
+        coat_normal: TextureSlot | None = None,
+        coat_normal_strength: float = 1.0,
         **values,
     ) -> None:
         """Adds a layer with weight 1. `kind`: principled, diffuse, glossy, transparent, emission, glass,
         refraction, translucent.
 
-        textures and values: as for Scene.add_textured_material, without alpha and emission. diffuse uses
+        textures and values: as for Scene.add_textured_material, without alpha and emission; principled takes
+        textures of all its parameters (table.PARAMETERS), and `coat_normal` for its coat. diffuse uses
         base_color and roughness, glossy also lobe, glass and refraction also index and glass_fresnel,
         translucent base_color. base_color is the factor on transmitted light for
         transparent, the radiance for emission. normal: a normal map (colors) for reflection.
@@ -61,6 +64,11 @@ class Shader(Handle):
         desc.surface, desc.textures = pointer(surface), pointer(pictures)
         _set_normal(desc, normal, normal_strength, normal_correction)
         desc.interreflection = interreflection
+        if coat_normal:
+            desc.coat_normal = coat_normal.texture.pointer
+            desc.coat_normal_map = small("uv_map", coat_normal.uv_map, 6)
+            desc.coat_normal_strength, desc.coat_normal_set = coat_normal_strength, coat_normal.uv_set
+            desc.normal_correction = choice("normal_correction", normal_correction, table.RELIEF_CORRECTIONS)
         self._lib.vlr_shader_add_layer(self.pointer, byref(desc))
 
     def add_measured_layer(
@@ -142,7 +150,13 @@ def described(lib, textures: dict[str, TextureSlot], values: dict):
     lib.vlr_principled_desc_init(byref(desc))
     lib.vlr_principled_textures_init(byref(pictures))
     fill_principled(desc, values)
+    more = []
     for name, slot in textures.items():
-        uv_map = small("uv_map", slot.uv_map, 6)
-        set_fields(pictures, {name: slot.texture.pointer, f"{name}_map": uv_map, f"{name}_set": slot.uv_set})
+        uv_map, texture = small("uv_map", slot.uv_map, 6), slot.texture.pointer
+        if name in table.PARAMETERS:
+            parameter = table.PARAMETERS.index(name)
+            more.append(structs.ParameterTexture(parameter, slot.uv_set, texture, uv_map))
+        else:
+            set_fields(pictures, {name: texture, f"{name}_map": uv_map, f"{name}_set": slot.uv_set})
+    pictures.more, pictures.more_count = (structs.ParameterTexture * len(more))(*more), len(more)
     return desc, pictures

@@ -227,6 +227,7 @@ class PrincipledDesc(Struct):
         ("sheen", c_float),
         ("sheen_roughness", c_float),
         ("sheen_tint", c_float * 3),
+        ("specular_of_index", c_int32),
     ]
 
 
@@ -240,6 +241,15 @@ class TextureOptions(Struct):
         ("srgb", c_int32),
         ("premultiplied", c_int32),
         ("colors", c_float * 9),
+    ]
+
+
+class ParameterTexture(ctypes.Structure):
+    _fields_ = [
+        ("parameter", c_int32),
+        ("set", c_uint32),
+        ("texture", c_void_p),
+        ("map", c_float * 6),
     ]
 
 
@@ -259,6 +269,8 @@ class PrincipledTextures(Struct):
         ("metallic_set", c_uint32),
         ("roughness_set", c_uint32),
         ("alpha_set", c_uint32),
+        ("more", POINTER(ParameterTexture)),
+        ("more_count", c_uint32),
     ]
 
 
@@ -307,6 +319,10 @@ class LayerDesc(Struct):
         ("normal_set", c_uint32),
         ("normal_correction", c_int32),
         ("interreflection", c_int32),
+        ("coat_normal", c_void_p),
+        ("coat_normal_map", c_float * 6),
+        ("coat_normal_strength", c_float),
+        ("coat_normal_set", c_uint32),
     ]
 
 
@@ -503,6 +519,7 @@ STRUCTS = {
     "vlr_principled_desc": PrincipledDesc,
     "vlr_tile_options": TileOptions,
     "vlr_texture_options": TextureOptions,
+    "vlr_parameter_texture": ParameterTexture,
     "vlr_instruction": Instruction,
     "vlr_program_output": ProgramOutput,
     "vlr_program_desc": ProgramDesc,

@@ -56,6 +56,20 @@ SIDES = ("automatic", "one", "two")
 SEQUENCES = ("random", "sobol", "independent")
 WRAPS = ("repeat", "extend", "clip", "mirror")
 FILTERS = ("closest", "linear")
+PARAMETERS = (
+    "specular",
+    "coat",
+    "coat_roughness",
+    "coat_index",
+    "transmission",
+    "transmission_roughness",
+    "index",
+    "sheen",
+    "sheen_roughness",
+    "specular_tint",
+    "coat_tint",
+    "sheen_tint",
+)
 LAYERS = (
     "principled",
     "diffuse",

@@ -507,6 +507,7 @@ typedef struct vlr_principled_desc {
   float sheen;                  /* weight of fuzz, not negative; 0 */
   float sheen_roughness;        /* 0..1, VLR_PRINCIPLED_LAYERED; 0.5 */
   float sheen_tint[3];          /* not negative; white */
+  int32_t specular_of_index;    /* 1: specular 0.5 means the reflectance of `index`, not of 1.5 */
 } vlr_principled_desc;
 VLR_API void vlr_principled_desc_init(vlr_principled_desc* desc);
 VLR_API vlr_status vlr_scene_add_principled_material(vlr_scene* scene, const vlr_principled_desc* desc,
@@ -657,6 +658,29 @@ VLR_API vlr_status vlr_texture_load(const char* path, const vlr_texture_options*
 VLR_API vlr_status vlr_texture_of_corners(uint32_t set, vlr_texture** out);
 VLR_API void vlr_texture_free(vlr_texture* texture);
 
+/* Parameters of vlr_principled_desc: numbers, then colors. */
+enum {
+  VLR_PARAMETER_SPECULAR = 0,
+  VLR_PARAMETER_COAT = 1,
+  VLR_PARAMETER_COAT_ROUGHNESS = 2,
+  VLR_PARAMETER_COAT_INDEX = 3,
+  VLR_PARAMETER_TRANSMISSION = 4,
+  VLR_PARAMETER_TRANSMISSION_ROUGHNESS = 5,
+  VLR_PARAMETER_INDEX = 6,
+  VLR_PARAMETER_SHEEN = 7,
+  VLR_PARAMETER_SHEEN_ROUGHNESS = 8,
+  VLR_PARAMETER_SPECULAR_TINT = 9,
+  VLR_PARAMETER_COAT_TINT = 10,
+  VLR_PARAMETER_SHEEN_TINT = 11
+};
+/* A texture in place of a parameter; map and set as in vlr_principled_textures. */
+typedef struct vlr_parameter_texture {
+  int32_t parameter; /* VLR_PARAMETER_* */
+  uint32_t set;
+  const vlr_texture* texture;
+  float map[6];
+} vlr_parameter_texture;
+
 /* Each may be NULL: the value in vlr_principled_desc holds. A map [2 x 3, row-major] takes (u, v, 1) of the surface to
  * the image's coordinates. */
 typedef struct vlr_principled_textures {
@@ -674,6 +698,8 @@ typedef struct vlr_principled_textures {
   uint32_t metallic_set;
   uint32_t roughness_set;
   uint32_t alpha_set;
+  const vlr_parameter_texture* more; /* of other parameters; layers of kind VLR_LAYER_PRINCIPLED only */
+  uint32_t more_count;
 } vlr_principled_textures;
 VLR_API void vlr_principled_textures_init(vlr_principled_textures* textures);
 VLR_API vlr_status vlr_scene_add_textured_material(vlr_scene* scene, const vlr_principled_desc* desc,
@@ -981,6 +1007,10 @@ typedef struct vlr_layer_desc {
   uint32_t normal_set;       /* as those of vlr_principled_textures */
   int32_t normal_correction; /* VLR_RELIEF_* */
   int32_t interreflection;   /* diffuse layer: 1: its facets scatter light to each other, so energy is conserved; 0 */
+  const vlr_texture* coat_normal; /* principled layer: like `normal`, of the coat alone; NULL: the surface's own */
+  float coat_normal_map[6];
+  float coat_normal_strength;
+  uint32_t coat_normal_set;
 } vlr_layer_desc;
 VLR_API void vlr_layer_desc_init(vlr_layer_desc* desc);
 typedef struct vlr_factor_desc {

@@ -114,58 +114,78 @@ namespace {
 
 Rgb base_color(const vlr_principled_desc& d) { return {d.base_color[0], d.base_color[1], d.base_color[2]}; }
 
-const char* normal_field(const vlr_layer_desc& /*layer*/) { return "vlr_layer_desc.normal"; }
-const char* normal_field(const vlr_measured_layer_desc& /*layer*/) { return "vlr_measured_layer_desc.normal"; }
+/// A normal map of a layer or of its coat.
+struct LayerNormal {
+  const vlr_texture* texture;
+  const float* map;
+  uint32_t set;
+  float strength;
+  int32_t correction;
+  const char* field;
+
+  TextureSlot<Rgb> slot() const { return color_slot(texture, map, set, field); }
+  /// Needs tangents.
+  bool is_map() const { return texture != nullptr && !texture->program; }
+  /// Throws Error(invalid_argument) if it is an output of a program that is not a normal.
+  void require_normal() const {
+    if (texture == nullptr || !texture->program || texture->program->outputs()[texture->output].is_normal) return;
+    refuse(field + std::string(" is output ") + std::to_string(texture->output) +
+           " of a program, which is not a normal (VLR_VALUE_NORMAL).");
+  }
+};
 
 template <typename Layer>
-TextureSlot<Rgb> normal_slot(const Layer& layer) {
-  return color_slot(layer.normal, layer.normal_map, layer.normal_set, normal_field(layer));
+LayerNormal normal_of(const Layer& layer, const char* field) {
+  return {layer.normal, layer.normal_map, layer.normal_set, layer.normal_strength, layer.normal_correction, field};
+}
+LayerNormal normal_of(const vlr_layer_desc& layer) { return normal_of(layer, "vlr_layer_desc.normal"); }
+LayerNormal normal_of(const vlr_measured_layer_desc& layer) {
+  return normal_of(layer, "vlr_measured_layer_desc.normal");
+}
+LayerNormal coat_normal_of(const vlr_layer_desc& layer) {
+  return {layer.coat_normal,          layer.coat_normal_map,   layer.coat_normal_set,
+          layer.coat_normal_strength, layer.normal_correction, "vlr_layer_desc.coat_normal"};
 }
 
-/// Throws Error(invalid_argument) if the layer's normal is an output of a program that is not a normal.
-template <typename Layer>
-void require_normal(const Layer& layer) {
-  if (layer.normal == nullptr || !layer.normal->program) return;
-  if (layer.normal->program->outputs()[layer.normal->output].is_normal) return;
-  refuse(normal_field(layer) + std::string(" is output ") + std::to_string(layer.normal->output) +
-         " of a program, which is not a normal (VLR_VALUE_NORMAL).");
-}
-
-template <typename Layer>
-std::shared_ptr<const Material> with_normals(std::shared_ptr<const Material> material, const Layer& layer,
+std::shared_ptr<const Material> with_normals(std::shared_ptr<const Material> material, const LayerNormal& normal,
                                              ReliefPart part) {
-  if (layer.normal == nullptr) return material;
-  return make_normal_mapped(std::move(material),
-                            {normal_slot(layer), std::max(layer.normal_strength, 0.0f),
-                             static_cast<ReliefCorrection>(layer.normal_correction)},
-                            part);
+  if (normal.texture == nullptr) return material;
+  return make_normal_mapped(
+      std::move(material),
+      {normal.slot(), std::max(normal.strength, 0.0f), static_cast<ReliefCorrection>(normal.correction)}, part);
 }
 
-/// Steep normals affect base and lobes differently, so each is a layer of its own, as is the coat, which stays flat.
-/// Disney's clear coat dims nothing.
+/// Steep normals affect base and lobes differently, so each is a layer of its own, as is the coat, which has its own
+/// normal. Disney's clear coat dims nothing.
 std::shared_ptr<const Material> principled(const vlr_layer_desc& layer, const vlr_principled_desc& desc,
                                            PrincipledTextures textures) {
   PrincipledParameters parameters = parameters_of(desc);
   textures.alpha = {};
-  if (layer.normal == nullptr) return make_principled_material(parameters, textures);
+  const LayerNormal normal = normal_of(layer), of_coat = coat_normal_of(layer);
+  if (normal.texture == nullptr && of_coat.texture == nullptr) return make_principled_material(parameters, textures);
   ShaderLayers parts;
   const auto part = [&](PrincipledPart which) {
     parameters.part = which;
     return make_principled_material(parameters, textures);
   };
-  const PrincipledParameters coated = parameters;
+  const PrincipledTop top{parameters, textures};
+  const PrincipledParameters anywhere = textures.anywhere(parameters);
   const bool is_layered = parameters.formula == PrincipledFormula::layered;
-  if (coated.coat > 0) parts.reflecting.push_back({part(PrincipledPart::coat)});
+  if (anywhere.coat > 0) {
+    parts.reflecting.push_back({with_normals(part(PrincipledPart::coat), of_coat, ReliefPart::lobe)});
+  }
   parameters.coat = 0;
-  if (is_layered && coated.sheen > 0) {
-    parts.reflecting.push_back({with_normals(part(PrincipledPart::sheen), layer, ReliefPart::lobe)});
+  textures.remove(&PrincipledParameters::coat);
+  if (is_layered && anywhere.sheen > 0) {
+    parts.reflecting.push_back({with_normals(part(PrincipledPart::sheen), normal, ReliefPart::lobe)});
     parameters.sheen = 0;
+    textures.remove(&PrincipledParameters::sheen);
   }
-  if (coated.transmission > 0) {
-    parts.reflecting.push_back({with_normals(part(PrincipledPart::glass), layer, ReliefPart::lobe), {}, coated});
+  if (anywhere.transmission > 0) {
+    parts.reflecting.push_back({with_normals(part(PrincipledPart::glass), normal, ReliefPart::lobe), {}, top});
   }
-  parts.reflecting.push_back({with_normals(part(PrincipledPart::base), layer, ReliefPart::base), {}, coated});
-  parts.reflecting.push_back({with_normals(part(PrincipledPart::specular), layer, ReliefPart::lobe), {}, coated});
+  parts.reflecting.push_back({with_normals(part(PrincipledPart::base), normal, ReliefPart::base), {}, top});
+  parts.reflecting.push_back({with_normals(part(PrincipledPart::specular), normal, ReliefPart::lobe), {}, top});
   return make_layered_material(std::move(parts));
 }
 
@@ -174,10 +194,11 @@ std::shared_ptr<const Material> reflecting(const vlr_layer_desc& layer, const vl
   if (layer.kind == VLR_LAYER_GLOSSY) {
     const GlossyParameters glossy{base_color(desc), desc.roughness, lobe_of(desc), textures.base_color,
                                   textures.roughness};
-    return with_normals(make_glossy_material(glossy), layer, ReliefPart::lobe);
+    return with_normals(make_glossy_material(glossy), normal_of(layer), ReliefPart::lobe);
   }
   if (layer.kind == VLR_LAYER_TRANSLUCENT) {
-    return with_normals(make_translucent_material(base_color(desc), textures.base_color), layer, ReliefPart::diffuse);
+    return with_normals(make_translucent_material(base_color(desc), textures.base_color), normal_of(layer),
+                        ReliefPart::diffuse);
   }
   if (layer.kind == VLR_LAYER_GLASS || layer.kind == VLR_LAYER_REFRACTION) {
     const PrincipledParameters checked = parameters_of(desc);
@@ -189,12 +210,13 @@ std::shared_ptr<const Material> reflecting(const vlr_layer_desc& layer, const vl
                                 .only_refracts = layer.kind == VLR_LAYER_REFRACTION,
                                 .fresnel = static_cast<GlassFresnel>(desc.glass_fresnel),
                                 .lobe = checked.lobe};
-    return with_normals(make_glass_material(glass, {textures.base_color, textures.roughness}), layer, ReliefPart::lobe);
+    return with_normals(make_glass_material(glass, {textures.base_color, textures.roughness}), normal_of(layer),
+                        ReliefPart::lobe);
   }
   if (layer.kind == VLR_LAYER_DIFFUSE) {
     const RoughDiffuseParameters diffuse{base_color(desc), desc.roughness, layer.interreflection != 0,
                                          textures.base_color, textures.roughness};
-    return with_normals(make_rough_diffuse_material(diffuse), layer, ReliefPart::diffuse);
+    return with_normals(make_rough_diffuse_material(diffuse), normal_of(layer), ReliefPart::diffuse);
   }
   return principled(layer, desc, textures);
 }
@@ -214,7 +236,8 @@ LayerWeight& add_layer(vlr_shader& shader, const vlr_layer_desc& layer) {
   const auto desc = read_options(layer.surface, vlr_principled_desc_init, "vlr_principled_desc");
   const PrincipledTextures textures = textures_of(layer);
   shader.sets.add(sets_of(textures));
-  shader.sets.add(normal_slot(layer));
+  shader.sets.add(normal_of(layer).slot());
+  shader.sets.add(coat_normal_of(layer).slot());
   if (layer.kind == VLR_LAYER_TRANSPARENT) shader.opacity.add(textures.base_color);
   if (layer.kind == VLR_LAYER_TRANSPARENT || layer.kind == VLR_LAYER_EMISSION) {
     auto& to = layer.kind == VLR_LAYER_EMISSION ? layers.emissive : layers.transparent;
@@ -265,9 +288,9 @@ LayerWeight& add_measured(vlr_shader& shader, const vlr_measured_layer_desc& lay
   SurfaceMaterial measured = measured_surface(layer);
   if (measured.shell) add_silhouette(shader, measured, map);
   shader.brushed |= measured.brushed;
-  shader.relief |= layer.normal != nullptr && !layer.normal->program;
-  shader.sets.add(normal_slot(layer));
-  auto material = with_normals(make_placed(std::move(measured.material), map), layer, ReliefPart::lobe);
+  shader.relief |= normal_of(layer).is_map();
+  shader.sets.add(normal_of(layer).slot());
+  auto material = with_normals(make_placed(std::move(measured.material), map), normal_of(layer), ReliefPart::lobe);
   shader.layers.reflecting.push_back({.material = std::move(material), .rec709_colors = true});
   return shader.layers.reflecting.back().weight;
 }
@@ -278,6 +301,7 @@ void vlr_layer_desc_init(vlr_layer_desc* desc) {
   *desc = {};
   desc->struct_size = sizeof(vlr_layer_desc);
   desc->normal_map[0] = desc->normal_map[4] = desc->normal_strength = 1.0f;
+  desc->coat_normal_map[0] = desc->coat_normal_map[4] = desc->coat_normal_strength = 1.0f;
 }
 
 void vlr_measured_layer_desc_init(vlr_measured_layer_desc* desc) {
@@ -309,9 +333,11 @@ vlr_status vlr_shader_add_layer(vlr_shader* shader, const vlr_layer_desc* desc) 
     const auto layer = read_options(desc, vlr_layer_desc_init, "vlr_layer_desc");
     require_choice(layer.kind, VLR_LAYER_TRANSLUCENT, "vlr_layer_desc.kind");
     require_choice(layer.normal_correction, VLR_RELIEF_AS_IT_IS, "vlr_layer_desc.normal_correction");
-    require_normal(layer);
+    for (const LayerNormal& normal : {normal_of(layer), coat_normal_of(layer)}) {
+      normal.require_normal();
+      shader->relief |= normal.is_map();
+    }
     shader->last = &add_layer(*shader, layer);
-    shader->relief |= layer.normal != nullptr && !layer.normal->program;
   });
 }
 
@@ -320,7 +346,7 @@ vlr_status vlr_shader_add_measured_layer(vlr_shader* shader, const vlr_measured_
     require(shader, "shader");
     const auto layer = read_options(desc, vlr_measured_layer_desc_init, "vlr_measured_layer_desc");
     require_choice(layer.normal_correction, VLR_RELIEF_AS_IT_IS, "vlr_measured_layer_desc.normal_correction");
-    require_normal(layer);
+    normal_of(layer).require_normal();
     shader->last = &add_measured(*shader, layer);
   });
 }

@@ -56,6 +56,8 @@ MeshSets sets_of(const PrincipledTextures& t) {
   sets.add(t.metallic);
   sets.add(t.roughness);
   sets.add(t.alpha);
+  for (const auto& [parameter, slot] : t.numbers) sets.add(slot);
+  for (const auto& [parameter, slot] : t.colors) sets.add(slot);
   return sets;
 }
 
@@ -68,11 +70,42 @@ void use_sets(SurfaceMaterial& surface, const MeshSets& sets, uint32_t opacity_o
   if (opacity_outputs != 0 && !surface.material->opaque()) surface.opacity = sets.program->only(opacity_outputs);
 }
 
+namespace {
+
+constexpr float PrincipledParameters::*kNumbers[] = {
+    &PrincipledParameters::specular,       &PrincipledParameters::coat,
+    &PrincipledParameters::coat_roughness, &PrincipledParameters::coat_index,
+    &PrincipledParameters::transmission,   &PrincipledParameters::transmission_roughness,
+    &PrincipledParameters::index,          &PrincipledParameters::sheen,
+    &PrincipledParameters::sheen_roughness};
+constexpr Rgb PrincipledParameters::*kColors[] = {&PrincipledParameters::specular_tint,
+                                                  &PrincipledParameters::coat_tint, &PrincipledParameters::sheen_tint};
+static_assert(std::size(kNumbers) == VLR_PARAMETER_SPECULAR_TINT);
+static_assert(std::size(kColors) == VLR_PARAMETER_SHEEN_TINT - VLR_PARAMETER_SPECULAR_TINT + 1);
+
+void add_texture(PrincipledTextures& to, const vlr_parameter_texture& t) {
+  constexpr const char* kField = "vlr_principled_textures.more";
+  require_choice(t.parameter, VLR_PARAMETER_SHEEN_TINT, "vlr_parameter_texture.parameter");
+  require(t.texture, "vlr_parameter_texture.texture");
+  const auto parameter = static_cast<size_t>(t.parameter);
+  if (parameter < std::size(kNumbers)) {
+    to.numbers.push_back({kNumbers[parameter], number_slot(t.texture, t.map, t.set, kField)});
+  } else {
+    to.colors.push_back({kColors[parameter - std::size(kNumbers)], color_slot(t.texture, t.map, t.set, kField)});
+  }
+}
+
+}  // namespace
+
 PrincipledTextures converted_textures(const vlr_principled_textures& t) {
-  return {color_slot(t.base_color, t.base_color_map, t.base_color_set, "vlr_principled_textures.base_color"),
-          number_slot(t.metallic, t.metallic_map, t.metallic_set, "vlr_principled_textures.metallic"),
-          number_slot(t.roughness, t.roughness_map, t.roughness_set, "vlr_principled_textures.roughness"),
-          number_slot(t.alpha, t.alpha_map, t.alpha_set, "vlr_principled_textures.alpha")};
+  PrincipledTextures textures{
+      color_slot(t.base_color, t.base_color_map, t.base_color_set, "vlr_principled_textures.base_color"),
+      number_slot(t.metallic, t.metallic_map, t.metallic_set, "vlr_principled_textures.metallic"),
+      number_slot(t.roughness, t.roughness_map, t.roughness_set, "vlr_principled_textures.roughness"),
+      number_slot(t.alpha, t.alpha_map, t.alpha_set, "vlr_principled_textures.alpha")};
+  if (t.more_count > 0) require(t.more, "vlr_principled_textures.more");
+  for (uint32_t i = 0; i < t.more_count; ++i) add_texture(textures, t.more[i]);
+  return textures;
 }
 
 static_assert(VLR_PRINCIPLED_DISNEY == static_cast<int>(PrincipledFormula::disney));
@@ -108,6 +141,7 @@ PrincipledParameters parameters_of(const vlr_principled_desc& desc) {
           .sheen = desc.sheen,
           .sheen_roughness = desc.sheen_roughness,
           .sheen_tint = color(desc.sheen_tint),
+          .specular_of_index = desc.specular_of_index != 0,
           .formula = static_cast<PrincipledFormula>(desc.formula),
           .lobe = lobe_of(desc),
           .coat_lobe = static_cast<GgxLobe>(desc.coat_lobe)};

@@ -210,7 +210,7 @@ class LayeredMaterial final : public Material {
       PreparedLayer& layer = prepared[i];
       const ReflectingLayer& from = layers_.reflecting[i];
       layer.weight = Rgb(brighter * from.weight.at(site)) * from.weight.tint(site);
-      if (from.coated) layer.weight *= through_top(*from.coated, wv.z, options.filter);
+      if (from.top) layer.weight *= from.top->through(site, wv.z, options.filter);
       layer.to_working = from.rec709_colors && layers_.rec709_to_working ? &*layers_.rec709_to_working : nullptr;
       layer.above_only = transmits_ && !from.material->transmits();
       layer.point = layer.weight != Rgb(0.0f) ? from.material->prepare(wv, site, options, arena) : nullptr;
@@ -229,8 +229,9 @@ class LayeredMaterial final : public Material {
   bool varies() const override {
     const auto varies = [](const ColorLayer& l) { return l.varies(); };
     return std::ranges::any_of(layers_.transparent, varies) || std::ranges::any_of(layers_.emissive, varies) ||
-           std::ranges::any_of(layers_.reflecting,
-                               [](const ReflectingLayer& l) { return l.weight.varies() || l.material->varies(); });
+           std::ranges::any_of(layers_.reflecting, [](const ReflectingLayer& l) {
+             return l.weight.varies() || l.material->varies() || (l.top && l.top->textures.varies());
+           });
   }
 
   Vec2 texels() const override { return texels_; }

@@ -45,9 +45,8 @@ struct LayerWeight {
 struct ReflectingLayer {
   std::shared_ptr<const Material> material;
   LayerWeight weight{};
-  /// Parameters of a coat and sheen above the layer. They dim it about the surface normal, regardless of a normal map
-  /// on the material.
-  std::optional<PrincipledParameters> coated{};
+  /// Coat and sheen above the layer. They dim it about the surface normal, regardless of a normal map on the material.
+  std::optional<PrincipledTop> top{};
   bool rec709_colors = false;  // f is Rec. 709 (measured) and is converted to the working space; false: already there
 };
 

@@ -6,6 +6,8 @@ import bpy
 
 from ..programs import Computed, sources_of_draft
 
+# Parameters of layers that are colors.
+COLORS = ("base_color", "specular_tint", "coat_tint", "sheen_tint")
 BLACK = {"base_color": (0.0, 0.0, 0.0), "metallic": 0.0, "roughness": 1.0, "specular": 0.0}
 # Without a material, Cycles shows diffuse before 5.0, and Principled since; no property reveals it.
 _USUAL = {} if bpy.app.version >= (5, 0) else {**BLACK, "base_color": (0.8, 0.8, 0.8)}
@@ -41,6 +43,7 @@ class Layer(NamedTuple):
     relief: object = None  # Relief of the reflecting part
     glow: object = None  # emission Layer, to which alpha also applies
     measured: object = None  # Measured of a measured layer
+    coat_relief: object = None  # Relief of a principled layer's coat
 
     def weighed(self, factor):
         return self._replace(factors=(*self.factors, factor))
@@ -61,7 +64,7 @@ def black():
 
 def as_principled(layers):
     """The Layer of a material that is equivalent to one Principled node; None if it is mixed."""
-    if len(layers) != 1 or layers[0].factors or layers[0].relief:
+    if len(layers) != 1 or layers[0].factors or layers[0].relief or layers[0].coat_relief:
         return None
     layer = layers[0]
     glow = layer if layer.kind == "emission" else layer.glow
@@ -76,7 +79,7 @@ def as_principled(layers):
 
 def as_measured(layers):
     """The Measured of a material that is one measured model and nothing else; None if it is mixed."""
-    if len(layers) != 1 or layers[0].factors or layers[0].relief:
+    if len(layers) != 1 or layers[0].factors or layers[0].relief or layers[0].coat_relief:
         return None
     return layers[0].measured
 
@@ -94,7 +97,7 @@ def sources_of(layers):
     parts = [*layers, *(layer.glow for layer in layers if layer.glow)]
     given = [source for part in parts for source in part.pictures.values()]
     given += [factor.picture for part in parts for factor in part.factors if factor.picture]
-    reliefs = [part.relief for part in parts if part.relief]
+    reliefs = [relief for part in parts for relief in (part.relief, part.coat_relief) if relief]
     given += [relief.picture for relief in reliefs]
     drafts = [source.draft for source in given if isinstance(source, Computed)]
     sources = [source for source in given if not isinstance(source, Computed)]
@@ -118,7 +121,11 @@ def unlike_reflection(layers):
 
 def _transmits(layer):
     """Whether light passes through the layer other than straight."""
-    return layer.kind in ("glass", "refraction", "translucent") or layer.values.get("transmission", 0.0) > 0.0
+    return (
+        layer.kind in ("glass", "refraction", "translucent")
+        or layer.values.get("transmission", 0.0) > 0.0
+        or "transmission" in layer.pictures
+    )
 
 
 def split(layer):

@@ -1,11 +1,13 @@
 """Reads shader nodes as Layers."""
 
+import math
+
 import bpy
 
 from ..color import luminance_weights
 from ..plugs import fed_by
 from .layer import Factor, Layer, diffuse
-from .relief import read_relief
+from .relief import read_coat_relief, read_relief
 
 # Velour's parameter: Blender's input, which may be textured.
 _PRINCIPLED = {
@@ -38,36 +40,70 @@ _INTERREFLECTION = bpy.app.version >= (4, 3)
 _RANDOM_WALK = (
     "its distribution 'Multiscatter GGX' is rendered as in Blender 4, with differences of a few percent."
 )
-_LINK_ONLY = ("Clearcoat Normal", "Tangent")
+
+
+class _Principled:
+    """Values and pictures of a Principled BSDF's inputs, by the parameters of Shader.add_layer."""
+
+    def __init__(self, plug, reader):
+        self.plug, self.reader = plug, reader
+        self.values, self.pictures = {}, {}
+
+    def read(self, name, *sockets, largest=math.inf, least=-math.inf):
+        """Reads the first of `sockets` that exists, within bounds."""
+        value, picture = self.reader.number(self.plug.input(*sockets))
+        if not isinstance(value, tuple):
+            value = min(max(value, least), largest)
+        self.values[name] = value
+        self.pictures |= {name: picture} if picture else {}
+
+    def has(self, name):
+        """Whether a weight that was read is above 0 somewhere."""
+        return name in self.pictures or self.values[name] > 0.0
+
+    def drop(self, name):
+        self.values.pop(name)
+        self.pictures.pop(name, None)
 
 
 def _read_principled(plug, reader):
-    values, pictures = {}, {}
+    found = _Principled(plug, reader)
     for name, socket in _PRINCIPLED.items():
-        values[name], picture = reader.number(plug.input(socket))
-        pictures |= {name: picture} if picture else {}
-    values["specular"] = _specular(plug, reader)
-    values["lobe"] = _lobe(plug, reader)
-    values |= _layered(plug, reader) if _is_layered(plug) else _disney(plug, reader, values, pictures)
-    values |= _transmission(plug, reader)
+        found.read(name, socket)
+    _read_specular(found)
+    found.values["lobe"] = _lobe(plug, reader)
+    if _is_layered(plug):
+        _read_layered(found)
+    else:
+        _read_disney(found)
+    _read_transmission(found)
     glow = _glow(plug.input("Emission Color", "Emission"), plug.input("Emission Strength"), reader)
-    if glow and "coat" in values:
+    if glow and "coat" in found.values:
         reader.note(plug, "its coat does not dim its emission.")
     _note_ignored(plug, reader)
-    return [Layer("principled", values, pictures, relief=read_relief(plug, reader), glow=glow)]
+    layer = Layer("principled", found.values, found.pictures, relief=read_relief(plug, reader), glow=glow)
+    if "coat" in found.values:
+        layer = layer._replace(coat_relief=read_coat_relief(plug, reader))
+    return [layer]
 
 
-def _transmission(plug, reader):
+def _read_transmission(found):
     """Glass of a Principled BSDF, and whether its index is below 1, if they have an effect."""
-    share = min(max(reader.value(plug.input("Transmission Weight", "Transmission")), 0.0), 1.0)
-    if share <= 0.0 and not _is_layered(plug):
-        return {}
-    index = max(reader.value(plug.input("IOR")), 1e-5)
-    if share <= 0.0:
-        return {"index": index} if index < 1.0 else {}
-    added = plug.input("Transmission Roughness")
-    values = {"transmission_roughness": reader.value(added)} if added else {}
-    return {"transmission": share, "index": index, **values}
+    plug = found.plug
+    found.read("transmission", "Transmission Weight", "Transmission", least=0.0, largest=1.0)
+    has_glass = found.has("transmission")
+    if not has_glass:
+        found.drop("transmission")
+    if "index" not in found.values and (has_glass or _is_layered(plug)):
+        _read_index(found)
+        if not has_glass and found.values["index"] >= 1.0:
+            found.drop("index")
+    if has_glass and plug.input("Transmission Roughness"):
+        found.read("transmission_roughness", "Transmission Roughness")
+
+
+def _read_index(found):
+    found.read("index", "IOR", least=1e-5)
 
 
 def _is_layered(plug):
@@ -75,52 +111,56 @@ def _is_layered(plug):
     return plug.input("Coat Weight") is not None
 
 
-def _disney(plug, reader, values, pictures):
+def _read_disney(found):
     """Parameters specific to Principled before 4.0, if they have an effect. Its tints are the shares of the
     base color's hue in the dielectric reflection and in sheen [Bur12]."""
-    found = {"formula": "disney"}
-    coat = min(reader.value(plug.input("Clearcoat")), 1.0)
-    if coat > 0.0:
-        found |= {"coat": coat, "coat_roughness": reader.value(plug.input("Clearcoat Roughness"))}
-    sheen = reader.value(plug.input("Sheen"))
-    if sheen > 0.0:
-        found |= {"sheen": sheen}
-        found |= _hue(plug, reader, "Sheen Tint", "sheen_tint", values, pictures, luminance_weights())
-    return found | _hue(plug, reader, "Specular Tint", "specular_tint", values, pictures, _GRAY)
+    found.values["formula"] = "disney"
+    found.read("coat", "Clearcoat", largest=1.0)
+    if found.has("coat"):
+        found.read("coat_roughness", "Clearcoat Roughness")
+    else:
+        found.drop("coat")
+    found.read("sheen", "Sheen")
+    if found.has("sheen"):
+        _read_hue(found, "Sheen Tint", "sheen_tint", luminance_weights())
+    else:
+        found.drop("sheen")
+    _read_hue(found, "Specular Tint", "specular_tint", _GRAY)
 
 
-def _hue(plug, reader, name, key, values, pictures, weights):
-    """A tint that has a share of the base color's hue, by the parameter's name; nothing if it is white."""
-    share = min(max(reader.value(plug.input(name)), 0.0), 1.0)
-    gray = sum(float(w) * c for w, c in zip(weights, values["base_color"], strict=True))
+def _read_hue(found, socket, name, weights):
+    """A tint that has a share of the base color's hue; none if it is white."""
+    plug, reader, color = found.plug, found.reader, found.values["base_color"]
+    share = min(max(reader.value(plug.input(socket)), 0.0), 1.0)
+    gray = sum(float(w) * c for w, c in zip(weights, color, strict=True))
     if share == 0.0 or gray <= 0.0:
-        return {}
-    if "base_color" in pictures:
-        reader.note(plug, f"'{name}' is not supported with a varying base color; ignored.")
-        return {}
-    return {key: tuple(1.0 - share + share * c / gray for c in values["base_color"])}
+        return
+    if "base_color" in found.pictures:
+        reader.note(plug, f"'{socket}' is not supported with a varying base color; ignored.")
+        return
+    found.values[name] = tuple(1.0 - share + share * c / gray for c in color)
 
 
-def _layered(plug, reader):
+def _read_layered(found):
     """Parameters specific to the Principled BSDF of 4.0 and newer, if they have an effect."""
-    values = {"formula": "layered"}
-    tint = reader.value(plug.input("Specular Tint"))
-    if min(tint) != 1.0 or max(tint) != 1.0:
-        values["specular_tint"] = tint
-    coat = min(reader.value(plug.input("Coat Weight")), 1.0)
-    if coat > 0.0:
-        values["coat"] = coat
-        values["coat_roughness"] = reader.value(plug.input("Coat Roughness"))
-        values["coat_index"] = max(reader.value(plug.input("Coat IOR")), 1.0)
-        values["coat_tint"] = reader.value(plug.input("Coat Tint"))
-        values["coat_lobe"] = _COAT_LOBE
-        note_linked(plug, reader, "Coat Normal")
-    sheen = reader.value(plug.input("Sheen Weight"))
-    if sheen > 0.0:
-        values["sheen"] = sheen
-        values["sheen_roughness"] = reader.value(plug.input("Sheen Roughness"))
-        values["sheen_tint"] = reader.value(plug.input("Sheen Tint"))
-    return values
+    found.values["formula"] = "layered"
+    found.read("specular_tint", "Specular Tint")
+    if "specular_tint" not in found.pictures and set(found.values["specular_tint"]) == {1.0}:
+        found.drop("specular_tint")
+    found.read("coat", "Coat Weight", largest=1.0)
+    if found.has("coat"):
+        found.read("coat_roughness", "Coat Roughness")
+        found.read("coat_index", "Coat IOR", least=1.0)
+        found.read("coat_tint", "Coat Tint")
+        found.values["coat_lobe"] = _COAT_LOBE
+    else:
+        found.drop("coat")
+    found.read("sheen", "Sheen Weight")
+    if found.has("sheen"):
+        found.read("sheen_roughness", "Sheen Roughness")
+        found.read("sheen_tint", "Sheen Tint")
+    else:
+        found.drop("sheen")
 
 
 def _lobe(plug, reader):
@@ -137,14 +177,19 @@ def _lobe(plug, reader):
     return "separable" if SEPARABLE_SHADOWS else "single"
 
 
-def _specular(plug, reader):
+def _read_specular(found):
     """Specular level, where 0.5 means IOR 1.5, as in Blender: it scales the IOR's reflectance at normal
     incidence. Before 4.0 that reflectance is fixed at 4%, and IOR applies to transmission only."""
-    level = reader.value(plug.input("Specular IOR Level", "Specular"))
-    if not plug.input("Specular IOR Level"):
-        return level
-    index = max(reader.value(plug.input("IOR")), 1e-5)
-    return level * ((index - 1.0) / (index + 1.0)) ** 2 / _USUAL_F0
+    found.read("specular", "Specular IOR Level", "Specular")
+    if not found.plug.input("Specular IOR Level"):
+        return
+    _read_index(found)
+    if "specular" in found.pictures or "index" in found.pictures:
+        found.values["specular_of_index"] = 1
+        return
+    index = found.values["index"]
+    found.drop("index")
+    found.values["specular"] *= ((index - 1.0) / (index + 1.0)) ** 2 / _USUAL_F0
 
 
 def _read_diffuse(plug, reader):
@@ -257,8 +302,7 @@ def note_linked(plug, reader, name):
 def _note_ignored(plug, reader):
     for name in _IGNORED:
         _note_unused(plug, reader, name)
-    for name in _LINK_ONLY:
-        note_linked(plug, reader, name)
+    note_linked(plug, reader, "Tangent")
 
 
 def _note_unused(plug, reader, name):

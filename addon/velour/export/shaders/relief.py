@@ -21,7 +21,16 @@ def correction(material):
 
 def read_relief(plug, reader):
     """The Relief of a shader node, or None; notes unsupported links to its normal."""
-    fed = fed_by(plug.input("Normal"))
+    return _relief_of(plug.input("Normal"), reader)
+
+
+def read_coat_relief(plug, reader):
+    """The Relief of the coat of a Principled BSDF, or None."""
+    return _relief_of(plug.input("Coat Normal", "Clearcoat Normal"), reader)
+
+
+def _relief_of(socket, reader):
+    fed = fed_by(socket)
     if fed is None:
         displaced = reader.compiler.computed_normal()
         return displaced and Relief(displaced, 1.0, is_surface=True)
@@ -38,5 +47,5 @@ def read_relief(plug, reader):
     try:
         return Relief(reader.compiler.computed(fed, fed.socket, "normal"), 1.0)
     except UnsupportedError as reason:
-        reader.note_link(plug.input("Normal"), f" ({reason})")
+        reader.note_link(socket, f" ({reason})")
         return None

@@ -19,6 +19,9 @@ float index_of(float specular) {
   return (1 + root) / (1 - root);
 }
 
+constexpr float kMinIndex = 1e-5f;  // of glass, as in Cycles
+constexpr float kUsualF0 = 0.04f;   // reflectance at normal incidence at index 1.5
+
 /// 2 int F(mu, eta) mu dmu, by a fit [KC17].
 float mean_fresnel(float eta) {
   if (eta < 1) return 0.997118f + eta * (0.1014f - eta * (0.965241f + eta * 0.130607f));
@@ -124,7 +127,7 @@ PrincipledPoint::PrincipledPoint(const PrincipledParameters& p, const Vec3& wv, 
   alpha = Vec2(std::max(roughness * roughness, filter.min_alpha));
   coat_alpha = Vec2(std::max(coat_roughness * coat_roughness, filter.min_alpha));
   coat_eta = index_of_coat(p);
-  eta = index_of(p.specular);
+  eta = index_of(p.specular_of_index ? p.specular * dielectric_fresnel(1.0f, p.index) / kUsualF0 : p.specular);
   if (formula == PrincipledFormula::layered && p.index < 1) eta = 1 / eta;
   f0 = dielectric_fresnel(1.0f, eta);
   view_rise = schlick_share(cosine);
@@ -307,27 +310,42 @@ bool has_glass(const PrincipledParameters& p) {
 
 }  // namespace
 
+PrincipledParameters PrincipledTextures::at(const SurfaceSite& site, PrincipledParameters parameters) const {
+  PrincipledParameters& p = parameters;
+  p.base_color = base_color.at(site, p.base_color);
+  p.metallic = metallic.at(site, p.metallic);
+  p.roughness = roughness.at(site, p.roughness);
+  for (const auto& [parameter, slot] : numbers) p.*parameter = slot.at(site, p.*parameter);
+  for (const auto& [parameter, slot] : colors) p.*parameter = slot.at(site, p.*parameter);
+  p.index = std::max(p.index, kMinIndex);
+  return parameters;
+}
+
+PrincipledParameters PrincipledTextures::anywhere(PrincipledParameters parameters) const {
+  using P = PrincipledParameters;
+  if (metallic.given()) parameters.metallic = 0;
+  for (const auto& [parameter, slot] : numbers) {
+    if (parameter == &P::coat || parameter == &P::sheen || parameter == &P::transmission) parameters.*parameter = 1;
+  }
+  return parameters;
+}
+
+void PrincipledTextures::remove(float PrincipledParameters::*parameter) {
+  std::erase_if(numbers, [&](const PrincipledTexture<float>& texture) { return texture.parameter == parameter; });
+}
+
 PrincipledMaterial::PrincipledMaterial(const PrincipledParameters& parameters, const PrincipledTextures& textures,
                                        float alpha)
     : parameters_(parameters), textures_(textures), alpha_(alpha) {}
 
 const PreparedBrdf* PrincipledMaterial::prepare(const Vec3& wv, const SurfaceSite& site, const PrepareOptions& options,
                                                 ScratchArena& arena) const {
-  PrincipledParameters p = parameters_;
-  if (textures_.varies()) {
-    p.base_color = textures_.base_color.at(site, p.base_color);
-    p.metallic = textures_.metallic.at(site, p.metallic);
-    p.roughness = textures_.roughness.at(site, p.roughness);
-  }
+  const PrincipledParameters p = textures_.varies() ? textures_.at(site, parameters_) : parameters_;
   if (!has_glass(p)) return arena.make<PreparedPrincipled>(p, wv, options.filter);
   return arena.make<PreparedPrincipled>(p, wv, GlassLobe(glass_of(p), wv, site.back, options), options.filter);
 }
 
-bool PrincipledMaterial::transmits() const {
-  PrincipledParameters p = parameters_;
-  if (textures_.metallic.given()) p.metallic = 0;
-  return has_glass(p);
-}
+bool PrincipledMaterial::transmits() const { return has_glass(textures_.anywhere(parameters_)); }
 
 float PrincipledMaterial::alpha(const SurfaceSite& site) const {
   return std::clamp(textures_.alpha.at(site, alpha_), 0.0f, 1.0f);

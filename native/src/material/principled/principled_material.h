@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <memory>
+#include <vector>
 #include "material/material.h"
 #include "material/microfacet/ggx.h"
 #include "material/microfacet/glass_lobe.h"
@@ -50,6 +51,7 @@ struct PrincipledParameters {
   float sheen = 0;  // weight of fuzz; may exceed 1
   float sheen_roughness = 0.5f;
   Rgb sheen_tint{1.0f, 1.0f, 1.0f};
+  bool specular_of_index = false;  // `specular` 0.5 means the reflectance of `index`, not of 1.5
   PrincipledFormula formula = PrincipledFormula::layered;
   GgxLobe lobe = GgxLobe::whole;  // of metal and dielectric
   /// whole: since Blender 4.5. single: 4.0 to 4.4, which dim the layers below as a smooth coat does.
@@ -123,12 +125,39 @@ GlassParameters glass_of(const PrincipledParameters& parameters);
 
 // Blender's Principled BSDF, uniform or textured.
 
+/// A texture in place of a parameter.
+template <class T>
+struct PrincipledTexture {
+  T PrincipledParameters::*parameter;
+  TextureSlot<T> slot;
+};
+
 struct PrincipledTextures {
   TextureSlot<Rgb> base_color{};
   TextureSlot<float> metallic{}, roughness{}, alpha{};
+  std::vector<PrincipledTexture<float>> numbers{};  // of other parameters
+  std::vector<PrincipledTexture<Rgb>> colors{};
 
-  bool varies() const { return base_color.given() || metallic.given() || roughness.given(); }
+  bool varies() const {
+    return base_color.given() || metallic.given() || roughness.given() || !numbers.empty() || !colors.empty();
+  }
   bool any() const { return varies() || alpha.given(); }
+  /// `parameters` with those that have a texture replaced.
+  PrincipledParameters at(const SurfaceSite& site, PrincipledParameters parameters) const;
+  /// `parameters` with the textured ones of coat, sheen and transmission 1, and metallic 0: what may be somewhere.
+  PrincipledParameters anywhere(PrincipledParameters parameters) const;
+  /// Leaves `parameter` at its own value.
+  void remove(float PrincipledParameters::*parameter);
+};
+
+/// Parameters of a coat and sheen above other layers.
+struct PrincipledTop {
+  PrincipledParameters parameters{};
+  PrincipledTextures textures{};
+
+  Rgb through(const SurfaceSite& site, float cosine, const LobeFilter& filter) const {
+    return through_top(textures.varies() ? textures.at(site, parameters) : parameters, cosine, filter);
+  }
 };
 
 /// Samples the cosine, the normals of the lobe or the coat, sheen or glass, in proportion to their albedos. Isotropic.
