@@ -124,6 +124,10 @@ struct LayerNormal {
   const char* field;
 
   TextureSlot<Rgb> slot() const { return color_slot(texture, map, set, field); }
+  std::optional<NormalMap> converted() const {
+    if (texture == nullptr) return std::nullopt;
+    return NormalMap{slot(), std::max(strength, 0.0f), static_cast<ReliefCorrection>(correction)};
+  }
   /// Needs tangents.
   bool is_map() const { return texture != nullptr && !texture->program; }
   /// Throws Error(invalid_argument) if it is an output of a program that is not a normal.
@@ -149,10 +153,8 @@ LayerNormal coat_normal_of(const vlr_layer_desc& layer) {
 
 std::shared_ptr<const Material> with_normals(std::shared_ptr<const Material> material, const LayerNormal& normal,
                                              ReliefPart part) {
-  if (normal.texture == nullptr) return material;
-  return make_normal_mapped(
-      std::move(material),
-      {normal.slot(), std::max(normal.strength, 0.0f), static_cast<ReliefCorrection>(normal.correction)}, part);
+  const std::optional<NormalMap> converted = normal.converted();
+  return converted ? make_normal_mapped(std::move(material), *converted, part) : material;
 }
 
 /// Steep normals affect base and lobes differently, so each is a layer of its own, as is the coat, which has its own
@@ -168,7 +170,7 @@ std::shared_ptr<const Material> principled(const vlr_layer_desc& layer, const vl
     parameters.part = which;
     return make_principled_material(parameters, textures);
   };
-  const PrincipledTop top{parameters, textures};
+  const PrincipledTop top{parameters, textures, normal.converted(), of_coat.converted()};
   const PrincipledParameters anywhere = textures.anywhere(parameters);
   const bool is_layered = parameters.formula == PrincipledFormula::layered;
   if (anywhere.coat > 0) {

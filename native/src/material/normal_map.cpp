@@ -8,7 +8,6 @@ namespace velour {
 namespace {
 
 constexpr float kMinNormalCosine = 1e-6f;  // of the light with the surface normal; keeps f finite
-constexpr float kMinViewCosine = 1e-3f;    // of the view with the mapped normal
 
 /// What remains of diffuse light about a normal whose cosine with the surface normal is `tilt`.
 float remaining(ReliefCorrection correction, float own, float mapped, float tilt) {
@@ -85,27 +84,8 @@ class NormalMappedMaterial final : public Material {
   bool isotropic() const override { return false; }
 
  private:
-  bool keeps_mirrors_above(bool is_lobe) const {
-    if (map_.correction == ReliefCorrection::turned) return true;
-    return map_.correction != ReliefCorrection::none && is_lobe;
-  }
-
-  /// Not normalized; zero: there is none.
-  Vec3 normal_at(const SurfaceSite& site) const {
-    const Rgb given = map_.texture.at(site, Rgb(0.5f, 0.5f, 1.0f));
-    if (map_.texture.program) return given;
-    const Vec3 map = 2.0f * given - 1.0f;
-    return site.relief *
-           Vec3(map_.strength * map.x, map_.strength * map.y, 1 + (map.z - 1) * std::clamp(map_.strength, 0.0f, 1.0f));
-  }
-
-  /// Frame about the mapped normal of a lobe, or of the diffuse part.
   Frame frame_of(bool is_lobe, const Vec3& wv, const SurfaceSite& site) const {
-    const Vec3 normal = normal_at(site);
-    const float length = glm::length(normal);
-    if (!(length > 0) || !std::isfinite(length)) return Frame::about(Vec3(0, 0, 1));
-    return Frame::about(keeps_mirrors_above(is_lobe) ? with_mirror_above(normal / length, site.ground, wv)
-                                                     : normal / length);
+    return Frame::about(map_.normal(is_lobe, wv, site));
   }
 
   const std::shared_ptr<const Material> material_;
@@ -113,7 +93,27 @@ class NormalMappedMaterial final : public Material {
   const ReliefPart part_;
 };
 
+bool keeps_mirrors_above(ReliefCorrection correction, bool is_lobe) {
+  return correction == ReliefCorrection::turned || (correction != ReliefCorrection::none && is_lobe);
+}
+
+/// Not normalized; zero: there is none.
+Vec3 normal_at(const NormalMap& map, const SurfaceSite& site) {
+  const Rgb given = map.texture.at(site, Rgb(0.5f, 0.5f, 1.0f));
+  if (map.texture.program) return given;
+  const Vec3 normal = 2.0f * given - 1.0f;
+  const float rest = std::clamp(map.strength, 0.0f, 1.0f);
+  return site.relief * Vec3(map.strength * normal.x, map.strength * normal.y, 1 + (normal.z - 1) * rest);
+}
+
 }  // namespace
+
+Vec3 NormalMap::normal(bool is_lobe, const Vec3& wv, const SurfaceSite& site) const {
+  const Vec3 given = normal_at(*this, site);
+  const float length = glm::length(given);
+  if (!(length > 0) || !std::isfinite(length)) return {0, 0, 1};
+  return keeps_mirrors_above(correction, is_lobe) ? with_mirror_above(given / length, site.ground, wv) : given / length;
+}
 
 /// In the plane of both normals, a normal at angle t from `ground` mirrors wv to a cosine of r cos(2 t - phi) with
 /// `ground`, where r and phi are the polar coordinates of wv's projection onto that plane. The cosine is large enough

@@ -31,7 +31,13 @@ struct NormalMap {
   /// Strength of the tilt. 0: unmapped surface, 1: as in the texture, more: exaggerated.
   float strength = 1;
   ReliefCorrection correction = ReliefCorrection::turned;
+
+  /// Unit normal of a lobe, or of a diffuse part, in the local frame, for the view `wv`.
+  Vec3 normal(bool is_lobe, const Vec3& wv, const SurfaceSite& site) const;
 };
+
+/// Least cosine of a view with a mapped normal.
+inline constexpr float kMinViewCosine = 1e-3f;
 
 /// Applies a normal map to `material`, uniform or textured: f about the mapped normal times the ratio of the light's
 /// cosines with the mapped and the surface normal, 0 where the light is behind either. A view behind the mapped normal

@@ -210,7 +210,7 @@ class LayeredMaterial final : public Material {
       PreparedLayer& layer = prepared[i];
       const ReflectingLayer& from = layers_.reflecting[i];
       layer.weight = Rgb(brighter * from.weight.at(site)) * from.weight.tint(site);
-      if (from.top) layer.weight *= from.top->through(site, wv.z, options.filter);
+      if (from.top) layer.weight *= from.top->through(wv, site, options.filter);
       layer.to_working = from.rec709_colors && layers_.rec709_to_working ? &*layers_.rec709_to_working : nullptr;
       layer.above_only = transmits_ && !from.material->transmits();
       layer.point = layer.weight != Rgb(0.0f) ? from.material->prepare(wv, site, options, arena) : nullptr;
@@ -289,6 +289,14 @@ class LayeredMaterial final : public Material {
 };
 
 }  // namespace
+
+Rgb PrincipledTop::through(const Vec3& wv, const SurfaceSite& site, const LobeFilter& filter) const {
+  const auto cosine = [&](const std::optional<NormalMap>& map) {
+    return map ? std::max(glm::dot(wv, map->normal(true, wv, site)), kMinViewCosine) : wv.z;
+  };
+  const PrincipledParameters at = textures.varies() ? textures.at(site, parameters) : parameters;
+  return through_top(at, cosine(normal), cosine(coat_normal), filter);
+}
 
 float LayerFactor::at(const SurfaceSite& site) const {
   const float given = texture.at(site, value);

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "material/material.h"
+#include "material/normal_map.h"
 #include "material/principled/principled_material.h"
 #include "material/texture.h"
 
@@ -40,13 +41,22 @@ struct LayerWeight {
   bool varies() const;
 };
 
+/// Sheen and a coat above other layers, each about its own normal.
+struct PrincipledTop {
+  PrincipledParameters parameters{};
+  PrincipledTextures textures{};
+  std::optional<NormalMap> normal{}, coat_normal{};  // none: that of the surface
+
+  /// Share of the light that passes.
+  Rgb through(const Vec3& wv, const SurfaceSite& site, const LobeFilter& filter) const;
+};
+
 /// A reflecting layer: any material, measured ones and further mixes included. The alpha and emission of its material
 /// are ignored.
 struct ReflectingLayer {
   std::shared_ptr<const Material> material;
   LayerWeight weight{};
-  /// Coat and sheen above the layer. They dim it about the surface normal, regardless of a normal map on the material.
-  std::optional<PrincipledTop> top{};
+  std::optional<PrincipledTop> top{};  // dims the layer
   bool rec709_colors = false;  // f is Rec. 709 (measured) and is converted to the working space; false: already there
 };
 

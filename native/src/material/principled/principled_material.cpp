@@ -94,9 +94,9 @@ SheenLobe::SheenLobe(float roughness, float cosine) {
   if (found.x >= 1e-5f && found.z >= 1e-5f) a = found.x, b = found.y, albedo = found.z;
 }
 
-Rgb through_top(const PrincipledParameters& p, float cosine, const LobeFilter& filter) {
+Rgb through_top(const PrincipledParameters& p, float cosine, float coat_cosine, const LobeFilter& filter) {
   if (p.formula == PrincipledFormula::disney) return Rgb(1);
-  return through_sheen(p, cosine) * through_coat(p, cosine, filter);
+  return through_sheen(p, cosine) * through_coat(p, coat_cosine, filter);
 }
 
 GlassParameters glass_of(const PrincipledParameters& p) {
@@ -164,7 +164,7 @@ void PrincipledPoint::set_layered(const PrincipledParameters& p, float cosine, c
     sheen = p.sheen * sheen_lobe.albedo * glm::max(p.sheen_tint, Rgb(0));
   }
   coat = weight_of_coat(p, cosine) * through_sheen(p, cosine).r;
-  const Rgb through = through_top(p, cosine, filter), not_metal = through * (1 - metallic);
+  const Rgb through = through_top(p, cosine, cosine, filter), not_metal = through * (1 - metallic);
   const Rgb rest = not_metal * (1 - transmission);
   glass = not_metal * transmission;
   const Interreflection facets(lobe, roughness, cosine);

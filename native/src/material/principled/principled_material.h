@@ -62,10 +62,11 @@ struct PrincipledParameters {
 /// Minimum rendered roughness, whose alpha is kMinGgxAlpha.
 inline constexpr float kMinRoughness = 0.0316227766f;
 
-/// Light that sheen and coat leave to the layers below them at a cosine with the normal: the share that sheen does not
+/// Light that sheen and coat leave to the layers below them: the share that sheen does not
 /// scatter, the share that the coat does not reflect, and for its tint Beer's law along the refracted ray. Follows
 /// Blender since 4.0; 1 in Disney's formula. With filter.diffuse_only the coat does not reflect and only tints.
-Rgb through_top(const PrincipledParameters& parameters, float cosine, const LobeFilter& filter = {});
+/// `cosine`: of the view with the normal of sheen; `coat_cosine`: with that of the coat.
+Rgb through_top(const PrincipledParameters& parameters, float cosine, float coat_cosine, const LobeFilter& filter = {});
 
 /// Fuzz above a surface since Blender 4.0: a linearly transformed cosine about the view's azimuth, fitted to scattering
 /// in a layer of fibers [ZBC22], by tables measured in Cycles (scripts/sheen_table). `cosine` is that of the view.
@@ -148,16 +149,6 @@ struct PrincipledTextures {
   PrincipledParameters anywhere(PrincipledParameters parameters) const;
   /// Leaves `parameter` at its own value.
   void remove(float PrincipledParameters::*parameter);
-};
-
-/// Parameters of a coat and sheen above other layers.
-struct PrincipledTop {
-  PrincipledParameters parameters{};
-  PrincipledTextures textures{};
-
-  Rgb through(const SurfaceSite& site, float cosine, const LobeFilter& filter) const {
-    return through_top(textures.varies() ? textures.at(site, parameters) : parameters, cosine, filter);
-  }
 };
 
 /// Samples the cosine, the normals of the lobe or the coat, sheen or glass, in proportion to their albedos. Isotropic.
