@@ -219,6 +219,18 @@ class Linked(Plates):
                 self.assert_angles(f"Principled BSDF: coat, {name.replace('_', ' ')} linked", shader)
 
 
+class Sheen(Plates):
+    def test_microfiber(self):
+        if not hasattr(bpy.types, "ShaderNodeBsdfSheen"):
+            self.skipTest("before 4.0 there is no Sheen BSDF")
+        for roughness in ROUGH:
+            inputs = {"Color": (0.9, 0.5, 0.3, 1), "Roughness": roughness}
+            self.assert_angles(
+                f"Sheen BSDF: roughness {roughness:g}",
+                lambda inputs=inputs: self.tree.node("ShaderNodeBsdfSheen", **inputs),
+            )
+
+
 class Glossy(Plates):
     def _assert_angles(self, roughness, distribution):
         feature = f"Glossy BSDF: {distribution}, roughness {roughness:g}"

@@ -711,9 +711,10 @@ VLR_API vlr_status vlr_scene_add_textured_material(vlr_scene* scene, const vlr_p
  * after a name counts registers, else it is one; tables are rows of floats. Undefined values, like 1 / 0, are 0.
  *
  * SOURCE -> value 3; VLR_SOURCE_*, set, VLR_SHIFT_*
- * IMAGE place 3 -> color 3; number of the image, 0 or 1 + UV set whose footprint, times the table (2 x 2, row-major),
- * is averaged; 0: a point MATH a, b, c -> value; VLR_MATH_*, 1: clamped to [0, 1] VECTOR_MATH a 3, b 3, c 3, scale ->
- * vector 3, value; VLR_VECTOR_* MIX_COLOR factor, a 3, b 3 -> color 3; VLR_BLEND_*, 1: factor clamped, 1: color clamped
+ * IMAGE place 3 -> color 3; number of the image, which is read at a point
+ * MATH a, b, c -> value; VLR_MATH_*, 1: clamped to [0, 1]
+ * VECTOR_MATH a 3, b 3, c 3, scale -> vector 3, value; VLR_VECTOR_*
+ * MIX_COLOR factor, a 3, b 3 -> color 3; VLR_BLEND_*, 1: factor clamped, 1: color clamped
  * MIX_NUMBER factor, a, b -> value; 1: factor clamped
  * MIX_VECTOR factor 3, a 3, b 3 -> vector 3; 1: factor clamped
  * COMBINE 3 components -> color 3; VLR_COLOR_MODEL_*. SEPARATE color 3 -> 3 components; VLR_COLOR_MODEL_*

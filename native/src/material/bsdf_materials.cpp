@@ -27,7 +27,7 @@ class PreparedRoughDiffuse final : public PreparedBrdf {
  public:
   PreparedRoughDiffuse(const RoughDiffuseParameters& p, const Vec3& wv, const SurfaceSite& site)
       : wv_(wv), color_(glm::clamp(p.color_texture.at(site, p.color), Rgb(0.0f), Rgb(1.0f))) {
-    const float roughness = std::clamp(p.roughness_texture.at(site, p.roughness), 0.0f, 1.0f);
+    const float roughness = std::clamp(p.roughness_texture.at_point(site, p.roughness), 0.0f, 1.0f);
     even_ = 1 / (kPi + kWhole * roughness);
     uneven_ = roughness * even_;
     many_ = p.interreflection && roughness > 0 ? interreflected() : Rgb(0.0f);
@@ -94,7 +94,7 @@ class PreparedGlossy final : public PreparedBrdf {
       : wv_(wv), lobe_(p.lobe) {
     const Rgb given = glm::clamp(p.color_texture.at(site, p.color), Rgb(0.0f), Rgb(1.0f));
     const Rgb color = filter.diffuse_only ? Rgb(0.0f) : given;
-    const float roughness = std::clamp(p.roughness_texture.at(site, p.roughness), kMinRoughness, 1.0f);
+    const float roughness = std::clamp(p.roughness_texture.at_point(site, p.roughness), kMinRoughness, 1.0f);
     color_ = color * Interreflection(p.lobe, roughness, wv.z).gain(color);
     alpha_ = Vec2(std::max(roughness * roughness, filter.min_alpha));
   }
@@ -189,8 +189,8 @@ class GlassMaterial final : public Material {
   const PreparedBrdf* prepare(const Vec3& wv, const SurfaceSite& site, const PrepareOptions& options,
                               ScratchArena& arena) const override {
     GlassParameters p = p_;
-    p.roughness = textures_.roughness.at(site, p.roughness);
-    p.refraction_roughness = textures_.roughness.at(site, p.refraction_roughness);
+    p.roughness = textures_.roughness.at_point(site, p.roughness);
+    p.refraction_roughness = textures_.roughness.at_point(site, p.refraction_roughness);
     p.reflected = glm::max(textures_.color.at(site, p.reflected), Rgb(0.0f));
     p.refracted = glm::max(textures_.color.at(site, p.refracted), Rgb(0.0f));
     return arena.make<PreparedGlass>(p, wv, site.back, options);

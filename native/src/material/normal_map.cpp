@@ -99,7 +99,7 @@ bool keeps_mirrors_above(ReliefCorrection correction, bool is_lobe) {
 
 /// Not normalized; zero: there is none.
 Vec3 normal_at(const NormalMap& map, const SurfaceSite& site) {
-  const Rgb given = map.texture.at(site, Rgb(0.5f, 0.5f, 1.0f));
+  const Rgb given = map.texture.at_point(site, Rgb(0.5f, 0.5f, 1.0f));
   if (map.texture.program) return given;
   const Vec3 normal = 2.0f * given - 1.0f;
   const float rest = std::clamp(map.strength, 0.0f, 1.0f);

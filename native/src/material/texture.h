@@ -48,6 +48,8 @@ class Texture {
   /// Approximate mean over the parallelogram with sides `footprint` (columns) about `uv`, both in texture coordinates,
   /// from trilinear look-ups at footprint_taps(). A coordinate that is not finite counts as 0.
   T look_up(const Vec2& uv, const Mat2& footprint) const;
+  /// Interpolated texels of the image itself, as Cycles reads it.
+  T at_point(const Vec2& uv) const { return look_up(uv, Mat2(0.0f)); }
 
   int width() const { return levels_[0].width; }
   int height() const { return levels_[0].height; }
@@ -147,6 +149,10 @@ struct TextureSlot {
     if (!texture) return otherwise;
     const SitePlace place = site.place(set);
     return texture->look_up(map.point(place.uv), map.map * place.footprint);
+  }
+  /// Not averaged over the footprint, which would bias what is not linear in the texture.
+  T at_point(const SurfaceSite& site, const T& otherwise) const {
+    return texture ? texture->at_point(map.point(site.place(set).uv)) : at(site, otherwise);
   }
 };
 

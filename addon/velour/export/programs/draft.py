@@ -20,7 +20,6 @@ class UvSet(NamedTuple):
     """A UV map in place of its number."""
 
     coordinates: str  # name; empty: the active render map
-    more: int = 0  # added to the number
 
 
 class CornerSet(NamedTuple):

@@ -26,7 +26,7 @@ def finished(draft, maps, colors, texture):
 
     def number(choice):
         if isinstance(choice, UvSet):
-            return maps.number(choice.coordinates) + choice.more
+            return maps.number(choice.coordinates)
         if isinstance(choice, CornerSet):
             return colors.index(choice.colors) if choice.colors in colors else 0
         return numbers[choice] if isinstance(choice, ImageNumber) else choice

@@ -6,7 +6,7 @@ import bpy
 
 from ..color import luminance_weights
 from ..plugs import fed_by
-from .layer import Factor, Layer, diffuse
+from .layer import BLACK, Factor, Layer, diffuse
 from .relief import read_coat_relief, read_relief
 
 # Velour's parameter: Blender's input, which may be textured.
@@ -280,6 +280,23 @@ def _read_transparent(plug, reader):
     return [Layer("transparent", {"base_color": color}, {"base_color": picture} if picture else {})]
 
 
+def _read_sheen(plug, reader):
+    """The fuzz of a Principled BSDF, which has nothing else."""
+    if plug.node.distribution != "MICROFIBER":
+        label = _label(plug.node, "distribution")
+        reader.note(plug, f"its distribution '{label}' is not supported; rendered as Microfiber.")
+    found = _Principled(plug, reader)
+    found.read("sheen_tint", "Color")
+    found.read("sheen_roughness", "Roughness")
+    values = {**BLACK, "formula": "layered", "sheen": 1.0, **found.values}
+    return [Layer("principled", values, found.pictures, relief=read_relief(plug, reader))]
+
+
+def _read_volume(plug, reader):
+    """Nothing: Cycles ignores volume shaders in a surface."""
+    return []
+
+
 READERS = {
     "ShaderNodeBsdfPrincipled": _read_principled,
     "ShaderNodeBsdfDiffuse": _read_diffuse,
@@ -290,6 +307,11 @@ READERS = {
     "ShaderNodeBsdfTranslucent": _read_translucent,
     "ShaderNodeEmission": _read_emission,
     "ShaderNodeBsdfTransparent": _read_transparent,
+    "ShaderNodeBsdfSheen": _read_sheen,
+    "ShaderNodeVolumeAbsorption": _read_volume,
+    "ShaderNodeVolumeScatter": _read_volume,
+    "ShaderNodeVolumePrincipled": _read_volume,
+    "ShaderNodeVolumeCoefficients": _read_volume,
 }
 
 

@@ -312,11 +312,12 @@ bool has_glass(const PrincipledParameters& p) {
 
 PrincipledParameters PrincipledTextures::at(const SurfaceSite& site, PrincipledParameters parameters) const {
   PrincipledParameters& p = parameters;
-  p.base_color = base_color.at(site, p.base_color);
-  p.metallic = metallic.at(site, p.metallic);
-  p.roughness = roughness.at(site, p.roughness);
-  for (const auto& [parameter, slot] : numbers) p.*parameter = slot.at(site, p.*parameter);
-  for (const auto& [parameter, slot] : colors) p.*parameter = slot.at(site, p.*parameter);
+  const bool is_linear = !metallic.given() && !roughness.given() && numbers.empty() && colors.empty();
+  p.base_color = is_linear ? base_color.at(site, p.base_color) : base_color.at_point(site, p.base_color);
+  p.metallic = metallic.at_point(site, p.metallic);
+  p.roughness = roughness.at_point(site, p.roughness);
+  for (const auto& [parameter, slot] : numbers) p.*parameter = slot.at_point(site, p.*parameter);
+  for (const auto& [parameter, slot] : colors) p.*parameter = slot.at_point(site, p.*parameter);
   p.index = std::max(p.index, kMinIndex);
   return parameters;
 }

@@ -154,8 +154,8 @@ struct PrincipledTextures {
 /// Samples the cosine, the normals of the lobe or the coat, sheen or glass, in proportion to their albedos. Isotropic.
 class PrincipledMaterial final : public Material {
  public:
-  /// Each parameter is averaged over the footprint separately. This is exact for the base color of distant surfaces,
-  /// but a mean of rough and smooth is rendered as one roughness in between. `alpha` applies if it has no texture.
+  /// A base color and alpha are averaged over the footprint; textures of several parameters, whose averages would make
+  /// another material, are read at a point. `alpha` applies if it has no texture.
   explicit PrincipledMaterial(const PrincipledParameters& parameters, const PrincipledTextures& textures = {},
                               float alpha = 1);
 

@@ -11,28 +11,28 @@ constexpr int32_t kMaxImages = 1023, kMaxFrequency = 1 << 20;
 
 // Comments name inputs -> outputs; choices.
 constexpr Signature kSignatures[kOperations] = {
-    {"source", {}, 3, {kSources - 1, kMaxSet, 2}},       // -> value; Source, set, Shift
-    {"image", {3}, 3, {kMaxImages, kMaxSet + 1}, 4, 4},  // place -> color or number; image, 1 + UV set of the footprint
-    {"math", {1, 1, 1}, 1, {40, 1}},                     // a, b, c -> value; MathOperation, clamp
-    {"vector_math", {3, 3, 3, 1}, 4, {29}},              // a, b, c, scale -> vector, value; VectorOperation
-    {"mix_color", {1, 3, 3}, 3, {18, 1, 1}},             // factor, a, b -> color; BlendMode, clamp factor, clamp result
-    {"mix_vector", {3, 3, 3}, 3, {1}},                   // factor, a, b -> vector; clamp factor
-    {"combine", {1, 1, 1}, 3, {2}},                      // components -> color; ColorModel
-    {"separate", {3}, 3, {2}},                           // color -> components; ColorModel
-    {"ramp", {1}, 4, {1}, 4, 8},                         // factor -> color, alpha; interpolate; table: RGBA
-    {"curves", {1, 3, 1, 1}, 3, {1}, 3, 6},              // factor, color, first and last place -> color; extrapolate;
-                                                         // table: RGB
-    {"hue_saturation", {1, 1, 1, 1, 3}, 3},              // hue, saturation, value, factor, color -> color
-    {"invert", {1, 3}, 3},                               // factor, color -> color
-    {"gamma", {3, 1}, 3},                                // color, gamma -> color
-    {"bright_contrast", {3, 1, 1}, 3},                   // color, bright, contrast -> color
-    {"clamp", {1, 1, 1}, 1, {1}},                        // value, min, max -> value; range: swaps min and max
-    {"map_range", {1, 1, 1, 1, 1, 1}, 1, {3, 1}},  // value, from min, max, to min, max, steps -> value; RangeCurve,
-                                                   // clamp
-    {"mapping", {3, 3, 3, 3}, 3, {3}},             // vector, location, rotation, scale -> vector; MappingKind
-    {"transform", {3}, 3, {}, 12, 12},             // point -> point; table: 3 x 4 matrix, row-major
-    {"fresnel", {1, 3, 3, 1}, 1},                  // ior, normal, incoming, backfacing -> factor
-    {"layer_weight", {1, 3, 3, 1}, 2},             // blend, normal, incoming, backfacing -> fresnel, facing
+    {"source", {}, 3, {kSources - 1, kMaxSet, 2}},  // -> value; Source, set, Shift
+    {"image", {3}, 3, {kMaxImages}},                // place -> color or number; image
+    {"math", {1, 1, 1}, 1, {40, 1}},                // a, b, c -> value; MathOperation, clamp
+    {"vector_math", {3, 3, 3, 1}, 4, {29}},         // a, b, c, scale -> vector, value; VectorOperation
+    {"mix_color", {1, 3, 3}, 3, {18, 1, 1}},        // factor, a, b -> color; BlendMode, clamp factor, clamp result
+    {"mix_vector", {3, 3, 3}, 3, {1}},              // factor, a, b -> vector; clamp factor
+    {"combine", {1, 1, 1}, 3, {2}},                 // components -> color; ColorModel
+    {"separate", {3}, 3, {2}},                      // color -> components; ColorModel
+    {"ramp", {1}, 4, {1}, 4, 8},                    // factor -> color, alpha; interpolate; table: RGBA
+    {"curves", {1, 3, 1, 1}, 3, {1}, 3, 6},         // factor, color, first and last place -> color; extrapolate;
+                                                    // table: RGB
+    {"hue_saturation", {1, 1, 1, 1, 3}, 3},         // hue, saturation, value, factor, color -> color
+    {"invert", {1, 3}, 3},                          // factor, color -> color
+    {"gamma", {3, 1}, 3},                           // color, gamma -> color
+    {"bright_contrast", {3, 1, 1}, 3},              // color, bright, contrast -> color
+    {"clamp", {1, 1, 1}, 1, {1}},                   // value, min, max -> value; range: swaps min and max
+    {"map_range", {1, 1, 1, 1, 1, 1}, 1, {3, 1}},   // value, from min, max, to min, max, steps -> value; RangeCurve,
+                                                    // clamp
+    {"mapping", {3, 3, 3, 3}, 3, {3}},              // vector, location, rotation, scale -> vector; MappingKind
+    {"transform", {3}, 3, {}, 12, 12},              // point -> point; table: 3 x 4 matrix, row-major
+    {"fresnel", {1, 3, 3, 1}, 1},                   // ior, normal, incoming, backfacing -> factor
+    {"layer_weight", {1, 3, 3, 1}, 2},              // blend, normal, incoming, backfacing -> fresnel, facing
     // vector, w, scale, detail, roughness, lacunarity, offset, gain, distortion -> value, color; dimensions - 1,
     // NoiseKind, normalize, needs color
     {"noise", {3, 1, 1, 1, 1, 1, 1, 1, 1}, 4, {3, 4, 1, 1}},

@@ -127,7 +127,6 @@ void Program::check() const {
 void Program::find_sources() {
   for (const Instruction& at : given_.instructions) {
     const auto set = static_cast<uint32_t>(at.choice[1]);
-    if (at.operation == Operation::image) uv_sets_ = std::max(uv_sets_, set);
     if (at.operation != Operation::source) continue;
     const ProgramSource source{static_cast<Source>(at.choice[0]), set, static_cast<Shift>(at.choice[2]), at.output};
     if (source.kind == Source::uv) uv_sets_ = std::max(uv_sets_, set + 1);
@@ -176,14 +175,10 @@ void ProgramMemory::prepare(const Program& program) {
 
 namespace {
 
-void run_image(const Operands& operands, const ProgramImage& image, ProgramMemory& memory) {
-  const auto set = operands.choice<size_t>(1);
-  const Mat2 map(operands.table[0], operands.table[2], operands.table[1], operands.table[3]);
+void run_image(const Operands& operands, const ProgramImage& image) {
   operands.each([&](int point) {
     const Vec2 place(operands.vector(0, point));
-    const Mat2 footprint = set == 0 ? Mat2(0.0f) : map * memory.footprint(set - 1, point);
-    operands.set(0, point,
-                 image.color ? image.color->look_up(place, footprint) : Rgb(image.number->look_up(place, footprint)));
+    operands.set(0, point, image.color ? image.color->at_point(place) : Rgb(image.number->at_point(place)));
   });
 }
 
@@ -241,7 +236,7 @@ void Program::run(ProgramMemory& memory, int count) const {
   for (const Instruction& at : given_.instructions) {
     const Operands operands{at, memory.lanes(0), count, given_.tables.data() + at.table};
     if (at.operation == Operation::image) {
-      run_image(operands, given_.images[static_cast<size_t>(at.choice[0])], memory);
+      run_image(operands, given_.images[static_cast<size_t>(at.choice[0])]);
     } else {
       run_one(operands);
     }

@@ -92,7 +92,6 @@ class Program {
 class ProgramMemory {
  public:
   static constexpr int kPoints = 16;  // of a batch; a multiple of all vector lengths
-  static constexpr size_t kFootprints = SurfaceSite::kMaxSets;
 
   /// The calling thread's. It grows to the largest program that the thread has run.
   static ProgramMemory& of_thread();
@@ -108,14 +107,11 @@ class ProgramMemory {
     const float* first = lanes(output.first) + point;
     return output.is_number ? Rgb(*first) : Rgb(first[0], first[kPoints], first[2 * kPoints]);
   }
-  /// Footprints in texture coordinates (SitePlace) of the sets, for images.
-  Mat2& footprint(size_t set, int point) { return footprints_[set][point]; }
 
   float* lanes(uint32_t number) { return values_.data() + static_cast<size_t>(number) * kPoints; }
 
  private:
   AlignedArray<float> values_{0};
-  Mat2 footprints_[kFootprints][kPoints];
   uint64_t program_ = 0;  // number of the program whose constants the registers hold
 };
 

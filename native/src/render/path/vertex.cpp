@@ -160,7 +160,6 @@ void compute(const Program& program, const ComputedPlace& place, SurfaceSite& si
   memory.prepare(program);
   const PlaceReader reader(place, program);
   for (const ProgramSource& source : program.sources()) memory.set(source.first, 0, reader.read(source));
-  for (size_t set = 0; set < program.uv_sets(); ++set) memory.footprint(set, 0) = site.place(set).footprint;
   program.run(memory, 1);
   const auto outputs = program.outputs();
   for (size_t i = 0; i < outputs.size(); ++i) {

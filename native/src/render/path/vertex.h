@@ -87,7 +87,7 @@ struct ComputedPlace {
   bool is_back() const { return glm::dot(point.geometric_normal, incoming) < 0.0f; }
 };
 
-/// Fills site.computed. Normals are unit and in world space. Images are averaged over the footprints of `site`.
+/// Fills site.computed. Normals are unit and in world space.
 void compute(const Program& program, const ComputedPlace& place, SurfaceSite& site);
 
 class GgxSampler;

@@ -69,7 +69,7 @@ TEST(Program, RefusesWhatIsNotAProgram) {
   given = sum();
   given.outputs.assign(17, {.first = 0, .is_number = true});
   expect_refused(given, "cannot have 17 outputs");
-  given = description_of(Operation::image, {0, 0}, {0, 0, 0}, {1, 0, 0, 1});
+  given = description_of(Operation::image, {0}, {0, 0, 0});
   expect_refused(given, "names image 0, but the program has 0 images");
   given = description_of(Operation::ramp, {1}, {0.5f}, std::vector<float>(9, 0.0f));
   expect_refused(given, "at least 8 in rows of 4");
