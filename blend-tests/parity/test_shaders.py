@@ -2,6 +2,7 @@
 
 import bpy
 
+from parity import stage
 from parity.shaders import ShaderTest, image
 
 
@@ -52,6 +53,26 @@ class Mixed(ShaderTest):
         factor = tree.picture(image(3))
         tree.end(tree.mix(factor, tree.diffuse((0.9, 0.2, 0.2)), tree.diffuse((0.1, 0.3, 0.9))))
         self.assert_parity("Mix Shader: factor of an image's color")
+
+    def test_light_path(self):
+        """What glTF files without shading are imported as, and a roof that only shadow rays pass."""
+        tree = self.tree
+        stage.world((0, 0, 0))  # whose light Cycles finds by other rays, too
+        for output, first, second in (
+            ("Is Camera Ray", tree.transparent(), tree.emission()),
+            ("Is Shadow Ray", tree.diffuse((0.8, 0.3, 0.2)), tree.transparent((0.5, 0.9, 0.6))),
+        ):
+            with self.subTest(output):
+                tree.end(tree.mix(tree.node("ShaderNodeLightPath", output), first, second))
+                self.assert_parity(f"Light Path: {output}, as the factor of a mix")
+
+    def test_opaque_shadows(self):
+        tree, material = self.tree, self.material
+        owner = material if hasattr(material, "use_transparent_shadow") else material.cycles
+        owner.use_transparent_shadow = False
+        stage.world((0, 0, 0))
+        tree.end(tree.mix(0.6, tree.transparent(), tree.diffuse()))
+        self.assert_parity("Transparent BSDF: opaque shadows")
 
     def test_emission(self):
         tree = self.tree

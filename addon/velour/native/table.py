@@ -134,6 +134,8 @@ SOURCES = (
     "map_normal",
     "step_x",
     "step_y",
+    "camera_ray",
+    "shadow_ray",
 )
 SHIFTS = ("none", "x", "y")
 MATH = (

@@ -779,7 +779,7 @@ enum {
  * set, and 0. CORNER: corner colors of the set. POSITION: meters. OBJECT_POSITION, OBJECT_NORMAL: object space. NORMAL:
  * shading normal on the viewer's side, as is GEOMETRIC_NORMAL. INCOMING: towards the viewer. BACKFACING: 1 behind the
  * mesh's normal. MAP_*: axes of normal maps in tangent space. STEP_X and STEP_Y: from the point to the shifted points
- * of VLR_SHIFT_*, about a pixel wide, meters. */
+ * of VLR_SHIFT_*, about a pixel wide, meters. CAMERA_RAY, SHADOW_RAY: 1 for rays of that kind. */
 enum {
   VLR_SOURCE_UV = 0,
   VLR_SOURCE_CORNER = 1,
@@ -794,7 +794,9 @@ enum {
   VLR_SOURCE_MAP_BITANGENT = 10,
   VLR_SOURCE_MAP_NORMAL = 11,
   VLR_SOURCE_STEP_X = 12,
-  VLR_SOURCE_STEP_Y = 13
+  VLR_SOURCE_STEP_Y = 13,
+  VLR_SOURCE_CAMERA_RAY = 14,
+  VLR_SOURCE_SHADOW_RAY = 15
 };
 enum { VLR_SHIFT_NONE = 0, VLR_SHIFT_X = 1, VLR_SHIFT_Y = 2 };
 enum {

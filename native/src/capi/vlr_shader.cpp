@@ -13,7 +13,7 @@ using namespace velour::capi;
 namespace {
 
 static_assert(VLR_OPERATION_MAP_RANGE_VECTOR + 1 == kOperations);
-static_assert(VLR_SOURCE_STEP_Y + 1 == kSources);
+static_assert(VLR_SOURCE_SHADOW_RAY + 1 == kSources);
 static_assert(VLR_MATH_DEGREES == static_cast<int>(MathOperation::degrees));
 static_assert(VLR_VECTOR_ROUND == static_cast<int>(VectorOperation::round));
 static_assert(VLR_BLEND_VALUE == static_cast<int>(BlendMode::value));

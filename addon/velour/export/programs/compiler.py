@@ -83,6 +83,10 @@ class Compiler:
         """The Computed of the surface's normal if it is displaced, else None."""
         return self.displaced_normal and self.draft.output(self.displaced_normal, "normal")
 
+    def computed_source(self, kind):
+        """The Computed of a number that is the same all over the surface; None if there are too many."""
+        return self.draft.output(self.draft.source(kind).component(0), "number")
+
     def source(self, kind, number=0):
         """A property of the surface that moves with the point."""
         return self.draft.source(kind, number, self.shift)

@@ -1,4 +1,4 @@
-"""Coordinates, geometry and attributes."""
+"""Coordinates, geometry, attributes and kinds of rays."""
 
 import numpy as np
 
@@ -47,6 +47,8 @@ _GEOMETRY = {
     "Backfacing": lambda c: c.draft.source("backfacing").component(0),
 }
 
+_LIGHT_PATH = {"Is Camera Ray": "camera_ray", "Is Shadow Ray": "shadow_ray"}
+
 
 def _unsupported(plug):
     return UnsupportedError(f"output '{plug.socket.name}' of '{plug.node.name}' is not supported")
@@ -76,10 +78,17 @@ def _attribute(c, plug):
     return value.component(0) if colors.part in ("Fac", "Alpha") else value
 
 
+def _light_path(c, plug):
+    if plug.socket.name not in _LIGHT_PATH:
+        raise _unsupported(plug)
+    return c.draft.source(_LIGHT_PATH[plug.socket.name]).component(0)
+
+
 NODES = {
     "ShaderNodeTexCoord": _coordinates,
     "ShaderNodeNewGeometry": _geometry,
     "ShaderNodeUVMap": _uv_map,
     "ShaderNodeAttribute": _attribute,
     "ShaderNodeVertexColor": _attribute,
+    "ShaderNodeLightPath": _light_path,
 }

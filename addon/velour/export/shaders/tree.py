@@ -40,11 +40,22 @@ def surface_layers(material, notes, metres=1.0, opens_measured=False):
     if reader.steps_left <= 0 or len(layers) > _MOST_LAYERS:
         notes.add(f"{owner}: mixing more than {_MOST_LAYERS} shaders is not supported; rendered gray.")
         return [gray()]
-    if not _shadows_are_clear(material) and any(
-        part.kind == "transparent" for each in layers for part in split(each)
-    ):
-        notes.add(f"{owner}: opaque shadows of transparent surfaces are not supported; light passes through.")
-    return layers
+    return layers if _shadows_are_clear(material) else _with_opaque_shadows(layers, reader)
+
+
+def _with_opaque_shadows(layers, reader):
+    """Layers whose transparent parts stop shadow rays."""
+    parts = [part for each in layers for part in split(each)]
+    if all(part.kind != "transparent" for part in parts):
+        return layers
+    shadow = reader.compiler.computed_source("shadow_ray")
+    if shadow is None:
+        reader.notes.add(f"{reader.owner}: too many computed inputs; light passes through it.")
+        return layers
+    # Cycles finds part of the world's light, or all if it is of one color, by rays that are no shadow rays.
+    reader.notes.add(f"{reader.owner}: its opaque shadows are also those of the world, which Cycles lets through.")
+    stops = Factor("rest", 0.0, shadow)
+    return [part.weighed(stops) if part.kind == "transparent" else part for part in parts]
 
 
 def _read_displacement(plug, material, reader):

@@ -61,8 +61,10 @@ enum class Source : int {
   map_normal = 11,
   step_x = 12,  // the offset of shifted points, world space, meters
   step_y = 13,
+  camera_ray = 14,  // 1 for rays from the camera
+  shadow_ray = 15,  // 1 for rays between a surface and a light
 };
-inline constexpr int kSources = 14;
+inline constexpr int kSources = 16;
 
 /// Points at which a source is read: the point itself, or one a pixel's width beside it, for bump.
 enum class Shift : int { none = 0, x = 1, y = 2 };

@@ -60,7 +60,7 @@ Hit hit_of(const Scene& scene, const Scene::Instance& instance, uint32_t triangl
 /// As seen along the normal.
 void compute_facing(const Program& program, const Scene& scene, const Hit& hit, SurfaceSite& site) {
   const SurfacePoint point = scene.surface(hit);
-  compute(program, {scene, hit, point, point.geometric_normal}, site);
+  compute(program, {scene, hit, point, point.geometric_normal, hidden::kFromBounces}, site);
 }
 
 uint32_t slot_of(const Mesh& mesh, uint32_t triangle, const Scene::Instance& instance) {
@@ -281,7 +281,7 @@ EmissiveMeshes::Light EmissiveMeshes::light(const Ray& ray, const Hit& hit, cons
   const Vertex vertex = Vertex::seen(scene_, ray, hit, cone, nullptr);
   const Material& material = *vertex.surface->material;
   const bool seen = !passes_back(*vertex.surface, ray, hit, hidden::kFromBounces);
-  const float alpha = material.opaque() ? 1.0f : material.alpha(point_site(scene_, ray, hit, *vertex.surface));
+  const float alpha = material.opaque() ? 1.0f : material.alpha(point_site(scene_, ray, hit, *vertex.surface, hidden::kFromBounces));
   const float facing = std::abs(glm::dot(ray.direction, vertex.geometric_normal));
   // An aimed ray starts slightly off the point that it was aimed from.
   const float distance = facing > kMinFacing

@@ -171,7 +171,7 @@ bool VisibleRays::meets_surface(Pending& pending, size_t i, uint8_t kind, Rgb* p
   const Material& material = *surface.material;
   if (passes_back(surface, ray, hit, kind)) return false;
   if (material.opaque()) return true;
-  const SurfaceSite site = point_site(scene_, ray, hit, surface);
+  const SurfaceSite site = point_site(scene_, ray, hit, surface, kind);
   const float alpha = material.alpha(site);
   Rgb& left = passed[pending.number[i]];
   if (kind == hidden::kFromShadows) {

@@ -121,6 +121,10 @@ class PlaceReader {
         return step_[0];
       case Source::step_y:
         return step_[1];
+      case Source::camera_ray:
+        return Vec3(place_.kind == hidden::kFromCamera ? 1.0f : 0.0f);
+      case Source::shadow_ray:
+        return Vec3(place_.kind == hidden::kFromShadows ? 1.0f : 0.0f);
     }
     return Vec3(0.0f);
   }
@@ -228,7 +232,8 @@ Vertex::Vertex(const Scene& scene, const SurfacePoint& point, const ShellCrossin
   if (surface->uv_sets > 1) find_others(scene, hit, ray.direction, sides);
   find_colors(scene, hit);
   if (surface->relief) find_relief(scene, hit);
-  if (surface->program) find_computed(scene, point, hit, -ray.direction);
+  const uint8_t kind = pixel != nullptr ? hidden::kFromCamera : hidden::kFromBounces;
+  if (surface->program) find_computed({scene, hit, point, -ray.direction, kind, this->cone.pixel()});
   if (crossing != nullptr && surface->holed()) {
     // At a point: a footprint would average over the holes, which the rays of a pixel do.
     site.footprint = Mat2(0.0f);
@@ -256,9 +261,9 @@ void Vertex::find_colors(const Scene& scene, const Hit& hit) {
   for (size_t set = 0; set < surface->color_sets; ++set) site.colors[set] = scene.color(hit, set);
 }
 
-void Vertex::find_computed(const Scene& scene, const SurfacePoint& point, const Hit& hit, const Vec3& incoming) {
+void Vertex::find_computed(const ComputedPlace& place) {
   const Program& program = *surface->program;
-  compute(program, {scene, hit, point, incoming, cone.pixel()}, site);
+  compute(program, place, site);
   site.ground = frame.to_local(geometric_normal);
   for (size_t i = 0; i < program.outputs().size(); ++i) {
     if (program.outputs()[i].is_normal) site.computed[i] = frame.to_local(site.computed[i]);

@@ -82,6 +82,7 @@ struct ComputedPlace {
   const Hit& hit;
   const SurfacePoint& point;  // of the hit
   Vec3 incoming;              // unit, towards the viewer, world space
+  uint8_t kind;               // of the ray that arrives: a bit of `hidden`
   float step = 0;             // width of a pixel in meters, for bump; 0: small
 
   bool is_back() const { return glm::dot(point.geometric_normal, incoming) < 0.0f; }
@@ -180,7 +181,7 @@ struct Vertex {
   void find_relief(const Scene& scene, const Hit& hit);
   void find_others(const Scene& scene, const Hit& hit, const Vec3& direction, const RaySides& sides);
   void find_colors(const Scene& scene, const Hit& hit);
-  void find_computed(const Scene& scene, const SurfacePoint& point, const Hit& hit, const Vec3& incoming);
+  void find_computed(const ComputedPlace& place);
   void find_site(const TexturePoint& texture, const Vec3& direction, const RaySides& sides);
 };
 
@@ -195,14 +196,15 @@ inline bool passes_back(const SurfaceMaterial& surface, const Ray& ray, const Hi
 }
 
 /// Site at which a material is queried for opacity and transmission: a point, because the rays of a pixel average what
-/// a footprint would.
-inline SurfaceSite point_site(const Scene& scene, const Ray& ray, const Hit& hit, const SurfaceMaterial& surface) {
+/// a footprint would. `kind`: a bit of `hidden`.
+inline SurfaceSite point_site(const Scene& scene, const Ray& ray, const Hit& hit, const SurfaceMaterial& surface,
+                              uint8_t kind) {
   SurfaceSite site;
   if (!surface.material->varies()) return site;
   site.uv = scene.texture(hit).uv;
   for (size_t set = 1; set < surface.uv_sets; ++set) site.others[set - 1].uv = scene.texture(hit, set).uv;
   for (size_t set = 0; set < surface.color_sets; ++set) site.colors[set] = scene.color(hit, set);
-  if (surface.opacity) compute(*surface.opacity, {scene, hit, scene.surface(hit), -ray.direction}, site);
+  if (surface.opacity) compute(*surface.opacity, {scene, hit, scene.surface(hit), -ray.direction, kind}, site);
   return site;
 }
 
