@@ -85,15 +85,18 @@ std::optional<Verdict> verdict_on(const Measurement& measurement, const std::sha
   return judge_look(measurement, *make_material(model, 0), threads, progress);
 }
 
-Model fit_and_judge(ModelKind kind, const Measurement& measurement, const FitOptions& options, Progress& progress) {
+Model fit_and_judge(ModelKind kind, const Measurement& measurement, FitOptions options, Progress& progress) {
   constexpr double kFitShare = 0.9;  // of the time
+  options.verdict_on = [&](const Model& model, Progress& judging) {
+    return verdict_on(measurement, std::make_shared<const Model>(model), options.threads, judging);
+  };
   Model model;
   {
     const Progress::Span fitting(progress, 0, kFitShare);
     model = fit_model(kind, measurement, options, progress);
   }
   progress.stage("comparing pictures", kFitShare, 1);
-  model.fit.verdict = verdict_on(measurement, std::make_shared<const Model>(model), options.threads, progress);
+  if (!model.fit.verdict) model.fit.verdict = options.verdict_on(model, progress);
   progress.update(1);
   return model;
 }

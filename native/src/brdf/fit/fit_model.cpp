@@ -45,9 +45,10 @@ Model bounded_parametric(const Measurement& measurement, FitOptions options, Pro
   }
 }
 
-// A model is kept if no reported view misses its tolerance by more than this factor; another must have a mean error
-// smaller by the second.
-constexpr double kGoodEnough = 5, kWorthIt = 1.5;
+// A model is kept if no reported view misses its tolerance by more than this factor, and its pictures look like the
+// measurement's. Another of the same verdict must have a mean error smaller by the second factor, or pictures whose
+// differences are smaller by the third.
+constexpr double kGoodEnough = 5, kWorthIt = 1.5, kWorthSeeing = 1.25;
 
 /// Largest error of the reported views in units of their tolerances.
 double worst_miss(const FitRecord& record) {
@@ -60,9 +61,19 @@ double worst_miss(const FitRecord& record) {
 
 /// Whether a larger model is worth a try.
 bool is_poor(const Measurement& measurement, const FitRecord& record) {
+  if (record.verdict && record.verdict->quality != LookQuality::good) return true;
   if (measurement.samples().empty()) return worst_miss(record) > kGoodEnough;
-  // Irregular samples determine no larger model, except where this one is worse than black.
+  // The error of irregular samples is mostly their noise, unless the model is worse than black.
   return std::ranges::any_of(record.by_view_angle, [](const auto& view) { return view.second.value_or(0.0) > 1.0; });
+}
+
+/// Whether a larger model is worth its size.
+bool is_better(const FitRecord& larger, const FitRecord& smaller) {
+  const bool is_closer = larger.relative_l2 < smaller.relative_l2;
+  if (!larger.verdict || !smaller.verdict) return kWorthIt * larger.relative_l2 < smaller.relative_l2;
+  if (larger.verdict->quality != smaller.verdict->quality) return larger.verdict->quality < smaller.verdict->quality;
+  return kWorthIt * larger.relative_l2 < smaller.relative_l2 ||
+         (is_closer && kWorthSeeing * larger.verdict->flip_mean < smaller.verdict->flip_mean);
 }
 
 /// Options that only one of the kinds has decide. Nothing if any kind will do.
@@ -75,23 +86,27 @@ std::optional<ModelKind> required_kind(const FitOptions& options) {
 
 Model fit_automatically(const Measurement& measurement, const FitOptions& options, Progress& progress) {
   const auto start = std::chrono::steady_clock::now();
+  const auto judged = [&](Model model) {
+    if (options.verdict_on) model.fit.verdict = options.verdict_on(model, progress);
+    return model;
+  };
   Model best;
   {
     const Progress::Span span(progress, 0.0, 0.4);
-    best = fit_parametric(measurement, options, progress);
+    best = judged(fit_parametric(measurement, options, progress));
   }
   const auto replace_if_better = [&](Model other) {
-    if (kWorthIt * other.fit.relative_l2 < best.fit.relative_l2) best = std::move(other);
+    if (is_better(other.fit, best.fit)) best = std::move(other);
   };
   const auto& coarse = std::get<ParametricBrdf>(best.body);
   const bool table = measurement.samples().empty();  // irregular samples are too few for more cells
   if (table && measurement.isotropic() && coarse.lobe_count() > 0 && is_poor(measurement, best.fit)) {
     const Progress::Span span(progress, 0.4, 0.7);
-    replace_if_better(fit_finer(measurement, coarse, options, progress));
+    replace_if_better(judged(fit_finer(measurement, coarse, options, progress)));
   }
   if (is_poor(measurement, best.fit)) {
     const Progress::Span span(progress, 0.7, 1.0);
-    replace_if_better(fit_per_view(measurement, options, progress));
+    replace_if_better(judged(fit_per_view(measurement, options, progress)));
   }
   best.fit.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   progress.stage("checking the model", 1.0, 1.0);

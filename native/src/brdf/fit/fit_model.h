@@ -3,6 +3,7 @@
 
 #include <functional>
 #include <memory>
+#include <optional>
 #include "base/progress.h"
 #include "brdf/measure/measurement.h"
 #include "model/model.h"
@@ -30,6 +31,8 @@ struct FitOptions {
   /// Bytes that max_bytes bounds, such as the size of the model's file, which the fit does not know. Empty:
   /// parameter_bytes.
   std::function<uint64_t(const Model&)> size_of;
+  /// The verdict on a model (brdf/verdict/verdict.h), which decides between kinds. Empty: their errors alone do.
+  std::function<std::optional<Verdict>(const Model&, Progress&)> verdict_on;
 };
 
 /// The values are those of VLR_MODEL_*.
@@ -39,9 +42,10 @@ constexpr ModelKind kDefaultModelKind = ModelKind::automatic;
 
 /// options.max_bytes bounds models of either kind; a parametric one is refitted with fewer lobes until it is met.
 ///
-/// Automatic: parametric, unless a reported view misses its tolerance several times over. Then the fit continues with
-/// splines twice as fine, and if that does not help, a per-view model follows. A larger model must lower the errors by
-/// a third. Options that only one kind has, and bounds of the size, decide by themselves.
+/// Automatic: parametric, unless a reported view misses its tolerance several times over or the verdict is not good.
+/// Then the fit continues with splines twice as fine, and if that does not help, a per-view model follows. A larger
+/// model must have a better verdict, or errors lower by a third. Options that only one kind has, and bounds of the
+/// size, decide by themselves.
 Model fit_model(ModelKind kind, const Measurement& measurement, const FitOptions& options, Progress& progress);
 
 }  // namespace velour
