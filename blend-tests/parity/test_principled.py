@@ -212,7 +212,9 @@ class Linked(Plates):
                 own = self.tree.node("ShaderNodeNewGeometry", "Normal")
                 tilted = self.tree.node("ShaderNodeVectorMath", Vector=own)
                 tilted.node.inputs[1].default_value = (0.15, 0.1, 0.0)
-                unit = self.tree.node("ShaderNodeVectorMath", settings={"operation": "NORMALIZE"}, Vector=tilted)
+                unit = self.tree.node(
+                    "ShaderNodeVectorMath", settings={"operation": "NORMALIZE"}, Vector=tilted
+                )
                 return self._shader(**{weight: 1.0, f"{coat}_Roughness": 0.4, name: unit}, Roughness=0.6)
 
             with self.subTest(name):

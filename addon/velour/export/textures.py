@@ -51,7 +51,8 @@ class TextureTable:
         if pixels is None:
             path = absolute_path(picture.image) or "no file"
             self._notes.add(
-                f"{owner}: image '{name}' ({path}) cannot be read and is replaced by magenta, as in Cycles; {FIND}."
+                f"{owner}: image '{name}' ({path}) cannot be read and is replaced by magenta, as in Cycles;"
+                f" {FIND}."
             )
         return pixels
 
@@ -65,5 +66,9 @@ class TextureTable:
         colors = rec709_to_working() if pixels.srgb else np.eye(3)
         if not is_color:
             colors = np.outer((1, 0, 0), luminance_weights() @ colors)
-        options |= {"srgb": pixels.srgb, "premultiplied": pixels.premultiplied, "colors": tuple(colors.ravel())}
+        options |= {
+            "srgb": pixels.srgb,
+            "premultiplied": pixels.premultiplied,
+            "colors": tuple(colors.ravel()),
+        }
         return self._scene.texture(pixels.values, **options)

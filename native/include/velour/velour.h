@@ -639,7 +639,8 @@ typedef struct vlr_texture_options {
   int32_t channel; /* channel of a number; -1: a color from the first three channels (of one or two: the first) */
   int32_t raw;     /* vlr_texture_load: 1: integer values are numbers from 0 to 1; 0: they are sRGB colors */
   /* If one is 1, the image has four channels and is interpolated as in Cycles, before it is decoded: the result is
-   * divided by alpha (`premultiplied`), made linear (`srgb`) and multiplied by `colors`; `channel` selects from that. */
+   * divided by alpha (`premultiplied`), made linear (`srgb`) and multiplied by `colors`; `channel` selects from that.
+   */
   int32_t srgb;          /* 1: colors have the sRGB curve */
   int32_t premultiplied; /* 1: colors are multiplied by alpha and are to be divided by it, unless it is 0 */
   float colors[9];       /* row-major, from the colors of the image to the working space; identity */

@@ -281,7 +281,8 @@ EmissiveMeshes::Light EmissiveMeshes::light(const Ray& ray, const Hit& hit, cons
   const Vertex vertex = Vertex::seen(scene_, ray, hit, cone, nullptr);
   const Material& material = *vertex.surface->material;
   const bool seen = !passes_back(*vertex.surface, ray, hit, hidden::kFromBounces);
-  const float alpha = material.opaque() ? 1.0f : material.alpha(point_site(scene_, ray, hit, *vertex.surface, hidden::kFromBounces));
+  const float alpha =
+      material.opaque() ? 1.0f : material.alpha(point_site(scene_, ray, hit, *vertex.surface, hidden::kFromBounces));
   const float facing = std::abs(glm::dot(ray.direction, vertex.geometric_normal));
   // An aimed ray starts slightly off the point that it was aimed from.
   const float distance = facing > kMinFacing
