@@ -7,6 +7,7 @@ import numpy as np
 
 from parity import stage
 from parity.case import ParityTest
+from parity.shaders import Tree
 from support import scenes
 
 OFFSET = "shadow_terminator_geometry_offset"
@@ -53,3 +54,36 @@ class Terminator(ParityTest):
             variations[engine] = np.abs(np.diff(row[row > 0])).sum()
         self.assertLess(variations["VELOUR"], 1.2 * variations["CYCLES"])
         bpy.context.scene.render.engine = "VELOUR"
+
+
+class SmoothEdges(ParityTest):
+    """A cylinder whose caps are smoothed as well, so that normals are 45 degrees off at its edges."""
+
+    def setUp(self):
+        super().setUp()
+        stage.camera((3, -4, 2.5), (1.1, 0, math.atan2(3, 4)), 60)
+        stage.sharp_sun()
+        stage.world((0.5, 0.6, 0.8))
+        bpy.ops.mesh.primitive_cylinder_add(vertices=16, radius=0.8)
+        self.cylinder = bpy.context.object
+        mesh = self.cylinder.data
+        mesh.polygons.foreach_set("use_smooth", [True] * len(mesh.polygons))
+        mesh.materials.append(bpy.data.materials.new("Smooth"))
+        self.tree = Tree(mesh.materials[0])
+
+    def test_shaders(self):
+        tree = self.tree
+        glossy = {"Base_Color": (0.9, 0.6, 0.3, 1), "Metallic": 0.3, "Roughness": 0.4}
+        shaders = {
+            "diffuse": lambda: tree.diffuse((0.8, 0.6, 0.4)),
+            "glossy": lambda: tree.glossy(0.3),
+            "Principled": lambda: tree.node(
+                "ShaderNodeBsdfPrincipled", settings={"distribution": "GGX"}, **glossy
+            ),
+            "mixed": lambda: tree.mix(0.5, tree.diffuse((0.2, 0.5, 0.7)), tree.glossy(0.5)),
+        }
+        for name, shader in shaders.items():
+            with self.subTest(name):
+                tree.nodes.clear()
+                tree.end(shader())
+                self.assert_parity(f"Smooth edges: {name}", up_to=0.6)

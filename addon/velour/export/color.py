@@ -4,6 +4,7 @@ import numpy as np
 from mathutils import Color
 
 from ..core.luminance import LUMINANCE
+from ..core.srgb import decoded
 
 _LINEAR_REC709 = {"Linear", "Linear Rec.709", "linear", "scene_linear", "Utility - Linear - sRGB"}
 _DATA = {"Non-Color", "Raw", "Generic Data"}
@@ -65,7 +66,7 @@ def bytes_to_working(pixels, space_name):
         return pixels, True
     rgb = pixels[..., :3]
     if space_name not in _LINEAR_REC709:
-        rgb = np.where(rgb <= 0.04045, rgb / 12.92, ((rgb + 0.055) / 1.055) ** 2.4)  # IEC 61966-2-1
+        rgb = decoded(rgb)
     pixels[..., :3] = rec709_pixels_to_working(rgb)
     return pixels, space_name in _LINEAR_REC709 or "sRGB" in space_name
 

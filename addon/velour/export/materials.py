@@ -176,7 +176,8 @@ class MaterialTable:
             if not plain or words == "transmitted light"
         ]
         if plain:
-            number = self._scene.add_textured_material(self._slots(plain, material), **plain.values)
+            values = plain.values | {"surface_correction": correction(material)}
+            number = self._scene.add_textured_material(self._slots(plain, material), **values)
             return self._with_rays(number, material)
         with Shader.new() as shader:
             for layer in layers:
@@ -255,6 +256,7 @@ class MaterialTable:
             self._measured.of_layer(material, layer.measured).add_layer(shader, **values)
             shader.weigh_layer("tint", layer.measured.look.gain)
         else:
+            values["surface_correction"] = correction(material)
             shader.add_layer(layer.kind, self._slots(layer, material), **values)
         for factor in layer.factors:
             slot = factor.picture and self._slot(factor.picture, factor.kind == "tint", material)

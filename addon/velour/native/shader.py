@@ -22,6 +22,7 @@ _CHOICES = {
     "lobe": table.LOBES,
     "coat_lobe": table.LOBES,
     "glass_fresnel": table.GLASS_FRESNELS,
+    "surface_correction": table.RELIEF_CORRECTIONS,
 }
 
 

@@ -228,6 +228,7 @@ class PrincipledDesc(Struct):
         ("sheen_roughness", c_float),
         ("sheen_tint", c_float * 3),
         ("specular_of_index", c_int32),
+        ("surface_correction", c_int32),
     ]
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from ..core.srgb import decoded
 from ..native import Texture
 from ..native.table import FILTERS, WRAPS
 from .kept_tables import digest
@@ -21,13 +22,25 @@ class GpuTexture(Texture):
     def from_pixels(cls, pixels, **options):
         made = super().from_pixels(pixels, **options)
         if options.get("channel", -1) < 0:
-            made.colors = _colors(pixels)
+            made.colors = _colors(_decoded(pixels, **options))
             made.terms = (
                 WRAPS.index(options.get("wrap", "repeat")),
                 FILTERS.index(options.get("filter", "linear")),
             )
             made.key = digest(made.colors), made.colors.shape, made.terms
         return made
+
+
+def _decoded(pixels, srgb=False, premultiplied=False, colors=None, **_options):
+    """Colors in the working space of pixels that the ray tracer decodes after it has interpolated them."""
+    if not (srgb or premultiplied):
+        return pixels
+    color, alpha = pixels[..., :3].copy(), pixels[..., 3:]
+    if premultiplied:
+        np.divide(color, alpha, out=color, where=alpha != 0)
+    if srgb:
+        color = decoded(color)
+    return (color @ np.reshape(colors, (3, 3)).T).astype(np.float32)
 
 
 class Picture:

@@ -508,6 +508,8 @@ typedef struct vlr_principled_desc {
   float sheen_roughness;        /* 0..1, VLR_PRINCIPLED_LAYERED; 0.5 */
   float sheen_tint[3];          /* not negative; white */
   int32_t specular_of_index;    /* 1: specular 0.5 means the reflectance of `index`, not of 1.5 */
+  int32_t surface_correction;   /* VLR_RELIEF_*: of interpolated normals where a view is mirrored below the face;
+                                   VLR_RELIEF_AS_IT_IS */
 } vlr_principled_desc;
 VLR_API void vlr_principled_desc_init(vlr_principled_desc* desc);
 VLR_API vlr_status vlr_scene_add_principled_material(vlr_scene* scene, const vlr_principled_desc* desc,

@@ -71,6 +71,8 @@ void use_sets(SurfaceMaterial& surface, const MeshSets& sets, uint32_t opacity_o
 GgxLobe lobe_of(const vlr_principled_desc& desc);
 PrincipledParameters parameters_of(const vlr_principled_desc& desc);
 std::shared_ptr<const Material> material_of(const vlr_principled_desc& desc, const PrincipledTextures& textures);
+/// SurfaceMaterial::turned of that material; null if its interpolated normals are not corrected.
+std::shared_ptr<const Material> turned_material(const vlr_principled_desc& desc, const PrincipledTextures& textures);
 
 // Conversion of texture coordinate maps.
 

@@ -72,6 +72,8 @@ struct vlr_program {
 
 struct vlr_shader {
   velour::ShaderLayers layers;
+  /// With corrected interpolated normals (SurfaceMaterial::turned), for each reflecting layer; null: the same.
+  std::vector<std::shared_ptr<const velour::Material>> turned;
   bool relief = false;                              // a layer has a normal map
   bool brushed = false;                             // a measured layer is uniform and anisotropic
   std::shared_ptr<const velour::ShellField> shell;  // of a measured layer with a silhouette; null: none

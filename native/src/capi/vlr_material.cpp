@@ -54,6 +54,7 @@ void vlr_principled_desc_init(vlr_principled_desc* desc) {
   desc->metallic = defaults.metallic;
   desc->roughness = defaults.roughness;
   desc->specular = defaults.specular;
+  desc->surface_correction = VLR_RELIEF_AS_IT_IS;
   desc->formula = static_cast<int32_t>(defaults.formula);
   desc->lobe = static_cast<int32_t>(defaults.lobe);
   desc->alpha = 1.0f;

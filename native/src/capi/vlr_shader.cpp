@@ -151,55 +151,64 @@ LayerNormal coat_normal_of(const vlr_layer_desc& layer) {
           layer.coat_normal_strength, layer.normal_correction, "vlr_layer_desc.coat_normal"};
 }
 
-std::shared_ptr<const Material> with_normals(std::shared_ptr<const Material> material, const LayerNormal& normal,
-                                             ReliefPart part) {
-  const std::optional<NormalMap> converted = normal.converted();
-  return converted ? make_normal_mapped(std::move(material), *converted, part) : material;
+/// None: interpolated normals are not corrected.
+std::optional<ReliefCorrection> correction_of(const vlr_principled_desc& desc) {
+  require_choice(desc.surface_correction, VLR_RELIEF_AS_IT_IS, "vlr_principled_desc.surface_correction");
+  if (desc.surface_correction == VLR_RELIEF_AS_IT_IS) return std::nullopt;
+  return static_cast<ReliefCorrection>(desc.surface_correction);
+}
+
+/// Normals of a layer and of its coat; none: the surface's.
+struct Normals {
+  std::optional<NormalMap> own{}, coat{};
+};
+
+std::shared_ptr<const Material> with_normals(std::shared_ptr<const Material> material,
+                                             const std::optional<NormalMap>& normal, ReliefPart part) {
+  return normal ? make_normal_mapped(std::move(material), *normal, part) : material;
 }
 
 /// Steep normals affect base and lobes differently, so each is a layer of its own, as is the coat, which has its own
 /// normal. Disney's clear coat dims nothing.
-std::shared_ptr<const Material> principled(const vlr_layer_desc& layer, const vlr_principled_desc& desc,
-                                           PrincipledTextures textures) {
-  PrincipledParameters parameters = parameters_of(desc);
+std::shared_ptr<const Material> principled(PrincipledParameters parameters, PrincipledTextures textures,
+                                           const Normals& normals) {
   textures.alpha = {};
-  const LayerNormal normal = normal_of(layer), of_coat = coat_normal_of(layer);
-  if (normal.texture == nullptr && of_coat.texture == nullptr) return make_principled_material(parameters, textures);
+  if (!normals.own && !normals.coat) return make_principled_material(parameters, textures);
   ShaderLayers parts;
   const auto part = [&](PrincipledPart which) {
     parameters.part = which;
     return make_principled_material(parameters, textures);
   };
-  const PrincipledTop top{parameters, textures, normal.converted(), of_coat.converted()};
+  const PrincipledTop top{parameters, textures, normals.own, normals.coat};
   const PrincipledParameters anywhere = textures.anywhere(parameters);
   const bool is_layered = parameters.formula == PrincipledFormula::layered;
   if (anywhere.coat > 0) {
-    parts.reflecting.push_back({with_normals(part(PrincipledPart::coat), of_coat, ReliefPart::lobe)});
+    parts.reflecting.push_back({with_normals(part(PrincipledPart::coat), normals.coat, ReliefPart::lobe)});
   }
   parameters.coat = 0;
   textures.remove(&PrincipledParameters::coat);
   if (is_layered && anywhere.sheen > 0) {
-    parts.reflecting.push_back({with_normals(part(PrincipledPart::sheen), normal, ReliefPart::lobe)});
+    parts.reflecting.push_back({with_normals(part(PrincipledPart::sheen), normals.own, ReliefPart::lobe)});
     parameters.sheen = 0;
     textures.remove(&PrincipledParameters::sheen);
   }
   if (anywhere.transmission > 0) {
-    parts.reflecting.push_back({with_normals(part(PrincipledPart::glass), normal, ReliefPart::lobe), {}, top});
+    parts.reflecting.push_back({with_normals(part(PrincipledPart::glass), normals.own, ReliefPart::lobe), {}, top});
   }
-  parts.reflecting.push_back({with_normals(part(PrincipledPart::base), normal, ReliefPart::base), {}, top});
-  parts.reflecting.push_back({with_normals(part(PrincipledPart::specular), normal, ReliefPart::lobe), {}, top});
+  parts.reflecting.push_back({with_normals(part(PrincipledPart::base), normals.own, ReliefPart::base), {}, top});
+  parts.reflecting.push_back({with_normals(part(PrincipledPart::specular), normals.own, ReliefPart::lobe), {}, top});
   return make_layered_material(std::move(parts));
 }
 
 std::shared_ptr<const Material> reflecting(const vlr_layer_desc& layer, const vlr_principled_desc& desc,
-                                           const PrincipledTextures& textures) {
+                                           const PrincipledTextures& textures, const Normals& normals) {
   if (layer.kind == VLR_LAYER_GLOSSY) {
     const GlossyParameters glossy{base_color(desc), desc.roughness, lobe_of(desc), textures.base_color,
                                   textures.roughness};
-    return with_normals(make_glossy_material(glossy), normal_of(layer), ReliefPart::lobe);
+    return with_normals(make_glossy_material(glossy), normals.own, ReliefPart::lobe);
   }
   if (layer.kind == VLR_LAYER_TRANSLUCENT) {
-    return with_normals(make_translucent_material(base_color(desc), textures.base_color), normal_of(layer),
+    return with_normals(make_translucent_material(base_color(desc), textures.base_color), normals.own,
                         ReliefPart::diffuse);
   }
   if (layer.kind == VLR_LAYER_GLASS || layer.kind == VLR_LAYER_REFRACTION) {
@@ -212,15 +221,15 @@ std::shared_ptr<const Material> reflecting(const vlr_layer_desc& layer, const vl
                                 .only_refracts = layer.kind == VLR_LAYER_REFRACTION,
                                 .fresnel = static_cast<GlassFresnel>(desc.glass_fresnel),
                                 .lobe = checked.lobe};
-    return with_normals(make_glass_material(glass, {textures.base_color, textures.roughness}), normal_of(layer),
+    return with_normals(make_glass_material(glass, {textures.base_color, textures.roughness}), normals.own,
                         ReliefPart::lobe);
   }
   if (layer.kind == VLR_LAYER_DIFFUSE) {
     const RoughDiffuseParameters diffuse{base_color(desc), desc.roughness, layer.interreflection != 0,
                                          textures.base_color, textures.roughness};
-    return with_normals(make_rough_diffuse_material(diffuse), normal_of(layer), ReliefPart::diffuse);
+    return with_normals(make_rough_diffuse_material(diffuse), normals.own, ReliefPart::diffuse);
   }
-  return principled(layer, desc, textures);
+  return principled(parameters_of(desc), textures, normals);
 }
 
 PrincipledTextures textures_of(const vlr_layer_desc& layer) {
@@ -246,7 +255,13 @@ LayerWeight& add_layer(vlr_shader& shader, const vlr_layer_desc& layer) {
     to.push_back({base_color(desc), textures.base_color});
     return to.back().weight;
   }
-  layers.reflecting.push_back({reflecting(layer, desc, textures)});
+  const Normals given{normal_of(layer).converted(), coat_normal_of(layer).converted()};
+  layers.reflecting.push_back({reflecting(layer, desc, textures, given)});
+  shader.turned.push_back(nullptr);
+  if (const auto correction = correction_of(desc); correction && !given.own) {
+    const NormalMap corrected = surface_normal(*correction);
+    shader.turned.back() = reflecting(layer, desc, textures, {corrected, given.coat.value_or(corrected)});
+  }
   return layers.reflecting.back().weight;
 }
 
@@ -292,7 +307,9 @@ LayerWeight& add_measured(vlr_shader& shader, const vlr_measured_layer_desc& lay
   shader.brushed |= measured.brushed;
   shader.relief |= normal_of(layer).is_map();
   shader.sets.add(normal_of(layer).slot());
-  auto material = with_normals(make_placed(std::move(measured.material), map), normal_of(layer), ReliefPart::lobe);
+  auto material =
+      with_normals(make_placed(std::move(measured.material), map), normal_of(layer).converted(), ReliefPart::lobe);
+  shader.turned.push_back(nullptr);
   shader.layers.reflecting.push_back({.material = std::move(material), .rec709_colors = true});
   return shader.layers.reflecting.back().weight;
 }
@@ -328,6 +345,13 @@ vlr_status vlr_shader_create(vlr_shader** out) {
 }
 
 void vlr_shader_free(vlr_shader* shader) { delete shader; }
+
+std::shared_ptr<const Material> velour::capi::turned_material(const vlr_principled_desc& desc,
+                                                              const PrincipledTextures& textures) {
+  const auto correction = correction_of(desc);
+  if (!correction) return nullptr;
+  return principled(parameters_of(desc), textures, {surface_normal(*correction), surface_normal(*correction)});
+}
 
 vlr_status vlr_shader_add_layer(vlr_shader* shader, const vlr_layer_desc* desc) {
   return guard([&] {
@@ -384,12 +408,21 @@ vlr_status vlr_scene_add_shader_material(vlr_scene* scene, const vlr_shader* sha
     require(material, "material");
     ShaderLayers layers = shader->layers;
     layers.rec709_to_working = scene->scene->rec709_to_working();
+    std::shared_ptr<const Material> turned;
+    if (std::ranges::any_of(shader->turned, [](const auto& each) { return each != nullptr; })) {
+      ShaderLayers other = layers;
+      for (size_t i = 0; i < other.reflecting.size(); ++i) {
+        if (shader->turned[i]) other.reflecting[i].material = shader->turned[i];
+      }
+      turned = make_layered_material(std::move(other));
+    }
     SurfaceMaterial surface{.material = make_layered_material(std::move(layers)),
                             .rec709_colors = false,
                             .relief = shader->relief,
                             .brushed = shader->brushed,
                             .shell = shader->shell,
-                            .shell_shaded = shader->shell_shaded};
+                            .shell_shaded = shader->shell_shaded,
+                            .turned = std::move(turned)};
     use_sets(surface, shader->sets, shader->opacity.outputs);
     *material = scene->scene->add_material(std::move(surface));
   });

@@ -171,7 +171,8 @@ vlr_status vlr_scene_add_textured_material(vlr_scene* scene, const vlr_principle
         converted_textures(read_options(textures, vlr_principled_textures_init, "vlr_principled_textures"));
     SurfaceMaterial surface{.material = material_of(given, pictures),
                             .emission = {given.emission[0], given.emission[1], given.emission[2]},
-                            .rec709_colors = false};
+                            .rec709_colors = false,
+                            .turned = turned_material(given, pictures)};
     MeshSets opacity;
     opacity.add(pictures.alpha);
     use_sets(surface, sets_of(pictures), opacity.outputs);

@@ -99,6 +99,7 @@ bool keeps_mirrors_above(ReliefCorrection correction, bool is_lobe) {
 
 /// Not normalized; zero: there is none.
 Vec3 normal_at(const NormalMap& map, const SurfaceSite& site) {
+  if (map.of_surface) return {0, 0, 1};
   const Rgb given = map.texture.at_point(site, Rgb(0.5f, 0.5f, 1.0f));
   if (map.texture.program) return given;
   const Vec3 normal = 2.0f * given - 1.0f;

@@ -31,10 +31,14 @@ struct NormalMap {
   /// Strength of the tilt. 0: unmapped surface, 1: as in the texture, more: exaggerated.
   float strength = 1;
   ReliefCorrection correction = ReliefCorrection::turned;
+  bool of_surface = false;  // no texture: the normal is that of the surface, and only corrected
 
   /// Unit normal of a lobe, or of a diffuse part, in the local frame, for the view `wv`.
   Vec3 normal(bool is_lobe, const Vec3& wv, const SurfaceSite& site) const;
 };
+
+/// Corrects interpolated normals, which on coarse meshes are far from those of the faces.
+inline NormalMap surface_normal(ReliefCorrection correction) { return {.correction = correction, .of_surface = true}; }
 
 /// Least cosine of a view with a mapped normal.
 inline constexpr float kMinViewCosine = 1e-3f;

@@ -66,7 +66,7 @@ float SurfaceRecorder::distance(const Vec3& world) const {
 
 Rgb SurfaceAlbedo::estimate(const Vertex& vertex, PathNumbers numbers) {
   arena_.reset();
-  const PreparedBrdf* const brdf = vertex.surface->material->prepare(vertex.wv, vertex.site, {}, arena_);
+  const PreparedBrdf* const brdf = vertex.material->prepare(vertex.wv, vertex.site, {}, arena_);
   Vec2 u[kDirections];
   numbers.points(Purpose::surface, numbers.ray() * kDirections, u);
   brdf->sample(u, drawn_);

@@ -82,6 +82,9 @@ struct SurfaceMaterial {
   bool hides_backs() const { return hidden_backs != 0 && !shell; }
   /// Factor on f in the working space: an artist's tint and exposure. Does not affect sampling densities.
   Rgb gain{1.0f};
+  /// Takes the place of `material` where a view is mirrored below the faces of a smooth mesh: with corrected normals.
+  /// Null: none.
+  std::shared_ptr<const Material> turned{};
 };
 
 /// Kinds of rays that may pass through an instance: bits of Instance::hidden, values of velour.h.

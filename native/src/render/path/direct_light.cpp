@@ -227,20 +227,25 @@ void DirectLight::go_on_along(const Receiver& receiver, int i, int term, Work& w
 
 void DirectLight::settle(std::span<const Receiver> receivers, Output output) {
   terms_.look_up(lighting_, views_, options_.heuristic);
-  const auto add = [&](int i, const Rgb& light, float far, bool casts_shadow) {
+  const auto add = [&](int i, const Rgb& light, float far, bool casts_shadow, bool of_smooth) {
     const Receiver& receiver = receivers[terms_.receiver[i]];
-    settle_term(receivers, i,
-                {terms_.world.get(i), light, limit_of_term(receiver), far, casts_shadow, terms_.light_pdf.v[i]},
-                output);
+    settle_term(
+        receivers, i,
+        {terms_.world.get(i), light, limit_of_term(receiver), far, casts_shadow, terms_.light_pdf.v[i], of_smooth},
+        output);
   };
   for (int i = 0; i < terms_.world.count; ++i) {
+    // Cycles finds a sky of one color by bounces, which start on the mesh.
+    const Vertex& vertex = receivers[terms_.receiver[i]].vertex;
+    const Vec3 wl_world = terms_.world.get(i);
+    if (even_sky_ && !vertex.receives(vertex.frame.to_local(wl_world), wl_world)) continue;
     const Rgb of_sky = terms_.weight.v[i] * terms_.environment.get(i);
-    add(i, of_sky * reflected_sky(receivers, i), std::numeric_limits<float>::infinity(), true);
+    add(i, of_sky * reflected_sky(receivers, i), std::numeric_limits<float>::infinity(), true, !even_sky_);
   }
   for (const LampHit& hit : terms_.lamp_hits) {
     const int i = hit.direction;
     const Rgb radiance = hit.lamp->radiance(terms_.world.get(i));
-    add(i, terms_.lamp_weight.v[i] * radiance * terms_.reflected.get(i), hit.distance, hit.lamp->casts_shadow());
+    add(i, terms_.lamp_weight.v[i] * radiance * terms_.reflected.get(i), hit.distance, hit.lamp->casts_shadow(), true);
   }
 }
 
@@ -295,7 +300,9 @@ bool DirectLight::waits(const Receiver& receiver, const Contribution& c, Output 
 
 void DirectLight::queue(const Receiver& receiver, const Contribution& c, Output output) {
   if (!waits(receiver, c, output)) return;
-  output.shadows->add(receiver.vertex.shadow_ray(c.wl_world, c.far), c.light, receiver.sample, c.limit);
+  const Vertex& vertex = receiver.vertex;
+  output.shadows->add(c.of_smooth ? vertex.shadow_ray(c.wl_world, c.far) : vertex.ray(c.wl_world, c.far), c.light,
+                      receiver.sample, c.limit);
 }
 
 void DirectLight::add_incident(const Vertex& vertex, int term, const Contribution& c, IncidentLight& incident) {

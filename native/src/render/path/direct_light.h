@@ -240,7 +240,8 @@ class DirectLight {
     float limit;  // maximum sum of the channels
     float far;    // distance of the light
     bool casts_shadow;
-    float density;  // of Lighting::sample; infinite for delta lights
+    float density;          // of Lighting::sample; infinite for delta lights
+    bool of_smooth = true;  // its shadow ray is Vertex::shadow_ray(), not ray()
   };
   /// Queues the contribution of term `term`, makes it wait for the ray of its path, or adds it to the incident light.
   void settle_term(std::span<const Receiver> receivers, int term, const Contribution& contribution, Output output);

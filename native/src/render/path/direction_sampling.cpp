@@ -38,7 +38,7 @@ constexpr float kBeyond = 0.5f;  // share of samples on the far side, for one-si
 
 PreparedSurface::PreparedSurface(SurfaceSampling sampling, const Vertex& vertex, const PrepareOptions& options,
                                  ScratchArena& arena)
-    : brdf_(vertex.surface->material->prepare(vertex.wv, vertex.site, options, arena)),
+    : brdf_(vertex.material->prepare(vertex.wv, vertex.site, options, arena)),
       sampling_(sampling),
       transmits_(vertex.transmits),
       ggx_(vertex.ggx) {

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "material/material.h"
+#include "material/normal_map.h"
 #include "material/program/program.h"
 #include "math/sphere/frame.h"
 #include "render/path/shell_crossing.h"
@@ -184,9 +185,16 @@ Frame frame_along(const Vec3& z, const Vec3& tangent) {
   return {unit_x, glm::cross(z, unit_x), z};
 }
 
+/// Whether a material with corrected normals takes the place of `surface`'s: its view is mirrored below the face.
+bool turns(const SurfaceMaterial& surface, const SurfacePoint& point, const Vec3& wv) {
+  if (!surface.turned) return false;
+  const Vec3 ground = facing(point.geometric_normal, wv), normal = facing(point.shading_normal, ground);
+  return with_mirror_above(normal, ground, wv) != normal;
+}
+
 }  // namespace
 
-Vertex::Vertex(const SurfacePoint& point, const Vec3& wv_world)
+Vertex::Vertex(const SurfacePoint& point, const Vec3& wv_world, bool bends)
     : position(point.position),
       geometric_normal(facing(point.geometric_normal, wv_world)),
       // Twice the bound: once for this point, once for the position of the triangle in the ray tracer.
@@ -195,10 +203,11 @@ Vertex::Vertex(const SurfacePoint& point, const Vec3& wv_world)
       rounding(point.rounding),
       terminator(glm::dot(point.geometric_normal, wv_world) < 0.0f ? 0.0f : point.terminator),
       surface(nullptr),
+      material(nullptr),
       table(nullptr) {
   Vec3 normal = facing(point.shading_normal, geometric_normal);
   const float cosine = glm::dot(normal, wv_world);
-  if (cosine < kMinCosine) normal = glm::normalize(normal + (kMinCosine - cosine) * wv_world);
+  if (bends && cosine < kMinCosine) normal = glm::normalize(normal + (kMinCosine - cosine) * wv_world);
   frame = frame_along(normal, point.tangent);
   wv = frame.to_local(wv_world);
 }
@@ -219,8 +228,13 @@ Vertex Vertex::seen(const Scene& scene, const Ray& ray, const Hit& hit, const Ra
 
 Vertex::Vertex(const Scene& scene, const SurfacePoint& point, const ShellCrossing* crossing, const Ray& ray,
                const Hit& hit, const RayCone& cone_at_origin, const PixelFootprint* pixel)
-    : Vertex(point, -ray.direction) {
+    : Vertex(point, -ray.direction, !turns(scene.materials()[point.material], point, -ray.direction)) {
   surface = &scene.materials()[point.material];
+  material = surface->material.get();
+  if (turns(*surface, point, -ray.direction)) {
+    material = surface->turned.get();
+    site.ground = frame.to_local(geometric_normal);
+  }
   time = ray.time;
   cone = cone_at_origin.at(hit.distance);
   transmits = surface->material->transmits();

@@ -115,6 +115,7 @@ struct Vertex {
   Vec3 rounding;          // see SurfacePoint
   float terminator;       // see SurfacePoint; 0 if seen from behind
   const SurfaceMaterial* surface;
+  const Material* material;   // of `surface`, or the one with corrected normals (SurfaceMaterial::turned)
   const TableSampler* table;  // null unless the strategy needs it
   const GgxSampler* ggx;      // null unless the strategy needs it
   RayCone cone;               // cone of the incoming and of the continuation ray
@@ -123,7 +124,8 @@ struct Vertex {
   float time = kMiddleTime;   // of the path: that of its camera ray
 
   /// `wv_world`: unit, toward the viewer.
-  Vertex(const SurfacePoint& point, const Vec3& wv_world);
+  /// `bends`: the shading normal, as above.
+  Vertex(const SurfacePoint& point, const Vec3& wv_world, bool bends = true);
   /// Vertex with its surface and, if the material varies, its site; `cone_at_origin`: at the origin of `ray`. `pixel`:
   /// for camera rays; null for others.
   Vertex(const Scene& scene, const SurfacePoint& point, const Ray& ray, const Hit& hit, const RayCone& cone_at_origin,
