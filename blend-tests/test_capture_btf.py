@@ -278,19 +278,16 @@ class Refusals(BlenderTest):
         return scenes.add_plane(material), socket.name
 
     def test_textures_of_what_is_not_textured_are_named(self):
-        for sockets in (
-            ("Specular IOR Level", "Specular"),
-            ("Coat Weight", "Clearcoat"),
-            ("Specular Tint",),
-            ("Sheen Weight", "Sheen"),
-            ("Transmission Weight", "Transmission"),
-        ):
+        for sockets in (("Subsurface Weight", "Subsurface"), ("Anisotropic",)):
             obj, socket = self._textured(sockets, (0.2, 0.4, 0.6, 0.8))
             bpy.context.view_layer.objects.active = obj
             self._refused(["Material 'Painted", f"'{socket}'", "Approximate"])
         for sockets in (("Emission Color", "Emission"), ("Emission Strength",)):
             bpy.context.view_layer.objects.active = self._textured(sockets, (0.2, 0.4, 0.6, 0.8))[0]
             self._refused(["Material 'Painted", "emission", "Approximate"])
+        sockets = ("Transmission Weight", "Transmission")
+        bpy.context.view_layer.objects.active = self._textured(sockets, (0.2, 0.4, 0.6, 0.8))[0]
+        self._refused(["Material 'Painted", "transmitted light", "Approximate"])
         path = self.folder / "approximate.btf"
         arguments = {**_SMALL, "directory": str(path), "use_approximate": True}
         self.assertEqual(bpy.ops.velour.capture_btf(**arguments), {"FINISHED"})

@@ -71,6 +71,7 @@ bool is_poor(const Measurement& measurement, const FitRecord& record) {
 bool is_better(const FitRecord& larger, const FitRecord& smaller) {
   const bool is_closer = larger.relative_l2 < smaller.relative_l2;
   if (!larger.verdict || !smaller.verdict) return kWorthIt * larger.relative_l2 < smaller.relative_l2;
+  if (larger.relative_l2 > kWorthIt * smaller.relative_l2) return false;
   if (larger.verdict->quality != smaller.verdict->quality) return larger.verdict->quality < smaller.verdict->quality;
   return kWorthIt * larger.relative_l2 < smaller.relative_l2 ||
          (is_closer && kWorthSeeing * larger.verdict->flip_mean < smaller.verdict->flip_mean);

@@ -97,8 +97,9 @@ class TableSampler;
 
 /// Surfaces are two-sided: both normals are turned to the viewer's side of the geometric surface. Where interpolation
 /// leaves the viewer below the shading horizon, the shading normal is bent toward the viewer until wv.z is
-/// kMinCosine: continuous, no division by zero, no black rim. Light from below the geometric surface does not count
-/// unless the material transmits; then light from below both horizons counts as well.
+/// kMinCosine: continuous, no division by zero, no black rim; SurfaceMaterial::turned does without that. Light from
+/// below the geometric surface does not count unless the material transmits; then light from below both horizons counts
+/// as well.
 ///
 /// The frame is right-handed, so a measured sample can be rotated but not mirrored. Where the material varies, +y is
 /// the side on which the second texture coordinate increases, so that a texture that is mapped mirrored, or seen from
