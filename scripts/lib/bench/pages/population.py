@@ -5,10 +5,11 @@ from __future__ import annotations
 import statistics
 from pathlib import Path
 
-from .. import page, population
+from .. import population
 from ..run import Run
 
-CSV = "population/population.csv"
+CSV = "population.csv"
+PAGES = {"population.md": "population"}
 # The seed of the second half is for releases alone: opened once, reported, never tuned on.
 SETTINGS = {"members": (60, 3), "population_seed": (1, 1)}
 VIEWS = ("5", "30", "60", "75", "85")
@@ -69,30 +70,23 @@ def beaten(row: dict) -> bool:
     return 1.1 * min(row["per_view"], *(row[peer] for peer in PEERS)) < row["error"]
 
 
-def write(run: Run, found: dict) -> None:
+def values(found: dict) -> dict:
     rows = found["rows"]
     columns = {f"error at {view}°": [row[f"error_{view}"] for row in rows] for view in VIEWS}
-    columns |= {"mean error": [row["error"] for row in rows]}
+    columns |= {
+        "mean error": [row["error"] for row in rows],
+        "mean error, no noise added": [row["error"] for row in rows if row["defect"] != "noise"],
+    }
     columns |= {f"mean error, {name}": [row[name] for row in rows] for name in ("per_view", *PEERS)}
     for layout in LAYOUTS:
         columns[f"mean error, {layout}"] = [row["error"] for row in rows if row["layout"] == layout]
     columns |= {name: [row[name] for row in rows] for name in ("flip", "seconds", "processor", "bytes")}
-    spreads = [{"what": what, **spread(values)} for what, values in columns.items()]
-    worst = sorted(rows, key=lambda row: -row["error"])[:12]
-    values = {
+    return {
         "count": len(rows),
-        "spread": page.table(
-            spreads, "of | median | 95 % | worst", "{what} | {median:.3g} | {most:.3g} | {worst:.3g}"
-        ),
-        "worst": page.table(
-            worst,
-            "measurement | layout | defect | model | error | per-view | GGX | Principled | verdict",
-            "{member} | {layout} | {defect} | {model} | {error:.3f} | {per_view:.3f} | {ggx:.3f} |"
-            " {principled:.3f} | {verdict}",
-        ),
+        "spreads": [{"what": what, **spread(values)} for what, values in columns.items()],
+        "worst": sorted(rows, key=lambda row: -row["error"])[:12],
         "beaten": sum(map(beaten, rows)),
-        "per_view": sum(row["model"] == "per-view" for row in rows),
+        "per_view_models": sum(row["model"] == "per-view" for row in rows),
         "hidden": sum(row["flip"] > _VISIBLE and row["verdict"] != "poor" for row in rows),
         **{quality: sum(row["verdict"] == quality for row in rows) for quality in QUALITIES},
     }
-    page.write(run.output, "population.md", page.text("population", found["conditions"] | values))
