@@ -197,16 +197,25 @@ template <class T>
 typename Texture<T>::Weighted Texture<T>::bilinear(const Level& level, const Vec2& uv) const {
   const Vec2 place = uv * Vec2(level.width, level.height) - 0.5f;
   const int x = floor_of(place.x), y = floor_of(place.y);
-  const auto between = [&](const auto& texel) {
-    const Vec2 part = place - Vec2(x, y);
-    const auto bottom = (1 - part.x) * texel(x, y) + part.x * texel(x + 1, y);
-    const auto top = (1 - part.x) * texel(x, y + 1) + part.x * texel(x + 1, y + 1);
+  const Vec2 part = place - Vec2(x, y);
+  const int column[2] = {wrapped(x, level.width), wrapped(x + 1, level.width)};
+  const int row[2] = {wrapped(y, level.height), wrapped(y + 1, level.height)};
+  const auto between = [&](const auto& texels, auto kind) {
+    using V = decltype(kind);
+    const auto texel = [&](int c, int r) {
+      if (column[c] < 0 || row[r] < 0) return V(0);
+      return V(texels[static_cast<size_t>(row[r]) * static_cast<size_t>(level.width) + static_cast<size_t>(column[c])]);
+    };
+    const V bottom = (1 - part.x) * texel(0, 0) + part.x * texel(1, 0);
+    const V top = (1 - part.x) * texel(0, 1) + part.x * texel(1, 1);
     return (1 - part.y) * bottom + part.y * top;
   };
-  if (level.texels.empty()) return weighted(between([&](int i, int j) { return stored(i, j); }));
-  const T value = between([&](int i, int j) { return at(level.texels, level, i, j); });
-  if (level.weights.empty()) return {value, 1.0f};
-  return {value, between([&](int i, int j) { return at(level.weights, level, i, j); })};
+  if (!level.texels.empty()) {
+    const T value = between(level.texels, T());
+    return {value, level.weights.empty() ? 1.0f : between(level.weights, float())};
+  }
+  return weighted(of_bytes_.empty() ? between(stored_.texels, glm::vec4())
+                                    : between(of_bytes_, glm::vec4()) * (1.0f / 255.0f));
 }
 
 template <class T>
