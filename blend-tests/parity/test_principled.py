@@ -156,7 +156,7 @@ class Principled(Plates):
 
 
 class Linked(Plates):
-    """Inputs that nodes provide, other for each plate."""
+    """Inputs that nodes provide, with a value of its own for each plate."""
 
     def _of_plate(self, axis, low, high):
         """A number from `low` to `high` by the plate's column (X) or row (Y)."""

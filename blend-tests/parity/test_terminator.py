@@ -57,7 +57,7 @@ class Terminator(ParityTest):
 
 
 class SmoothEdges(ParityTest):
-    """A cylinder whose caps are smoothed as well, so that normals are 45 degrees off at its edges."""
+    """A cylinder with smooth caps: at its edges, normals are 45 degrees from those of the faces."""
 
     def setUp(self):
         super().setUp()

@@ -54,7 +54,7 @@ def _with_opaque_shadows(layers, reader):
         return layers
     # Cycles finds part of the world's light, or all if it is of one color, by rays that are no shadow rays.
     reader.notes.add(
-        f"{reader.owner}: its opaque shadows are also those of the world, which Cycles lets through."
+        f"{reader.owner}: its opaque shadows also block the light of the world, which Cycles lets through."
     )
     stops = Factor("rest", 0.0, shadow)
     return [part.weighed(stops) if part.kind == "transparent" else part for part in parts]
