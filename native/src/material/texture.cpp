@@ -168,14 +168,6 @@ typename Texture<T>::Weighted Texture<T>::weighted(const glm::vec4& stored) cons
   return {weight * decoded(stored), weight};
 }
 
-/// Between four values, those of the lower row first.
-template <class V>
-V between(const V& a, const V& b, const V& c, const V& d, const Vec2& part) {
-  const V bottom = (1 - part.x) * a + part.x * b;
-  const V top = (1 - part.x) * c + part.x * d;
-  return (1 - part.y) * bottom + part.y * top;
-}
-
 template <class T>
 Vec2 Texture<T>::reduced(const Vec2& uv) const {
   const Vec2 given(std::isfinite(uv.x) ? uv.x : 0.0f, std::isfinite(uv.y) ? uv.y : 0.0f);
