@@ -126,12 +126,6 @@ class Worlds(NotesTest):
         with self.assertRaisesRegex(export.ExportError, words):
             self.notes()
 
-    def test_mirror_balls(self):
-        node = self._environment()
-        self.assertEqual(self.notes(), [])
-        node.projection = "MIRROR_BALL"
-        self._refused(f"World 'World': node '{node.name}' is a mirror ball")
-
     def test_movies_and_sequences(self):
         """Those of OpenEXR files are rendered (test_render.py)."""
         image = self._environment().image
@@ -154,7 +148,17 @@ class Worlds(NotesTest):
         tree.links.new(coordinates.outputs["Generated"], node.inputs["Vector"])
         self.assertEqual(self.notes(), [])
         tree.links.new(coordinates.outputs["Window"], node.inputs["Vector"])
-        self.assert_said("World 'World'", "Window coordinates are not supported")
+        self.assert_said("World 'World'", "output 'Window' of 'Texture Coordinate' is not supported")
+        tree.links.new(coordinates.outputs["UV"], node.inputs["Vector"])
+        self.assert_said("World 'World'", "a world has no UV maps")
+
+    def test_shaders_that_are_no_background(self):
+        tree = bpy.context.scene.world.node_tree
+        node, both = tree.nodes.new("ShaderNodeBsdfDiffuse"), tree.nodes.new("ShaderNodeAddShader")
+        for shader, socket in zip((node, tree.nodes["Background"]), both.inputs, strict=True):
+            tree.links.new(shader.outputs[0], socket)
+        tree.links.new(both.outputs[0], tree.nodes["World Output"].inputs["Surface"])
+        self.assert_said("World 'World'", "Diffuse BSDF emits no light here; rendered black")
 
     def test_hidden_from_diffuse_rays(self):
         world = bpy.context.scene.world

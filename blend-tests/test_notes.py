@@ -214,7 +214,7 @@ class Notes(NotesTest):
         self.assertEqual(self.notes(), [])
         profile = tree.nodes.new("ShaderNodeTexIES")
         tree.links.new(profile.outputs[0], tree.nodes["Emission"].inputs["Strength"])
-        self.assert_said("Light 'Down'", "shader nodes of lights, such as IES files, are not supported")
+        self.assert_said("Light 'Down'", "shader nodes that vary by place or direction")
 
     def test_hair(self):
         obj = scenes.add_sphere()
@@ -235,15 +235,6 @@ class Notes(NotesTest):
         obj = bpy.data.objects.new("Fog", bpy.data.volumes.new("Fog"))
         bpy.context.scene.collection.objects.link(obj)
         self.assert_said("Object 'Fog'", "volumes")
-
-    def test_world_mapping(self):
-        tree = bpy.context.scene.world.node_tree
-        node, mapping = tree.nodes.new("ShaderNodeTexEnvironment"), tree.nodes.new("ShaderNodeMapping")
-        node.image = bpy.data.images.new("sky", 8, 4, float_buffer=True)
-        mapping.inputs["Location"].default_value = (1, 0, 0)
-        tree.links.new(mapping.outputs[0], node.inputs["Vector"])
-        tree.links.new(node.outputs[0], tree.nodes["Background"].inputs["Color"])
-        self.assert_said("World 'World'", "only the rotation")
 
     def test_missing_model_in_a_preview(self):
         """Previews render the approximation and say why."""

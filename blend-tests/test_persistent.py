@@ -201,7 +201,8 @@ class PersistentData(BlenderTest):
 
     def _turn_sky(self, node):
         tree = self.scene.world.node_tree
-        mapping = tree.nodes.new("ShaderNodeMapping")
+        mapping, place = tree.nodes.new("ShaderNodeMapping"), tree.nodes.new("ShaderNodeTexCoord")
+        tree.links.new(place.outputs["Generated"], mapping.inputs["Vector"])
         tree.links.new(mapping.outputs[0], node.inputs["Vector"])
         self._keys(mapping.inputs["Rotation"], "default_value", (0, 0, 0), (0, 0, 2))
         self._keys(tree.nodes["Background"].inputs["Strength"], "default_value", 0.4, 1.0)

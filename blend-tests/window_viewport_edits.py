@@ -77,6 +77,8 @@ def _sky():
     world = bpy.context.scene.world.node_tree
     picture, mapping = world.nodes.new("ShaderNodeTexEnvironment"), world.nodes.new("ShaderNodeMapping")
     picture.image = bpy.data.images.load(bpy.utils.system_resource("DATAFILES") + _SKY)
+    place = world.nodes.new("ShaderNodeTexCoord")
+    world.links.new(place.outputs["Generated"], mapping.inputs["Vector"])
     world.links.new(mapping.outputs[0], picture.inputs["Vector"])
     world.links.new(picture.outputs[0], world.nodes["Background"].inputs["Color"])
 

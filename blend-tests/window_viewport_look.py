@@ -52,6 +52,7 @@ def _sky(path, turn, strength):
     picture, mapping = tree.nodes.new("ShaderNodeTexEnvironment"), tree.nodes.new("ShaderNodeMapping")
     picture.image, mapping.vector_type = bpy.data.images.load(path), "VECTOR"
     mapping.inputs["Rotation"].default_value = (0, 0, turn)
+    tree.links.new(tree.nodes.new("ShaderNodeTexCoord").outputs["Generated"], mapping.inputs["Vector"])
     tree.links.new(mapping.outputs[0], picture.inputs["Vector"])
     tree.links.new(picture.outputs[0], tree.nodes["Background"].inputs["Color"])
 

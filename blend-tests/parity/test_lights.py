@@ -33,6 +33,22 @@ class Lights(BoxTest):
         self._tree(stage.lamp("POINT", 900, (-2, 0.5, 3), shadow_soft_size=0.0)).links.clear()
         self.assert_parity("Light: Emission node, and none")
 
+    def test_nodes(self):
+        """Constants through other nodes. Under the lamp it is three times as bright as in the mean."""
+        tree = self._tree(stage.lamp("POINT", 300, (1, 0.5, 3), shadow_soft_size=0.0))
+        body, falloff = tree.nodes.new("ShaderNodeBlackbody"), tree.nodes.new("ShaderNodeLightFalloff")
+        double = tree.nodes.new("ShaderNodeMath")
+        body.inputs["Temperature"].default_value, double.operation = 3000, "MULTIPLY"
+        double.inputs[0].default_value, double.inputs[1].default_value = 0.6, 2.0
+        emission = tree.nodes["Emission"]
+        for source, socket in (
+            (double.outputs[0], falloff.inputs["Strength"]),
+            (falloff.outputs["Quadratic"], emission.inputs["Strength"]),
+            (body.outputs[0], emission.inputs["Color"]),
+        ):
+            tree.links.new(source, socket)
+        self.assert_approximate("Light: Blackbody, Math and Light Falloff nodes", 3.0)
+
     def _tree(self, lamp):
         lamp.data.use_nodes = True
         return lamp.data.node_tree

@@ -75,11 +75,12 @@ class World(ParityTest):
         self._environment().image = image
         self.assert_approximate("World: environment, 8-bit sRGB", 0.6)
 
-    def test_object_coordinates(self):
+    def test_camera_coordinates(self):
         node = self._environment()
         source = self.tree.nodes.new("ShaderNodeTexCoord")
         self.tree.links.new(source.outputs["Camera"], node.inputs["Vector"])
-        self.assert_ignored("World: coordinates other than Generated", "Camera coordinates are not supported")
+        sentence = "output 'Camera' of 'Texture Coordinate' is not supported"
+        self.assert_ignored("World: camera coordinates", sentence)
 
     def test_hidden_from_camera(self):
         self.scene.world.cycles_visibility.camera = False

@@ -1,4 +1,4 @@
-"""Image Texture nodes that drive a material parameter."""
+"""Image and Environment Texture nodes that drive a parameter of a shader."""
 
 from typing import NamedTuple
 
@@ -6,15 +6,17 @@ import numpy as np
 from mathutils import Euler, Matrix
 
 from .newer import UNKNOWN, choice
+from .nodes import is_model_texture
 from .plugs import fed_by
 
 _WRAPS = {"REPEAT": "repeat", "EXTEND": "extend", "CLIP": "clip", "MIRROR": "mirror"}
 _SOURCES = ("FILE", "GENERATED")
+_NODES = ("ShaderNodeTexImage", "ShaderNodeTexEnvironment")
 _IDENTITY = np.eye(2, 3, dtype=np.float32)
 
 
 class Picture(NamedTuple):
-    """Data of an Image Texture node, without the pixels."""
+    """Data of an Image or Environment Texture node, without the pixels."""
 
     image: object  # bpy.types.Image, or None: magenta, as in Cycles
     alpha: bool  # use alpha instead of color
@@ -36,7 +38,7 @@ class UnsupportedError(Exception):
 
 
 def picture_of(plug, owner, notes):
-    """The Picture at a node's output; raises UnsupportedError unless it is an Image Texture on a UV map."""
+    """The Picture at an Image Texture's output; raises UnsupportedError unless it is on a UV map."""
     picture = unplaced_picture(plug, owner, notes)
     uv_map, coordinates = uv_placement(plug.input("Vector"))
     return picture._replace(uv_map=uv_map, coordinates=coordinates)
@@ -45,9 +47,9 @@ def picture_of(plug, owner, notes):
 def unplaced_picture(plug, owner, notes):
     """Like picture_of(), whatever the coordinates are; those of the Picture are the mesh's own."""
     node = plug.node
-    if node.bl_idname != "ShaderNodeTexImage":
+    if node.bl_idname not in _NODES:
         raise UnsupportedError(f"'{node.name}' is not an Image Texture")
-    if node.velour.enabled:
+    if is_model_texture(node):
         raise UnsupportedError(f"'{node.name}' holds a measured material")
     _check(node)
     if node.image is None:
@@ -55,18 +57,24 @@ def unplaced_picture(plug, owner, notes):
     return Picture(
         node.image,
         plug.socket.name == "Alpha",
-        node.outputs["Alpha"].is_linked,
-        choice(_WRAPS, node.extension, "REPEAT", f"{owner}: node '{node.name}'", "extension", notes),
+        any(output.name == "Alpha" and output.is_linked for output in node.outputs),
+        _wrap(node, owner, notes),
         "closest" if node.interpolation == "Closest" else "linear",
         _IDENTITY,
         "",
     )
 
 
+def _wrap(node, owner, notes):
+    if node.bl_idname == "ShaderNodeTexEnvironment":
+        return "repeat"
+    return choice(_WRAPS, node.extension, "REPEAT", f"{owner}: node '{node.name}'", "extension", notes)
+
+
 def _check(node):
     if node.image is not None and node.image.source not in _SOURCES:
         raise UnsupportedError(f"the image '{node.image.name}' is not a single image")
-    if node.projection != "FLAT":
+    if node.bl_idname == "ShaderNodeTexImage" and node.projection != "FLAT":
         raise UnsupportedError(f"'{node.name}' is not projected with Flat")
 
 

@@ -11,8 +11,7 @@ from .materials import MaterialTable
 from .notes import Notes
 from .objects import ObjectExport
 from .units import metres_per_unit
-from .world import add_world, shown_world
-from .world_light import WorldLight
+from .world import WorldLight, add_world, shown_world
 
 
 class LiveExport:
@@ -25,10 +24,10 @@ class LiveExport:
             set_working_space(self.scene)
             self._materials = MaterialTable(self.scene, Notes(), False, metres_per_unit(depsgraph.scene))
             self._meshes = KeptMeshes()
-            self._world = WorldLight(self.scene)
+            self._world = WorldLight(self.scene, waits=False)
             self._look = look.key()
-            self._add_objects(depsgraph, look)
             self._add_world(depsgraph, look)
+            self._add_objects(depsgraph, look)
         except BaseException:
             self.scene.close()
             raise
@@ -47,12 +46,11 @@ class LiveExport:
 
     def update(self, changes, depsgraph, look):
         self._look = look.key()
+        has_new_suns = changes.world and self._add_world(depsgraph, look)
         if self._renew(changes.changed_materials(depsgraph)) or changes.objects:
             self._add_objects(depsgraph, look, changes.geometry)
-        elif changes.lights:
+        elif changes.lights or has_new_suns:
             self._add_lights(depsgraph, look)
-        if changes.world:
-            self._add_world(depsgraph, look)
 
     def _renew(self, materials):
         """Updates materials; returns whether their objects must be exported again for texture coordinates."""
@@ -63,19 +61,23 @@ class LiveExport:
         self.scene.clear_lights()
         self._meshes.begin(changed)
         self._export().add_shown(depsgraph, look.shows)
+        self._world.add_suns()
         self._meshes.remove_unused(self.scene)
 
     def _add_lights(self, depsgraph, look):
         self.scene.clear_lights()
         self._export().add_shown(depsgraph, lambda i: i.object.type == "LIGHT" and look.shows(i))
+        self._world.add_suns()
 
     def _export(self):
         return ObjectExport(self.scene, self._materials, Notes(), lambda: None, meshes=self._meshes)
 
     def _add_world(self, depsgraph, look):
-        light = look.studio_light
+        """Returns whether the suns of the sky have changed."""
+        suns, light = self._world.suns, look.studio_light
         if light:
             turn = np.array(Matrix.Rotation(light.turn, 3, "Z"), np.float32)
             self._world.set_file(light.path, light.strength, turn)
         else:
             add_world(self._world, shown_world(depsgraph), depsgraph.scene.frame_current, Notes())
+        return self._world.suns != suns

@@ -106,10 +106,15 @@ def nodes_of(tree):
 def model_texture(tree):
     """The Image Texture node of a tree that contains a measured model, or None; the active one if there are
     several."""
-    found = [node for node in tree.nodes if node.bl_idname == "ShaderNodeTexImage" and node.velour.enabled]
+    found = [node for node in tree.nodes if is_model_texture(node)]
     if tree.nodes.active in found:
         return tree.nodes.active
     return found[0] if found else None
+
+
+def is_model_texture(node):
+    """Whether a node contains a measured model."""
+    return node.bl_idname == "ShaderNodeTexImage" and node.velour.enabled
 
 
 def approximation_node(material):

@@ -14,8 +14,7 @@ from .objects import ObjectExport
 from .pass_labels import AskedPasses, asked_passes
 from .units import metres_per_unit
 from .unused_settings import note_layer, note_scene
-from .world import add_world, has_moving_picture, layer_world, shown_world
-from .world_light import WorldLight
+from .world import WorldLight, add_world, has_moving_picture, layer_world, shown_world
 
 
 class Export(NamedTuple):
@@ -77,8 +76,8 @@ class SceneExport:
             self._drop_changed(depsgraph)
         for sentence in motion.sentences if motion else ():
             self.notes.add(sentence)
-        objects = self._add_objects(depsgraph, check_break, motion)
         self._add_world(depsgraph, motion.frame if motion else depsgraph.scene.frame_current)
+        objects = self._add_objects(depsgraph, check_break, motion)
         if self._strict:
             refuse_black(depsgraph, objects, self.materials, self._world_shines, self.notes)
         view.add_to(self.scene)
@@ -112,6 +111,7 @@ class SceneExport:
             motion=motion,
         )
         objects.add_all(depsgraph)
+        self._world.add_suns()
         if self._changes is not None:
             self._meshes.remove_unused(self.scene)
         return objects

@@ -10,7 +10,7 @@ from typing import NamedTuple
 import numpy as np
 
 from . import structs, table
-from .arrays import checked
+from .arrays import checked, pointer
 from .handle import Handle, choice
 from .texture import Texture
 
@@ -95,6 +95,16 @@ class Program(Handle):
     def texture(self, output: int) -> Texture:
         """An output in place of an image."""
         return Texture._create("vlr_texture_of_program", self.pointer, output)
+
+    def radiance(self, output: int, rays: str, directions: np.ndarray) -> np.ndarray:
+        """Radiance [n x 3] of a world in unit directions [n x 3]; rays: others, camera, shadow."""
+        directions = checked("directions", directions, (None, 3))
+        found = np.empty_like(directions)
+        kind = choice("rays", rays, table.WORLD_RAYS)
+        self._lib.vlr_program_radiance(
+            self.pointer, output, kind, len(directions), pointer(directions), pointer(found)
+        )
+        return found
 
 
 def _fill(at: structs.Instruction, given: Instruction, start: int, size: int) -> None:

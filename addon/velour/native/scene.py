@@ -21,6 +21,7 @@ from .images import picture_options
 from .measurement import Measurement
 from .mesh_descs import checked_mesh, mesh_descs
 from .model import Model
+from .program import Program
 from .shader import Shader, described
 from .texture import Texture, TextureSlot
 
@@ -267,6 +268,10 @@ class Scene(Handle):
             strength,
             _rotation(world_to_image),
         )
+
+    def set_world_program(self, program: Program, output: int, width: int, height: int) -> None:
+        """Like set_world_pixels, of a program's output by direction (vlr_scene_set_world_program)."""
+        self._lib.vlr_scene_set_world_program(self.pointer, program.pointer, output, width, height)
 
     def place_world(self, strength: float, world_to_image=None) -> None:
         """Changes the strength and the rotation of the current world picture."""

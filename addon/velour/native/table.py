@@ -138,6 +138,7 @@ SOURCES = (
     "shadow_ray",
 )
 SHIFTS = ("none", "x", "y")
+WORLD_RAYS = ("others", "camera", "shadow")
 MATH = (
     "add",
     "subtract",
@@ -354,6 +355,8 @@ STATUS_CALLS = {
     "vlr_scene_clear_lights": [_handle],
     "vlr_scene_set_world_color": [_handle, _floats],
     "vlr_scene_set_world_pixels": [_handle, c_uint32, c_uint32, c_uint32, _floats, c_float, _floats],
+    "vlr_program_radiance": [_handle, c_uint32, c_int32, c_uint32, _floats, _floats],
+    "vlr_scene_set_world_program": [_handle, _handle, c_uint32, c_uint32, c_uint32],
     "vlr_scene_load_world": [_handle, c_char_p, c_float, _floats],
     "vlr_scene_load_world_picture": [
         _handle,

@@ -585,6 +585,11 @@ VLR_API vlr_status vlr_scene_load_world(vlr_scene* scene, const char* path, floa
  * warning_codes of vlr_scene_info_json. */
 VLR_API vlr_status vlr_scene_load_world_picture(vlr_scene* scene, const char* path, const vlr_picture_options* options,
                                                 float strength, const float* world_to_image);
+/* An output of a program that is a color: radiance by the direction in which a ray leaves the scene, as
+ * vlr_program_radiance() returns it. Camera rays see the program itself; all others see an image of width x height
+ * texels, at most 16384 each, that is made of it (a color if it depends on no direction). */
+VLR_API vlr_status vlr_scene_set_world_program(vlr_scene* scene, const vlr_program* program, uint32_t output,
+                                               uint32_t width, uint32_t height);
 /* Changes strength and rotation of the world's image without reading it again. Refused if the world is a color. */
 VLR_API vlr_status vlr_scene_place_world(vlr_scene* scene, float strength, const float* world_to_image);
 
@@ -965,6 +970,12 @@ VLR_API void vlr_program_desc_init(vlr_program_desc* desc);
 /* Refuses, with a sentence that names the instruction, what is not a program. */
 VLR_API vlr_status vlr_program_create(const vlr_program_desc* desc, vlr_program** out);
 VLR_API void vlr_program_free(vlr_program* program);
+/* Radiance [count x 3] of a world whose color is an output of a program, in unit directions [count x 3]: POSITION and
+ * OBJECT_POSITION are the direction, INCOMING and all NORMALs its negative; CAMERA_RAY or SHADOW_RAY is 1 for
+ * VLR_WORLD_ RAYS_CAMERA or _SHADOW; other sources are 0. */
+enum { VLR_WORLD_RAYS_OTHERS = 0, VLR_WORLD_RAYS_CAMERA = 1, VLR_WORLD_RAYS_SHADOW = 2 };
+VLR_API vlr_status vlr_program_radiance(const vlr_program* program, uint32_t output, int32_t rays, uint32_t count,
+                                        const float* directions, float* radiance);
 /* An output of a program, instead of an image: as a color, a number or a normal map (an output that is a normal). Maps
  * and sets of texture coordinates are ignored. All parameters of a material use one program, which runs once for each
  * point. */

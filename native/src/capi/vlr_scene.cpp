@@ -229,6 +229,21 @@ vlr_status vlr_scene_set_world_pixels(vlr_scene* scene, uint32_t width, uint32_t
   });
 }
 
+vlr_status vlr_scene_set_world_program(vlr_scene* scene, const vlr_program* program, uint32_t output, uint32_t width,
+                                       uint32_t height) {
+  return guard([&] {
+    require(scene, "scene");
+    require(program, "program");
+    constexpr uint32_t kLargest = 16384;
+    if (width < 1 || height < 1 || width > kLargest || height > kLargest) {
+      throw Error(Status::invalid_argument, "The world's image cannot have " + std::to_string(width) + " x " +
+                                                std::to_string(height) +
+                                                " texels; 1 to 16384 along each side are supported.");
+    }
+    scene->scene->set_world(WorldProgram(program->program, output), static_cast<int>(width), static_cast<int>(height));
+  });
+}
+
 vlr_status vlr_scene_place_world(vlr_scene* scene, float strength, const float* world_to_image) {
   return guard([&] {
     require(scene, "scene");

@@ -6,6 +6,7 @@
 #include "material/derived_materials.h"
 #include "material/normal_map.h"
 #include "material/program/program.h"
+#include "scene/world_program.h"
 
 using namespace velour;
 using namespace velour::capi;
@@ -93,6 +94,31 @@ vlr_status vlr_program_create(const vlr_program_desc* desc, vlr_program** out) {
 }
 
 void vlr_program_free(vlr_program* program) { delete program; }
+
+vlr_status vlr_program_radiance(const vlr_program* program, uint32_t output, int32_t rays, uint32_t count,
+                                const float* directions, float* radiance) {
+  return guard([&] {
+    require(program, "program");
+    require(directions, "directions");
+    require(radiance, "radiance");
+    require_choice(rays, VLR_WORLD_RAYS_SHADOW, "rays");
+    const WorldProgram world(program->program, output);
+    DirectionBatch batch;
+    RgbBatch found;
+    for (uint32_t begin = 0; begin < count; begin += DirectionBatch::kCapacity) {
+      batch.count = 0;
+      for (uint32_t i = begin; i < std::min(count, begin + DirectionBatch::kCapacity); ++i) {
+        const float* d = directions + 3 * size_t{i};
+        batch.push({d[0], d[1], d[2]});
+      }
+      world.look_up(batch, static_cast<WorldRays>(rays), found);
+      for (int i = 0; i < batch.count; ++i) {
+        const Rgb color = found.get(i);
+        std::copy_n(&color.x, 3, radiance + 3 * (size_t{begin} + static_cast<size_t>(i)));
+      }
+    }
+  });
+}
 
 vlr_status vlr_texture_of_program(const vlr_program* program, uint32_t output, vlr_texture** out) {
   return guard([&] {

@@ -241,7 +241,6 @@ void TileRenderer::follow(size_t index, int depth) {
 void TileRenderer::add_background() {
   DirectionBatch batch;
   RgbBatch radiance;
-  ScalarBatch unused;
   const RenderOptions& o = context_.options;
   const bool visible = !o.transparent && !o.hide_world;
   for (size_t start = 0; start < missed_.size() && visible; start += DirectionBatch::kCapacity) {
@@ -249,7 +248,7 @@ void TileRenderer::add_background() {
     batch.count = 0;
     for (size_t i = start; i < end; ++i) batch.push(missed_[i].direction);
     batch.pad();
-    context_.scene.environment().look_up(batch, radiance, unused);
+    context_.scene.look_up_background(batch, radiance);
     for (size_t i = start; i < end; ++i) {
       CameraSample& sample = flight_.samples[missed_[i].sample];
       sample.radiance =

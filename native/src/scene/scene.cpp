@@ -205,6 +205,18 @@ void Scene::clear_instances() {
 void Scene::set_environment(Environment environment) {
   changed();
   environment_ = std::move(environment);
+  world_.reset();
+}
+
+void Scene::set_world(WorldProgram world, int width, int height) {
+  set_environment(world.baked(width, height));
+  world_ = std::move(world);
+}
+
+void Scene::look_up_background(const DirectionBatch& world, RgbBatch& radiance) const {
+  if (world_) return world_->look_up(world, WorldRays::camera, radiance);
+  ScalarBatch unused;
+  environment_.look_up(world, radiance, unused);
 }
 
 void Scene::set_camera(const Camera& camera) {

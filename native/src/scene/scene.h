@@ -20,6 +20,7 @@
 #include "scene/mesh.h"
 #include "scene/motion.h"
 #include "scene/scene_shells.h"
+#include "scene/world_program.h"
 #include "votf/eval/occlusion_volume.h"
 
 namespace velour {
@@ -183,6 +184,8 @@ class Scene {
   uint32_t add_light(const Light& light);
   void clear_lights();
   void set_environment(Environment environment);
+  /// Sets the environment to WorldProgram::baked(). Camera rays that leave the scene see the program itself.
+  void set_world(WorldProgram world, int width, int height);
   void set_camera(const Camera& camera);
   /// Sets the camera to Camera::framing() of all instances.
   void frame_camera(float aspect, int up_axis);
@@ -287,6 +290,8 @@ class Scene {
 
   const Camera& camera() const { return camera_; }
   const Environment& environment() const { return environment_; }
+  /// Radiance of camera rays that leave the scene, in each direction of `world`, a padded batch.
+  void look_up_background(const DirectionBatch& world, RgbBatch& radiance) const;
   const std::vector<Light>& lights() const { return lights_; }
   const std::vector<SurfaceMaterial>& materials() const { return materials_; }
   /// Empty if the working space is Rec. 709.
@@ -330,6 +335,7 @@ class Scene {
   std::vector<Light> lights_;
   uint64_t flat_instances_ = 0;
   Environment environment_;
+  std::optional<WorldProgram> world_;  // that environment_ is baked from
   Camera camera_;
   std::optional<Mat3> rec709_to_working_;
   uint64_t unlifted_ = 0;  // instances whose shells lack texture coordinates

@@ -2,6 +2,7 @@
 
 from ...native import table
 from ..image_nodes import UnsupportedError
+from .blackbody import blackbody
 from .conversions import luminance_of
 from .curves import curve_range, curve_table, ramp_table
 from .math_nodes import by_identifier, known
@@ -112,6 +113,7 @@ def _rgb(c, plug):
 
 
 NODES = {
+    "ShaderNodeBlackbody": blackbody,
     "ShaderNodeMixRGB": _mix_rgb,
     "ShaderNodeMix": _mix,
     "ShaderNodeValToRGB": _ramp,

@@ -16,6 +16,8 @@ class Compiler:
         self.reader = reader
         self.metres = metres
         self.draft = Draft()
+        self.more_nodes = {}  # compiled beside NODES
+        self.is_world = False  # directions are evaluated in place of points of a surface
         self.shift = "none"  # the point at which sources are read
         self.displaced_normal = None  # Value of the surface's normal with displacement as bump
         self._values = {}
@@ -56,7 +58,7 @@ class Compiler:
         return self._values[key]
 
     def _compiled(self, plug):
-        compile_node = NODES.get(plug.node.bl_idname)
+        compile_node = NODES.get(plug.node.bl_idname) or self.more_nodes.get(plug.node.bl_idname)
         if compile_node is None:
             raise UnsupportedError(f"'{plug.node.name}' is not a node that Velour evaluates")
         if self._depth == _MOST_DEPTH or len(self.draft.steps) > MOST_INSTRUCTIONS:
@@ -88,5 +90,7 @@ class Compiler:
         return self.draft.output(self.draft.source(kind).component(0), "number")
 
     def source(self, kind, number=0):
-        """A property of the surface that moves with the point."""
+        """A property of the surface that moves with the point; raises UnsupportedError if it is a world."""
+        if self.is_world and kind in ("uv", "corner"):
+            raise UnsupportedError("a world has no UV maps and attributes")
         return self.draft.source(kind, number, self.shift)

@@ -8,12 +8,12 @@ from .draft import CornerSet, UvSet
 
 
 def generated(c):
-    """Coordinates from 0 to 1 over the mesh's texture space."""
-    return c.source("corner", CornerSet(GENERATED))
+    """Coordinates from 0 to 1 over the mesh's texture space; of a world, the direction."""
+    return position(c) if c.is_world else c.source("corner", CornerSet(GENERATED))
 
 
 def position(c):
-    """World-space position in Blender's units."""
+    """World-space position in Blender's units; of a world, the direction."""
     place = c.source("position")
     return place if c.metres == 1.0 else c.draft.vector_math("scale", place, scale=1.0 / c.metres)[0]
 

@@ -1,4 +1,4 @@
-"""Blender's world: a color, or an environment image with strength and rotation."""
+"""Blender's world: a color, an environment image with strength and rotation, or nodes that are evaluated."""
 
 import math
 import os
@@ -6,15 +6,19 @@ import os
 import numpy as np
 from mathutils import Matrix
 
-from .color import is_linear_rec709
-from .files import absolute_path
-from .newer import has_nodes
-from .nodes import active_output, output, source
-from .notes import ExportError
-from .picture_files import linear_file
-from .pixels import multiplies_floats, working_pixels
-from .sequences import sequence_file, sequence_number
-from .unused_settings import note_emitter
+from ..color import is_linear_rec709
+from ..files import absolute_path
+from ..newer import has_nodes
+from ..nodes import active_output
+from ..notes import ExportError
+from ..picture_files import linear_file
+from ..pixels import multiplies_floats, working_pixels
+from ..plugs import Plug, fed_by, followed
+from ..sequences import sequence_file, sequence_number
+from ..shaders.values import own_value
+from ..unused_settings import note_emitter
+from .nodes import emitted
+from .sky import PendingError
 
 _MOVING = ("SEQUENCE", "MOVIE")
 _RAYS = {"diffuse": "diffuse rays", "glossy": "glossy rays"}
@@ -69,36 +73,76 @@ def _note_visibility(world, notes):
 def _add_nodes(light, world, frame, notes):
     owner = f"World '{world.name}'"
     output = active_output(world.node_tree, "ShaderNodeOutputWorld")
-    background = source(output.inputs["Surface"]) if output else None
-    if output and source(output.inputs["Volume"]):
+    if output and fed_by(Plug(output.inputs["Volume"])):
         notes.add(f"{owner}: volumes are not supported; ignored.")
-    if background is None or background.bl_idname != "ShaderNodeBackground":
-        if background is not None:
-            notes.add(f"{owner}: node '{background.name}' is not a Background; rendered black.")
+    surface = fed_by(Plug(output.inputs["Surface"])) if output else None
+    if surface is None:
         return _add_color(light, (0.0, 0.0, 0.0))
-    if source(background.inputs["Strength"]):
-        notes.add(f"{owner}: the link to its strength is not supported; the value of the input is used.")
-    strength = background.inputs["Strength"].default_value
-    color = source(background.inputs["Color"])
-    if color is not None and color.bl_idname == "ShaderNodeTexEnvironment":
-        _add_environment(light, owner, color, strength, frame, notes)
+    picture = _lone_environment(surface)
+    if picture is not None:
+        strength = own_value((followed(surface.input("Strength")) or surface.input("Strength")).socket)
+        _add_environment(light, owner, *picture, strength, frame, notes)
         return strength != 0.0
-    if color is not None:
-        notes.add(
-            f"{owner}: node '{color.name}' is not an Environment Texture; the Background's color is used."
-        )
-    return _add_color(light, tuple(strength * c for c in background.inputs["Color"].default_value[:3]))
+    try:
+        found = emitted(surface, owner, notes, light.waits)
+    except PendingError:
+        return True  # what it was before is shown meanwhile
+    if found.constant is not None:
+        return _add_color(light, found.constant)
+    light.set_nodes(found, owner, notes)
+    return True
 
 
-def _add_environment(light, owner, node, strength, frame, notes):
+def _lone_environment(surface):
+    """The Environment Texture node of a Background that is nothing but an image, and its rotation; else None.
+
+    Such an image lights the scene with its own texels, and may be one of a sequence.
+    """
+    if surface.node.bl_idname != "ShaderNodeBackground" or fed_by(surface.input("Strength")):
+        return None
+    color = fed_by(surface.input("Color"))
+    if color is None or color.node.bl_idname != "ShaderNodeTexEnvironment":
+        return None
+    rotation = _rotation(fed_by(color.input("Vector")))
+    if rotation is None or color.node.projection != "EQUIRECTANGULAR":
+        return None
+    return color.node, rotation
+
+
+def _rotation(vector):
+    """3 x 3 rotation from world directions to an image's coordinates; None if these are something else."""
+    if vector is None:
+        return np.eye(3, dtype=np.float32)
+    if vector.node.bl_idname == "ShaderNodeTexCoord" and vector.socket.name == "Generated":
+        return np.eye(3, dtype=np.float32)
+    if vector.node.bl_idname != "ShaderNodeMapping" or not _only_rotates(vector):
+        return None
+    before = _rotation(fed_by(vector.input("Vector"))) if fed_by(vector.input("Vector")) else None
+    if before is None:
+        return None
+    rotation = _euler_matrix(vector.node.inputs["Rotation"].default_value)
+    inverse = vector.node.vector_type == "TEXTURE"
+    return np.array(rotation.transposed() if inverse else rotation, np.float32) @ before
+
+
+def _only_rotates(mapping):
+    """Whether a Mapping node maps directions by a rotation and a positive factor."""
+    node, names = mapping.node, ("Location", "Rotation", "Scale")
+    if any(fed_by(mapping.input(name)) for name in names if mapping.input(name)):
+        return False
+    scale, location = node.inputs["Scale"].default_value, mapping.input("Location")
+    if node.vector_type == "NORMAL" or not all(
+        math.isclose(s, scale[0], rel_tol=1e-5) and s > 0 for s in scale
+    ):
+        return False
+    moves = node.vector_type in ("POINT", "TEXTURE") and location is not None
+    return not moves or all(abs(c) <= 1e-6 for c in location.socket.default_value)
+
+
+def _add_environment(light, owner, node, rotation, strength, frame, notes):
     image = node.image
     if image is None:
         raise ExportError(f"{owner}: node '{node.name}' has no image; choose one, or unlink it.")
-    if node.projection != "EQUIRECTANGULAR":
-        raise ExportError(
-            f"{owner}: node '{node.name}' is a mirror ball, which is not supported; choose Equirectangular."
-        )
-    rotation = _rotation(owner, node, notes)
     path = absolute_path(image)
     if image.source in _MOVING:
         light.set_file(_file_of_frame(owner, node, path, frame), strength, rotation)
@@ -139,49 +183,9 @@ def _pixels(owner, image, path, notes):
     return np.ascontiguousarray(values[::-1, :, :3])
 
 
-def _rotation(owner, node, notes):
-    """3 x 3 rotation from world directions to the image's, or None."""
-    mapping = source(node.inputs["Vector"])
-    if mapping is None or mapping.bl_idname != "ShaderNodeMapping":
-        _note_coordinates(owner, node.inputs["Vector"], notes)
-        return None
-    _note_mapping(owner, mapping, notes)
-    _note_coordinates(owner, mapping.inputs["Vector"], notes)
-    rotation = _euler_matrix(mapping.inputs["Rotation"].default_value)
-    inverse = mapping.vector_type == "TEXTURE"
-    return np.array(rotation.transposed() if inverse else rotation, np.float32)
-
-
-def _note_coordinates(owner, vector, notes):
-    """Notes unsupported coordinates: only the ray direction, an Environment Texture's default, is used."""
-    node = source(vector)
-    if node is None:
-        return
-    if node.bl_idname != "ShaderNodeTexCoord":
-        notes.add(f"{owner}: node '{node.name}' is not a Mapping; ignored.")
-    elif output(vector).name != "Generated":
-        name = output(vector).name
-        notes.add(f"{owner}: node '{node.name}': {name} coordinates are not supported; Generated are used.")
-
-
 def _euler_matrix(euler):
     return (
         Matrix.Rotation(euler[2], 3, "Z")
         @ Matrix.Rotation(euler[1], 3, "Y")
         @ Matrix.Rotation(euler[0], 3, "X")
     )
-
-
-def _note_mapping(owner, mapping, notes):
-    scale = mapping.inputs["Scale"].default_value
-    location = mapping.inputs.get("Location")  # newer Blender versions have it only for types that use it
-    moved = location is not None and any(abs(c) > 1e-6 for c in location.default_value)
-    uneven = not all(math.isclose(s, scale[0], rel_tol=1e-5) and s > 0 for s in scale)
-    if (moved and mapping.vector_type in ("POINT", "TEXTURE")) or uneven:
-        notes.add(
-            f"{owner}: node '{mapping.name}': only the rotation is supported; location and scale are ignored."
-        )
-    if any(source(socket) for socket in mapping.inputs if socket.name in ("Location", "Rotation", "Scale")):
-        notes.add(
-            f"{owner}: node '{mapping.name}': links to its inputs are not supported; their values are used."
-        )
