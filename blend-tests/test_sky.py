@@ -87,7 +87,7 @@ class Sky(BlenderTest):
         found = self.sky.sky_of(self.node, True)
         pixels = found.picture.pixels()
         height, width, _channels = pixels.shape
-        row, column = np.unravel_index(pixels.sum(axis=-1).argmax(), (height, width))
-        self.assert_close(math.pi * ((row + 0.5) / height - 0.5), 0.5, 0.1)
+        self.assertGreater(pixels[height // 2 :].mean(), 5 * pixels[: height // 4].mean())
+        column = pixels.sum(axis=(0, 2)).argmax()  # the brightest
         self.assert_close(2 * math.pi * (0.5 - (column + 0.5) / width), math.pi / 2, 0.1)
         self.assertGreater(min(found.sun.radiance), 1e5)
