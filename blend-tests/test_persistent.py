@@ -219,6 +219,30 @@ class PersistentData(BlenderTest):
         path.unlink()
         self._assert_read(1)
 
+    def test_a_sun_of_a_sky_stays(self):
+        """Lamps are added anew in each frame, the world is not."""
+        sky = inputs.module("export.world.sky")
+
+        def write(path, _values):
+            with open(path, "wb") as file:
+                np.savez(file, sky=np.full((4, 8, 3), 0.1, np.float16), sun=np.full(3, 4e4))
+
+        self._keys(self.moving, "location", (2, 0, 0), (3, 0, 1))
+        tree = self.scene.world.node_tree
+        node = tree.nodes.new("ShaderNodeTexSky")
+        node.sun_elevation, node.sun_rotation = 0.6, 3.0  # behind the camera
+        tree.links.new(node.outputs[0], tree.nodes["Background"].inputs["Color"])
+        with (
+            mock.patch.object(sky, "cache_folder", return_value=str(self.folder)),
+            mock.patch.object(sky, "_start_blender", write),
+        ):
+            lit, _ = self._assert_same()
+            node.sun_disc = False
+            with mock.patch.object(sky, "_sun", return_value=None):
+                dark, _ = self._assert_same()
+        for with_sun, without in zip(lit, dark, strict=True):
+            self.assertGreater(with_sun.mean(), without.mean() + 0.01)
+
     def test_a_sky_that_changes_is_read_anew(self):
         self.scene.frame_end = 1
         node, path = self._sky("changing.exr")

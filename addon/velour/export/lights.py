@@ -29,8 +29,8 @@ def add_light(scene, obj, matrix, notes):
     emission = emission_factor(lamp)
     if emission is None:
         notes.add(
-            f"{owner}: shader nodes that vary by place or direction, such as IES files, are not supported; its"
-            " color and power are used."
+            f"{owner}: shader nodes that vary by place or direction, such as IES files, are not supported;"
+            " its color and power are used."
         )
         emission = (1.0, 1.0, 1.0)
     if any(abs(getattr(lamp, name, 1.0) - 1.0) > 1e-6 for name in _FACTORS):

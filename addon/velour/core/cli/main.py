@@ -24,7 +24,7 @@ _VERBS = {  # each is a module of this package
     "capture": "capture the BTF of a modeled tile, or the BRDF of a microsurface",
     "votf": "add the silhouette (VOTF) of a modeled tile or a BTF to a model",
     "tile": "create a procedural mesostructure tile as a mesh",
-    "export": "export a BTF as a folder of images",
+    "export": "export a BTF as images, or a model for other programs",
     "compress": "fit a model to a BTF",
 }
 _LEVELS = ("error", "warning", "info", "debug")
