@@ -21,8 +21,7 @@ class Kinds(KindTest):
     def test_text(self):
         bpy.ops.object.text_add(location=(-2, -0.5, 0.1), rotation=(0.4, 0, 0))
         self.made(body="Velour", size=1.4, extrude=0.1)
-        # Around the corners of strokes normals face away from the viewer: test_geometry's test_facing_away.
-        self.assert_approximate("Text", 0.6, exact=((3, 0), (4, 0)))
+        self.assert_parity("Text")
 
     def test_surface(self):
         bpy.ops.surface.primitive_nurbs_surface_torus_add(radius=1.2, location=(0, 0, 0.6))

@@ -17,7 +17,7 @@ PYTHON = "/usr/bin/python3"
 _NOT_HERE = (3, 124)  # exit statuses of scripts/blenders and scripts/fuzz if unavailable, and of timeout
 _SETUP_SECONDS = 1800
 # Lines of blend-tests/run that are omitted after a failure.
-_PASSED = r": ok, [0-9]+ passed|^Warning: [0-9]+ x "
+_PASSED = r": ok, [0-9]+ passed|^Warning: [0-9]+ x |^ *(Fra|Saved|Time): ?"
 
 
 @dataclass
