@@ -1,5 +1,6 @@
 """The nodes in a measured material's group that show it where there is no Velour."""
 
+import hashlib
 import json
 from unittest import mock
 from urllib.parse import unquote
@@ -7,7 +8,7 @@ from urllib.parse import unquote
 import bpy
 import numpy as np
 
-from support import inputs, scenes
+from support import blender, inputs, scenes
 from support.blender import BlenderTest, run_blender
 from support.drawn import drawn
 
@@ -70,7 +71,16 @@ class Approximation(BlenderTest):
         return self.obj.active_material
 
     def _import(self, path, **options):
-        bpy.ops.velour.load_material(filepath=str(path), **options)
+        """The material of a file. Tests share what the first one imported."""
+        key = hashlib.sha256(path.read_bytes() + path.name.encode() + repr(options).encode()).hexdigest()
+        shared = blender.folder() / f"imported-{key}.blend"
+        if shared.is_file():
+            with bpy.data.libraries.load(str(shared)) as (source, target):
+                target.materials = source.materials
+            self.obj.active_material = target.materials[0]
+        else:
+            bpy.ops.velour.load_material(filepath=str(path), **options)
+            bpy.data.libraries.write(str(shared), {self.material})
         return self.material
 
     def _model_file(self, data, name="paint"):
