@@ -302,13 +302,15 @@ class MaterialX(Usd):
         colors = []
         for tint in ((1.0, 1.0, 1.0), (0.5, 0.25, 1.0)):
             scenes.set_look(self.material, tint=tint)
-            colors.append(self._surface(self._exported()[0]).GetInput("base_color").Get())
+            material, _values, _stage = self._exported()
+            colors.append(self._surface(material).GetInput("base_color").Get())
         np.testing.assert_allclose(np.divide(colors[1], colors[0]), (0.5, 0.25, 1.0), rtol=0.05)
 
     def test_a_tangent_turns(self):
         self._model(inputs.brushed_model())
         scenes.set_look(self.material, rotation=0.5)
-        self.assertIn("Velour_Turned_Tangent", self._known(self._exported()[0]))
+        material, _values, _stage = self._exported()
+        self.assertIn("Velour_Turned_Tangent", self._known(material))
 
     def test_images_are_connected_and_placed(self):
         self._model(inputs.quarters_model())

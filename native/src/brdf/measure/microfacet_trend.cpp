@@ -113,21 +113,21 @@ class Fit {
     Eigen::MatrixXd color;
     double lowest = std::numeric_limits<double>::infinity();
     MicrofacetShape best = shapes[which];
-    for (const auto [tail, power] : kProfiles) {
+    for (const Profile& profile : kProfiles) {
       double at = least, cost = std::numeric_limits<double>::infinity();
       const auto consider = [&](double log_alpha) {
-        shapes[which] = {static_cast<float>(std::exp(log_alpha)), tail, power};
+        shapes[which] = {static_cast<float>(std::exp(log_alpha)), profile.tail, profile.power};
         const double found = solve(shapes, color);
         if (found < cost) cost = found, at = log_alpha;
       };
-      const double last = power > 1 ? std::min(most, kLogAperture) : most;
+      const double last = profile.power > 1 ? std::min(most, kLogAperture) : most;
       for (double x = least; x <= last; x += kStep) consider(x);
       for (double step = kStep / 2; step > kLastStep; step /= 2) {
         const double middle = at;
         for (const double x : {middle - step, middle + step})
           consider(std::clamp(x, kMinLogAlpha, std::max(last, kMinLogAlpha)));
       }
-      if (cost < lowest) lowest = cost, best = {static_cast<float>(std::exp(at)), tail, power};
+      if (cost < lowest) lowest = cost, best = {static_cast<float>(std::exp(at)), profile.tail, profile.power};
     }
     shapes[which] = best;
     return lowest;

@@ -73,7 +73,7 @@ Rgb through_coat(const PrincipledParameters& p, float cosine, const LobeFilter& 
 }
 
 constexpr int kSheenSide = 32;
-constexpr int32_t kSheenTable[kSheenSide][kSheenSide][3] = {
+constexpr int32_t kSheenTable[kSheenSide * kSheenSide * 3] = {
 #include "material/principled/sheen_table.inc"
 };
 
@@ -86,7 +86,7 @@ SheenLobe::SheenLobe(float roughness, float cosine) {
   const float x = std::clamp(cosine, 0.0f, 1.0f) * kEnd, y = std::clamp(roughness, 0.0f, 1.0f) * kEnd;
   const int i = std::min(static_cast<int>(x), kEnd - 1), j = std::min(static_cast<int>(y), kEnd - 1);
   const auto entry = [](int row, int column) {
-    const int32_t* v = kSheenTable[row][column];
+    const int32_t* v = kSheenTable + 3 * (row * kSheenSide + column);
     return 1e-5f * Vec3(v[0], v[1], v[2]);
   };
   const auto in_row = [&](int row) { return glm::mix(entry(row, i), entry(row, i + 1), x - static_cast<float>(i)); };
