@@ -13,6 +13,8 @@ endif()
 add_library(velour_options INTERFACE)
 target_compile_options(velour_options INTERFACE
   -Wall -Wextra -Wshadow -Wconversion -Werror
+  # Clang's -Wshadow also reports names of other sources that are compiled as one with a source (join_sources).
+  $<$<CXX_COMPILER_ID:Clang>:-Wno-shadow>
   $<$<COMPILE_LANGUAGE:CXX>:-fno-math-errno>
   # Symbols are hidden by version scripts, not here: native/tests links a library that exports all of them.
   -fno-semantic-interposition

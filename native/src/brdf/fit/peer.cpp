@@ -150,7 +150,8 @@ PrincipledProblem::Normal PrincipledProblem::normal(const PrincipledParameters& 
     const float difference = difference_of(moved);
     moved += difference;
     const std::vector<Rgb> beside = values(other);
-    for (size_t i = 0; i < f_cos.size(); ++i) slopes[kSize * i + k] = (beside[i] - f_cos[i]) / difference;
+    for (size_t i = 0; i < f_cos.size(); ++i)
+      slopes[kSize * i + static_cast<size_t>(k)] = (beside[i] - f_cos[i]) / difference;
   }
   Normal n(kSize);
   for (size_t i = 0; i < f_cos.size(); ++i) {
@@ -159,7 +160,7 @@ PrincipledProblem::Normal PrincipledProblem::normal(const PrincipledParameters& 
       const float root = std::sqrt(f_cos[i][c] + floor_);
       const double residual = static_cast<double>(root) - std::sqrt(s.f_cos[c] + floor_);
       Eigen::Matrix<double, kSize, 1> row;
-      for (int k = 0; k < kSize; ++k) row[k] = 0.5 * slopes[kSize * i + k][c] / root;
+      for (int k = 0; k < kSize; ++k) row[k] = 0.5 * slopes[kSize * i + static_cast<size_t>(k)][c] / root;
       n.curvature.noalias() += s.weight * row * row.transpose();
       n.slope.noalias() += s.weight * residual * row;
     }
