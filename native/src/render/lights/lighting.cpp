@@ -44,7 +44,7 @@ Lighting::Lighting(const Scene& scene, const Progress& progress)
       lamps_.push_back(lamp);
     }
   }
-  std::ranges::stable_partition(sharp_, &Lamp::distant);
+  std::stable_partition(sharp_.begin(), sharp_.end(), [](const Lamp& lamp) { return lamp.distant(); });
   sharp_suns_ = sharp_.size() - sharp_near.size();
   near.insert(near.end(), emissive_.lights().begin(), emissive_.lights().end());
   near_ = LightTree(near, progress);
