@@ -220,7 +220,7 @@ class PersistentData(BlenderTest):
         self._assert_read(1)
 
     def test_a_sun_of_a_sky_stays(self):
-        """Lamps are added anew in each frame, the world is not."""
+        """Lamps are added again in each frame, the world is not."""
         sky = inputs.module("export.world.sky")
 
         def write(path, _values):
