@@ -970,9 +970,9 @@ VLR_API void vlr_program_desc_init(vlr_program_desc* desc);
 /* Refuses, with a sentence that names the instruction, what is not a program. */
 VLR_API vlr_status vlr_program_create(const vlr_program_desc* desc, vlr_program** out);
 VLR_API void vlr_program_free(vlr_program* program);
-/* Radiance [count x 3] of a world whose color is an output of a program, in unit directions [count x 3]: POSITION and
- * OBJECT_POSITION are the direction, INCOMING and all NORMALs its negative; CAMERA_RAY or SHADOW_RAY is 1 for
- * VLR_WORLD_ RAYS_CAMERA or _SHADOW; other sources are 0. */
+/* Radiance [count x 3] of a world whose color is an output of a program, in unit directions [count x 3]. POSITION and
+ * OBJECT_POSITION are the direction, INCOMING and all NORMALs its negative. CAMERA_RAY is 1 for rays of kind
+ * VLR_WORLD_RAYS_CAMERA, SHADOW_RAY for VLR_WORLD_RAYS_SHADOW. Other sources are 0. */
 enum { VLR_WORLD_RAYS_OTHERS = 0, VLR_WORLD_RAYS_CAMERA = 1, VLR_WORLD_RAYS_SHADOW = 2 };
 VLR_API vlr_status vlr_program_radiance(const vlr_program* program, uint32_t output, int32_t rays, uint32_t count,
                                         const float* directions, float* radiance);

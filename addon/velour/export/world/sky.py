@@ -23,7 +23,7 @@ _SECONDS = 300  # that Blender may take
 _MOST_KEPT = 64  # files in the cache
 _PROGRAM = Path(__file__).with_name("sky_render.py")
 _INHERITED = {"texture_mapping", "color_mapping"}
-_ROTATED = {"PREETHAM": False, "HOSEK_WILKIE": False}  # whether `sun_rotation` counts; others: it does
+_BY_DIRECTION = {"PREETHAM", "HOSEK_WILKIE"}  # models that `sun_rotation` does not turn
 
 _rendering = {}  # threads by path
 _failures = {}  # sentences by path
@@ -66,7 +66,7 @@ def sky_of(node, waits):
     waits: render what is not cached now; else raise PendingError and render it in the background.
     """
     values = _values(node)
-    turn = values.pop("sun_rotation", 0.0) if _ROTATED.get(node.sky_type, True) else 0.0
+    turn = values.pop("sun_rotation", 0.0) if node.sky_type not in _BY_DIRECTION else 0.0
     path = _path(values)
     if not path.is_file():
         _render(node, path, values, waits)
@@ -109,7 +109,7 @@ def _render(node, path, values, waits):
     elif path not in _rendering and path not in _failures:
         _rendering[path] = threading.Thread(target=_run, args=(path, values), daemon=True)
         _rendering[path].start()
-        bpy.app.timers.register(lambda: _announce(path), first_interval=0.1)
+        bpy.app.timers.register(lambda: _announce(path), first_interval=0.1, persistent=True)
     if path.is_file():
         return
     if path not in _failures:
