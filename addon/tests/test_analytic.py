@@ -125,6 +125,16 @@ def test_a_fit_recovers_a_brushed_metal():
     assert fit_open_pbr(samples, start, True).specular_roughness_anisotropy == 0.3
 
 
+def test_a_diffuse_surface_is_no_metal():
+    """A black metal would darken any brighter base to the same picture."""
+    color = (0.4, 0.125, 0.2)
+    model = Analytic(lambda color, g: np.array(color) * (g.nl / np.pi)[..., None], color)
+    start = open_pbr.OpenPbr(base_color=(0.9, 0.9, 0.9), base_metalness=0.45, specular_roughness=1.0)
+    found = fit_open_pbr(fitted_samples(model, 100), start, True)
+    assert found.base_metalness == 0
+    assert found.base_color == pytest.approx(color, rel=0.01)
+
+
 def test_a_fit_recovers_a_gltf_material():
     material = gltf.Gltf((0.6, 0.2, 0.1), roughness=0.5, clearcoat=0.6, clearcoat_roughness=0.2)
     model = Analytic(gltf.f_cos, material)

@@ -108,4 +108,4 @@ def fit_gltf(samples: ViewSamples, start: Gltf, is_isotropic: bool) -> Gltf:
         "clearcoat_roughness": max(start.clearcoat_roughness, 0.3),
     }
     starts = start, *(start._replace(metallic=m, **coat) for m in (0.05, 0.95))
-    return fit_material(samples, starts, ranges, f_cos)
+    return fit_material(samples, starts, ranges, f_cos).material

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Iterable
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -15,13 +16,18 @@ Ranges = dict[str, list[Range]]  # of the components of a material's fields
 UNIT, ROUGHNESS, IOR = Range(0.0, 1.0), Range(0.1, 1.0), Range(1.0, 3.0)
 
 
+class Fit(NamedTuple):
+    material: Any
+    error: float  # root of the sum of the squared residuals, over that of a black material
+
+
 def fit_material(
     samples: ViewSamples,
     starts: Iterable[Any],
     ranges: Ranges,
     f_cos: Callable[[Any, Geometry], np.ndarray],
     geometry: Geometry | None = None,
-) -> Any:
+) -> Fit:
     """The best of the fits of the fields in `ranges`, from each of `starts`, named tuples.
 
     Residuals: f cos of each channel, its luminance, and albedos, relative to those of the view. Views weigh
@@ -30,6 +36,7 @@ def fit_material(
     target = _Target(samples)
     geometry = geometry or Geometry.of(samples.wv, samples.wl)
     bounds = [each for part in ranges.values() for each in part]
+    black = max(float((target.residuals(np.zeros_like(samples.f_cos)) ** 2).sum()), 1e-30)
     found = []
     for start in starts:
         values, cost = fit(
@@ -37,8 +44,8 @@ def fit_material(
             np.concatenate([np.atleast_1d(getattr(start, name)) for name in ranges]),
             bounds,
         )
-        found.append((cost, _with(start, ranges, values)))
-    return min(found, key=lambda each: each[0])[1]
+        found.append(Fit(_with(start, ranges, values), math.sqrt(cost / black)))
+    return min(found, key=lambda fit: fit.error)
 
 
 def _with(material, ranges, values):

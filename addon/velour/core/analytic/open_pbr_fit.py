@@ -23,6 +23,7 @@ _RANGES: Ranges = {
     "coat_roughness": [ROUGHNESS],
     "coat_ior": [IOR],
 }
+_WORTH = 0.002  # of the signal: what metal must gain
 _ANISOTROPY: Ranges = {"specular_roughness_anisotropy": [Range(0.0, 0.98)]}
 
 
@@ -54,11 +55,13 @@ def along_tangent(samples: ViewSamples, is_turned: bool) -> ViewSamples:
 
 
 def fit_open_pbr(samples: ViewSamples, start: OpenPbr, is_isotropic: bool) -> OpenPbr:
+    """Metal only where it helps: one of weak reflection is black, and any brighter base makes up for it."""
     ranges = _RANGES if is_isotropic else {**_RANGES, **_ANISOTROPY}
-    return fit_material(samples, _starts(start), ranges, f_cos)
-
-
-def _starts(start: OpenPbr) -> tuple[OpenPbr, ...]:
-    """`start`, and a coated dielectric and metal, as a metalness between both rarely moves far."""
+    dielectric = {name: part for name, part in ranges.items() if name != "base_metalness"}
+    # A metalness between a dielectric and a metal rarely moves far: both are starts.
     coat = {"coat_weight": max(start.coat_weight, 0.3), "coat_roughness": max(start.coat_roughness, 0.3)}
-    return start, *(start._replace(base_metalness=m, **coat) for m in (0.05, 0.95))
+    coated = start._replace(base_metalness=0.0, **coat)
+    plain = fit_material(samples, (start._replace(base_metalness=0.0), coated), dielectric, f_cos)
+    mixtures = (start, *(coated._replace(base_metalness=m) for m in (0.05, 0.95)))
+    mixed = fit_material(samples, mixtures, ranges, f_cos)
+    return mixed.material if mixed.error < plain.error - _WORTH else plain.material
