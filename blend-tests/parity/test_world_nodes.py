@@ -60,6 +60,8 @@ class WorldNodes(ParityTest):
         self.assert_parity("World: color ramp of the height")
 
     def test_noise_over_the_sky(self):
+        # Cycles 3.4 takes other normals where it samples the world, if it has rendered nodes of lamps before.
+        self.scene.world.cycles.sampling_method = "NONE"
         noise = self._new("TexNoise", {"Vector": self._direction("Normal"), "Scale": 2.0})
         self._colored(noise.outputs["Color"], noise.outputs["Fac"])
         self.assert_parity("World: noise, linked strength")
