@@ -22,7 +22,7 @@ assert asset.author == "The Velour authors", asset.author
 assert "CC0-1.0" in asset.description and asset.description.startswith("Glossy"), asset.description
 assert getattr(asset, "license", "CC0-1.0") == "CC0-1.0", asset.license
 assert sorted(tag.name for tag in asset.tags) == ["gloss", "velour"]
-assert tuple(material.preview.image_size) == (256, 256)
+assert tuple(material.preview.image_size) == (128, 128)
 pixels = material.preview.image_pixels_float
 assert abs(pixels[0] - 0.248) < 0.01 and abs(pixels[1] - 0.485) < 0.01, pixels[:4]
 group = next(n for n in material.node_tree.nodes if n.bl_idname == "ShaderNodeGroup")

@@ -62,6 +62,7 @@ class Weave:
     yarns: tuple[Surface, ...]
     shape: dict = dataclasses.field(default_factory=dict)  # further arguments of Tile.create
     repeats: int = 24  # tiles around the preview's ball, and per unit of texture coordinates
+    texels: int = 64  # along a side of a tile; that is what its model's size depends on most
 
 
 @dataclasses.dataclass(frozen=True, eq=False)
@@ -140,7 +141,7 @@ class Workshop:
 
     def _path(self, made_of: Surface | Weave, rays: int | None = None) -> Path:
         sizes = self._sizes._asdict() if isinstance(made_of, Weave) else {"rays": rays or self._sizes.rays}
-        what = [_RECIPE, self._release, dataclasses.asdict(made_of), sizes]
+        what = [_RECIPE, self._release, dataclasses.asdict(made_of) | {"repeats": 0}, sizes]
         key = hashlib.sha256(json.dumps(what, sort_keys=True).encode()).hexdigest()[:16]
         return self.work / f"{type(made_of).__name__.lower()}-{key}.velour"
 
@@ -189,7 +190,7 @@ class Workshop:
             scene.add_instance(mesh, UNMOVED, [scene.add_model_material(model) for model in models])
             scene.commit()
             data, options = Path(folder) / "tile.btf", {"seed": 1, "threads": self._threads}
-            capture = {"texels": sizes.texels, "samples": sizes.samples, "bounces": 2}
+            capture = {"texels": min(sizes.texels, weave.texels), "samples": sizes.samples, "bounces": 2}
             look, seconds = model_of_tile(scene, info, data, sizes.directions, **options, **capture)
             opened.enter_context(look)
             shell = {"texels": sizes.outline_texels, "threads": self._threads}
@@ -227,7 +228,7 @@ def main() -> int:
         return 0
     if args.docs:
         sheet = [(entry.name, encoded(images.read_picture(entry.picture))[::-1]) for entry in listed]
-        charts.sheet(_PICTURE, charts.wrapped(sheet, _COLUMNS), (1.35, 1.55))
+        charts.sheet(_PICTURE, charts.wrapped(sheet, _COLUMNS), (1.6, 1.8))
     write_library(models, library)
     kept = {path for place in (models, library) for path in place.iterdir() if path.is_file()}
     size = sum(path.stat().st_size for path in kept)

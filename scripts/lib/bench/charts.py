@@ -102,7 +102,7 @@ def sheet(
         cell_axes.set_axis_off()
     for line, pictures in zip(axes, rows, strict=True):
         for cell_axes, (title, picture) in zip(line, pictures, strict=False):
-            cell_axes.imshow(picture, interpolation="none")
+            cell_axes.imshow(picture, interpolation="antialiased")
             cell_axes.set_title(title, fontsize=8)
     save(figure, path, dpi=100)
     if few_colors:

@@ -64,7 +64,7 @@ TEST(EmissiveMeshes, AQuadLightsAFloorInClosedForm) {
     for (const NamedStrategy& s : test::all_strategies()) {
       const bool blind = s.strategy != Strategy::light && !is_mixed(s.strategy);
       if (blind && k > 0 && !test::long_tests()) continue;  // what surfaces reflect does not know of lights
-      RenderOptions options = test::small_options(s.strategy, blind ? 4096 : 1024);
+      RenderOptions options = test::small_options(s.strategy, blind ? 512 : 128);
       options.heuristic = s.heuristic;
       options.light_share = s.light_share;
       const std::string name = s.name + " place " + std::to_string(k);
@@ -131,7 +131,7 @@ TEST(EmissiveMeshes, DrawnRaysChangeNothingButNoise) {
     const auto expected = pictures(gallery(false), {"cosine", Strategy::cosine}, 16384, 1'000'000, bounces);
     for (const NamedStrategy& s : test::all_strategies()) {
       const bool blind = s.strategy != Strategy::light && !is_mixed(s.strategy);
-      compare(s.name + " " + std::to_string(bounces), pictures(drawn, s, blind ? 4096 : 1024, 1, bounces), expected,
+      compare(s.name + " " + std::to_string(bounces), pictures(drawn, s, blind ? 2048 : 1024, 1, bounces), expected,
               tests);
     }
     compare("brighter", pictures(gallery(true, 1.05f), {"mis", Strategy::mis}, 1024, 1, bounces), expected, control);

@@ -38,8 +38,14 @@ def _describe(material, preset, catalog):
         asset.license = LICENCE
     for tag in (*preset.tags, "velour"):
         asset.tags.new(tag, skip_if_exists=True)
-    pixels = encoded(images.read_picture(preset.picture))
+    pixels = encoded(_halved(images.read_picture(preset.picture)))
     opaque = np.concatenate([pixels, np.ones((*pixels.shape[:2], 1))], axis=-1)
     preview = material.preview_ensure()
     preview.image_size = pixels.shape[1], pixels.shape[0]
     preview.image_pixels_float.foreach_set(opaque.astype(np.float32).ravel())
+
+
+def _halved(pixels):
+    """Means of 2 x 2 pixels: larger than the browser shows them, previews would outweigh most models."""
+    height, width, channels = pixels.shape
+    return pixels.reshape(height // 2, 2, width // 2, 2, channels).mean(axis=(1, 3))

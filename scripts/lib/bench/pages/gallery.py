@@ -10,6 +10,7 @@ from ..run import Run
 SCENES = {
     "metals": "Metals, paints and porcelain on sculptures",
     "cloths": "Denim, velvet and knitted wool, draped, with silhouettes of their yarns",
+    "product": "Enamel worn to the metal, by nodes that mix two measured materials",
 }
 SETTINGS = {
     "size": ((1600, 900), (320, 180)),
