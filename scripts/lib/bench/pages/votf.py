@@ -343,13 +343,14 @@ def _chart(path: Path, rows: list[dict], x: str, label: str) -> None:
     """Errors and seconds of WAYS against x, a column for each structure: means over the other rows."""
     structures = list(dict.fromkeys(row["structure"] for row in rows))
     panels = []
-    for measure in _ROWS:
+    measures = {name: text for name, text in _ROWS.items() if (name, x) != ("shadow", "angle")}
+    for measure in measures:
         for structure in structures:
             own = [row for row in rows if row["structure"] == structure]
             ways = WAYS if measure in ("flip", "seconds") else WAYS[1:]
             panels.append((structure, {way: _curve(own, way, x, measure) for way in ways}))
     log = "y" if x == "angle" else "xy"
-    charts.curves(path, panels, label, [*_ROWS.values()], columns=len(structures), log=log, shared=False)
+    charts.curves(path, panels, label, [*measures.values()], columns=len(structures), log=log, shared=False)
 
 
 def _curve(rows: list[dict], way: str, x: str, name: str) -> list[tuple[float, float]]:
