@@ -35,6 +35,7 @@ NEEDS = {
     "inputs": Needs(("test_image", "test_mesh", "test_brdf", "test_btf")),
     "models": Needs(("evaluation_cost",)),
     "perceptual": Needs(tools="metrics"),
+    "votf": Needs(tools="metrics"),
 }
 
 

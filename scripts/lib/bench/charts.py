@@ -23,6 +23,7 @@ COLORS |= {"dissertation": "#a6761d", "mis-dissertation": "#882255"}
 COLORS |= {"scattered": _RED, "parametric": _BLUE, "principled": _GREEN}
 COLORS |= {"svd": _GRAY, "svd-view": _SKY, "tucker": _YELLOW, "cta": _ORANGE, "kcta": _GREEN}
 COLORS |= {"kcta 2": _PINK, "kcta 3": _BLUE, "kcta 4": _BLACK}
+COLORS |= {"geometry": _BLACK, "BTF": _ORANGE, "BTF + VOTF": _BLUE, "BRDF + VOTF": _GREEN}
 _FEW_DECADES = 50  # ratio of an axis's ends below which powers of ten alone are too few labels
 
 Points = Sequence[tuple[float, float]]

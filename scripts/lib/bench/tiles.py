@@ -1,5 +1,5 @@
-"""Models of tiles that repeat infinitely, of their BTFs and with their shells, and surfaces that carry them:
-smooth, and covered with a tile's geometry.
+"""Structures that repeat, models of their BTFs and with their shells, and surfaces that carry them: smooth,
+and covered with the structure's geometry.
 
 A point of a surface is (u, v) in periods of the tile; heights are in meters.
 """
@@ -15,11 +15,58 @@ from velour.native import Btf, Model, Scene, Tile, capture_job, compress_job, di
 UNMOVED = ((1, 0, 0, 0), (0, 1, 0, 0), (0, 0, 1, 0))
 
 
-def add(tile: Tile, scene: Scene) -> None:
-    """Adds a tile with its own materials and commits the scene."""
-    mesh, materials = tile.add_to(scene)
-    scene.add_instance(mesh, UNMOVED, materials)
-    scene.commit()
+class Structure(NamedTuple):
+    """One period of a structure: a part that crosses the border exists once and sticks out."""
+
+    kind: str
+    period: tuple[float, float]
+    mesh: dict  # arguments of Scene.add_mesh
+
+    def add_to(self, scene: Scene, material: Model) -> None:
+        """Adds the structure and commits the scene."""
+        mesh, _dropped = scene.add_mesh(**self.mesh)
+        scene.add_instance(mesh, UNMOVED, [scene.add_model_material(material)])
+        scene.commit()
+
+
+def structure(kind: str) -> Structure:
+    """A kind of Tile, or "scales"."""
+    if kind == "scales":
+        return scales()
+    with Tile.create(kind) as tile:
+        mesh = tile.mesh()
+        period = tuple(tile.info()["period"])
+    return Structure(kind, period, {"positions": mesh.positions, "triangles": mesh.triangles})
+
+
+def scales(pitch: float = 0.005, rows: int = 4, around: int = 24) -> Structure:
+    """Rows of raised scales that overlap like roof tiles, each a closed mesh, as an artist models them."""
+    points, triangles = _scale(around)
+    y, x = np.divmod(np.arange(rows**2), rows)
+    places = np.stack([x + y % 2 / 2, y, 0 * x], axis=-1)
+    copies = triangles + len(points) * np.arange(rows**2)[:, None, None]
+    mesh = {
+        "positions": (pitch * (points + places[:, None])).reshape(-1, 3).astype(np.float32),
+        "triangles": copies.reshape(-1, 3).astype(np.uint32, order="C"),
+    }
+    return Structure("scales", (rows * pitch, rows * pitch), mesh)
+
+
+def _scale(around: int) -> tuple[np.ndarray, np.ndarray]:
+    """Points and triangles of a flattened ellipsoid above z = 0; its tip, at -y, is raised."""
+    half, tilt = np.array([0.48, 1.2, 0.1]), np.radians(20)
+    polar, angle = np.meshgrid(
+        np.linspace(0, np.pi, around // 2 + 1), np.arange(around) * (2 * np.pi / around), indexing="ij"
+    )
+    ball = [np.sin(polar) * np.cos(angle), np.sin(polar) * np.sin(angle), np.cos(polar)]
+    x, y, z = half[:, None, None] * np.array(ball)
+    z = z - 0.3 * x**2
+    y, z = y * np.cos(tilt) + z * np.sin(tilt), z * np.cos(tilt) - y * np.sin(tilt)
+    points = np.stack([x, y, z - z.min()], axis=-1).reshape(-1, 3)
+    row, column = np.meshgrid(np.arange(around // 2), np.arange(around), indexing="ij")
+    corner = [(row + i) * around + (column + j) % around for i, j in ((0, 0), (1, 0), (1, 1), (0, 1))]
+    quads = np.stack(corner, axis=-1).reshape(-1, 4)
+    return points, np.concatenate([quads[:, :3], quads[:, [0, 2, 3]]])
 
 
 def model_of_tile(
@@ -28,7 +75,8 @@ def model_of_tile(
     """Captures a committed scene that holds the tile into `data`, also from below if one can see through it,
     and compresses the capture. Returns the model and the seconds.
 
-    `tile`: its info(); `around`: number of views and of lights; `capture`: further options of capture_job().
+    `tile`: its kind and period; `around`: number of views and of lights; `capture`: further options of
+    capture_job().
     """
     options = {"views": directions(str(around)), "lights": directions(str(around)), **capture}
     options |= {"period": tile["period"], "source": tile["kind"], "seed": seed, "threads": threads}
@@ -82,22 +130,20 @@ class Sphere(NamedTuple):
         return self.radius * normal, normal
 
 
-class Cylinder(NamedTuple):
-    """A cylinder about z, `columns` tiles around and `rows` tiles along."""
+class Plane(NamedTuple):
+    """A square of `rows` x `rows` tiles around the origin."""
 
-    columns: int
     rows: int
     period: float
 
     @property
-    def radius(self) -> float:
-        return self.columns * self.period / (2 * np.pi)
+    def columns(self) -> int:
+        return self.rows
 
     def frame(self, uv: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        angle = uv[..., 0] * (2 * np.pi / self.columns)
-        height = (uv[..., 1] - self.rows / 2) * self.period
-        normal = np.stack([np.cos(angle), np.sin(angle), np.zeros_like(angle)], axis=-1)
-        return self.radius * normal + height[..., None] * np.array([0, 0, 1.0]), normal
+        points = np.zeros((*uv.shape[:-1], 3))
+        points[..., :2] = (uv - self.rows / 2) * self.period
+        return points, np.broadcast_to([0, 0, 1.0], points.shape)
 
 
 class Cloth(NamedTuple):
@@ -131,7 +177,7 @@ class Cloth(NamedTuple):
         return self.radius * np.stack([x * inwards, y * inwards, z], axis=-1)
 
 
-Surface = Sphere | Cylinder | Cloth
+Surface = Sphere | Plane | Cloth
 
 
 def smooth_mesh(surface: Surface) -> dict:
@@ -170,5 +216,4 @@ def structured_mesh(surface: Surface, tile: dict, period: float) -> dict:
     return {
         "positions": np.concatenate(placed),
         "triangles": np.concatenate(triangles).astype(np.uint32),
-        "material_slots": np.tile(tile["material_slots"], surface.rows * surface.columns),
     }

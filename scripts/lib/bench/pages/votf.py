@@ -1,106 +1,196 @@
-"""Shells (VOTFs) beside real geometry: silhouette, alpha, light, seconds, megabytes."""
+"""Silhouettes of shells (VOTFs) against geometry: outline, alpha, shadow, FLIP, seconds, megabytes."""
 
 from __future__ import annotations
 
 import contextlib
-import math
-from collections.abc import Iterator
+import itertools
+import time
+from collections.abc import Iterable, Iterator
 from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
 from scipy import ndimage
-from velour.native import Measurement, Model, Scene, Tile, fit_job, microsurface_job, render_job
+from velour.native import Measurement, Model, Scene, fit_job, microsurface_job, render_job
 
-from .. import charts, tiles
+from .. import charts, flip_metric, tiles
 from ..run import Run
-from ..tiles import Cloth, Cylinder, Sphere, Surface, smooth_mesh, structured_mesh
+from ..tiles import Cloth, Plane, Sphere, Structure, Surface, smooth_mesh, structured_mesh
 
 SETTINGS = {
-    "tiles": (("net", "chainmail", "weave", "gravel"), ("net",)),
-    "tile_pixels": ((64, 16, 4), (16,)),
-    "side": (512, 128),
-    "samples": (16, 4),
+    "structures": (("net", "chainmail", "weave", "gravel", "corduroy", "scales"), ("net", "scales")),
+    "angles": ((0, 30, 60, 75, 85), (0, 75)),  # between the view and the plane's normal, degrees
+    "tile_pixels": ((4, 16, 64, 256), (8, 32)),
+    "samples": ((64, 64, 8, 8), (16, 4)),  # per pixel, for each of `tile_pixels`
+    "side": (384, 160),  # maximum, of a picture
+    "shown": (64, 32),  # pixels a tile of the table and the pictures
     "rays": (40_000_000, 4_000_000),  # of the goniometer
-    "texels": (64, 16),  # per side of the BTFs
+    "texels": (32, 16),  # per side of the BTFs
+    "directions": (81, 25),  # views and lights each; 81: those of the Bonn BTFs
 }
 CSV = "votf_numbers.csv"
 PAGES = {"votf_numbers.md": "votf"}
-_HEIGHT = 0.06  # height of the shell over the sphere's radius
-_MOST_SIDE = 2048  # maximum side of a picture, in pixels
-_DIRECTIONS = 81  # views and lights each, the directions of the Bonn BTFs
+WAYS = ("geometry", "BTF", "BTF + VOTF", "BRDF + VOTF")
+SHELL = "BTF + VOTF"
 _FIELD = np.radians(20)
-_BEHIND = 0.25  # background radiance of the sheets
-_WAYS = ("geometry", "smooth", "shell")
+_BEHIND = 0.25  # background radiance of the sheets and of FLIP
+_SUN = (0.396, -0.724, 0.565)
+_ANGLES = {"ball": 80, "cloth": 47}  # of the view, degrees
+# Rows of the chart and their labels.
+_ROWS = {
+    "outline": "1 - IoU of outlines",
+    "alpha": "1 - IoU of alpha",
+    "shadow": "error of shadows",
+    "flip": "FLIP",
+    "seconds": "processor seconds",
+}
+_FLOOR = ((-1, -1, 0), (1, -1, 0), (1, 1, 0), (-1, 1, 0))
+# View of the picture of each structure whose failure the page explains.
+FAILURES = {"scales": "plane 0", "corduroy": "plane 85", "gravel": "ball 80"}
 
 
-class Look(NamedTuple):
-    name: str
-    smooth: Model
-    shell: Model
-    of_geometry: Model | None  # None: the tile's own materials
+class View(NamedTuple):
+    """A camera in the plane x = 0 that frames points from an angle to +z, in degrees."""
+
+    points: np.ndarray
+    angle: float
+
+    @property
+    def target(self) -> np.ndarray:
+        return (self.points.min(axis=0) + self.points.max(axis=0)) / 2
+
+    @property
+    def width(self) -> float:
+        """Width of the whole picture at the target, in meters."""
+        return 1.3 * np.ptp(self.points[:, :2], axis=0).max()
+
+    @property
+    def eye(self) -> np.ndarray:
+        angle = np.radians(max(self.angle, 0.1))  # straight down, the picture's up would be undefined
+        towards = np.array([0, -np.sin(angle), np.cos(angle)])
+        return self.target + self.width / (2 * np.tan(_FIELD / 2)) * towards
+
+    def edge(self) -> np.ndarray:
+        """The rightmost of the points in the picture, from (0, 0) to (1, 1)."""
+        forward = self.target - self.eye
+        forward /= np.linalg.norm(forward)
+        right = np.array([1.0, 0, 0])
+        x, y, depth = np.stack([right, np.cross(right, forward), forward]) @ (self.points - self.eye).T
+        place = np.stack([x, y]) / depth / (2 * np.tan(_FIELD / 2)) + 0.5
+        return place[:, np.argmax(place[0])]
+
+    def size(self, tile_pixels: float, period: float, side: int) -> dict:
+        """Options of a render in which a tile is `tile_pixels` wide; if that is more than `side` pixels, of a
+        crop at the edge."""
+        whole = round(self.width / period * tile_pixels)
+        if whole <= side:
+            return {"width": whole, "height": whole}
+        x, y = np.clip(np.round(self.edge() * whole) - side // 2, 0, whole - side).astype(int).tolist()
+        crop = {"crop_x0": x, "crop_x1": x + side, "crop_y0": y, "crop_y1": y + side}
+        return {"width": whole, "height": whole, **crop}
 
 
 class Picture(NamedTuple):
     pixels: np.ndarray  # RGBA, premultiplied
-    seconds: float
-    bytes: int  # memory of the scene
+    seconds: float  # of the processors
 
 
-class Shot(NamedTuple):
-    """A surface in a square picture of `side` pixels in which a tile is `tile_pixels` wide."""
+Pictures = dict[tuple[str, int], Picture]  # by surface and angle, or "shadow", and by pixels a tile
 
-    surface: Surface
-    tile_pixels: float
-    side: int
-    samples: int
 
-    def picture(self, scene: Scene) -> Picture:
-        scene.add_light("sun", (3, 3, 3), tiles.sun((0.396, -0.724, 0.565)), angle=0.02)
+class Subject(NamedTuple):
+    """A surface that shows a structure: `mesh` with `model`, whose shell has tiles of `period` meters."""
+
+    mesh: dict
+    model: Model
+    period: float
+
+    def add_to(self, scene: Scene) -> tuple[int, int]:
+        """Numbers of the mesh and the material."""
+        number, _dropped = scene.add_mesh(**self.mesh)
+        material = scene.add_model_material(self.model)
+        if "shell" in self.model.info():
+            scene.set_shell_tile(material, self.period)
+        return number, material
+
+
+def subjects(surface: Surface, structure: Structure, models: dict[str, Model]) -> dict[str, Subject]:
+    """Each of WAYS to show the structure on the surface."""
+    period = structure.period[0]
+    covered, smooth = structured_mesh(surface, structure.mesh, period), smooth_mesh(surface)
+    return {way: Subject(covered if way == WAYS[0] else smooth, models[way], period) for way in WAYS}
+
+
+def photographed(
+    run: Run, subject: Subject, views: dict[str, View], seeds: tuple[int, ...]
+) -> tuple[list[Pictures], int]:
+    """All pictures of a subject and of its shadow for each seed, and bytes of the subject's scene."""
+    with Scene() as scene:
+        number, material = subject.add_to(scene)
+        scene.add_instance(number, tiles.UNMOVED, [material])
+        scene.add_light("sun", (3, 3, 3), tiles.sun(_SUN), angle=0.02)
         scene.set_world_color((0.5, 0.5, 0.5))
-        # A tile spans `tile_pixels` at the distance of the surface's center.
-        distance = self.side * self.surface.period / self.tile_pixels / (2 * np.tan(_FIELD / 2))
-        is_cloth = isinstance(self.surface, Cloth)
-        up, middle = (0.75, (0, 0, -0.2 * self.surface.radius)) if is_cloth else (0.15, (0, 0, 0))
-        eye = distance * np.array([0, -np.cos(up), np.sin(up)]) + np.array(middle)
-        scene.look_at(tuple(eye), middle, _FIELD, 1.0)
-        scene.commit()
-        options = {"width": self.side, "height": self.side, "spp": self.samples, "split": 1}
-        with render_job(scene, strategy="mis", transparent=1, **options) as job:
-            seconds = job.run()["seconds"]
-            return Picture(job.read_pass("Combined"), seconds, scene.info()["bytes"])
+        found = [_all_sizes(run, scene, subject.period, views, seed) for seed in seeds]
+        size = scene.info()["bytes"]
+        scene.clear_instances()
+        scene.set_world_color((0, 0, 0))
+        scene.add_instance(number, tiles.UNMOVED, [material], hidden=("camera", "bounces"))
+        shadow = {"shadow": _add_floor(scene, next(iter(views.values())).points)}
+        for pictures, seed in zip(found, seeds, strict=True):
+            pictures |= _all_sizes(run, scene, subject.period, shadow, seed)
+        return found, size
 
-    def of_geometry(self, tile: Tile, material: Model | None) -> Picture:
-        mesh, info = tile.mesh()._asdict(), tile.info()
-        with Scene() as scene:
-            number, _ = scene.add_mesh(**structured_mesh(self.surface, mesh, info["period"][0]))
-            if material:
-                slots = [scene.add_model_material(material)]
-            else:
-                own = ({name: m[name] for name in m if name != "name"} for m in info["materials"])
-                slots = [scene.add_principled_material(**values) for values in own]
-            scene.add_instance(number, tiles.UNMOVED, slots)
-            return self.picture(scene)
 
-    def of_model(self, model: Model) -> Picture:
-        """A picture of the smooth surface with `model`."""
-        with Scene() as scene:
-            number, _ = scene.add_mesh(**smooth_mesh(self.surface))
-            material = scene.add_model_material(model)
-            scene.add_instance(number, tiles.UNMOVED, [material])
-            if "shell" in model.info():
-                scene.set_shell_tile(material, self.surface.period)
-            return self.picture(scene)
+def _all_sizes(run: Run, scene: Scene, period: float, views: dict[str, View], seed: int) -> Pictures:
+    own, found = run.settings, {}
+    for name, view in views.items():
+        for pixels, samples in zip(own.tile_pixels, own.samples, strict=True):
+            size = view.size(pixels, period, own.side)
+            options = {"spp": samples, "seed": seed, "threads": run.threads}
+            found[name, pixels] = _render(scene, view, **size, **options)
+    return found
+
+
+def _render(scene: Scene, view: View, **options) -> Picture:
+    scene.look_at(tuple(view.eye), tuple(view.target), _FIELD, 1.0)
+    scene.commit()
+    with render_job(scene, strategy="mis", split=1, transparent=1, **options) as job:
+        start = time.process_time()
+        job.run()
+        return Picture(job.read_pass("Combined"), time.process_time() - start)
+
+
+def _add_floor(scene: Scene, points: np.ndarray) -> View:
+    """Adds a white floor under the points. Returns a view of their shadow, from above."""
+    height, span = points[:, 2].min(), np.ptp(points[:, 0])
+    floor = np.array(_FLOOR) * 10 * span + np.array([0, 0, height - 0.1 * span])
+    number, _ = scene.add_mesh(floor.astype(np.float32), np.array([[0, 1, 2], [0, 2, 3]], np.uint32))
+    white = scene.add_principled_material(base_color=(0.8, 0.8, 0.8), roughness=1.0, specular=0.0)
+    scene.add_instance(number, tiles.UNMOVED, [white])
+    away = (points[:, 2:] - floor[0, 2]) / _SUN[2]
+    return View(points - away * np.array(_SUN), 0)
 
 
 def measure(run: Run) -> dict:
-    rows, own = [], run.settings
-    with _brdf(run.work, own.rays) as plain:
-        for name in own.tiles:
-            with Tile.create(name) as tile, _looks(run, tile, plain) as both:
-                for look in both:
-                    rows += _rows(run, name, tile, look)
-    return {"conditions": run.conditions(seed=0), "rows": rows}
+    own, rows, sheet = run.settings, [], []
+    with _brdf(run.work, own.rays) as material:
+        for kind in own.structures:
+            structure = tiles.structure(kind)
+            with _models(run, structure, material) as models:
+                for surface, (body, angles) in _surfaces(structure.period[0], own.angles).items():
+                    views = {f"{surface} {a}": View(smooth_mesh(body)["positions"], a) for a in angles}
+                    with run.progress.work(f"{kind}, {surface}", len(views)):
+                        own_rows, found = _measured(run, kind, views, subjects(body, structure, models))
+                    rows += own_rows
+                    sheet += _sheets(run, kind, views, found)
+    charts.sheet(run.output / "images/votf.png", sheet, (2.2, 2.4), few_colors=True)
+    return {"conditions": run.conditions(), "rows": rows}
+
+
+def _surfaces(period: float, angles: tuple[int, ...]) -> dict[str, tuple[Surface, tuple[int, ...]]]:
+    """Surfaces, and angles of views of them."""
+    bodies = {"plane": Plane(6, period), "ball": Sphere(8, period), "cloth": Cloth(8, period)}
+    return {name: (body, angles if name == "plane" else (_ANGLES[name],)) for name, body in bodies.items()}
 
 
 def _brdf(folder: Path, rays: int) -> Model:
@@ -118,78 +208,63 @@ def _brdf(folder: Path, rays: int) -> Model:
 
 
 @contextlib.contextmanager
-def _looks(run: Run, tile: Tile, plain: Model) -> Iterator[tuple[Look, Look]]:
-    """The look of the BRDF, then that of the BTF."""
-    info, texels = tile.info(), run.settings.texels
-    path = run.work / f"{info['kind']}-{texels}.velour"
+def _models(run: Run, structure: Structure, brdf: Model) -> Iterator[dict[str, Model]]:
+    """The model of each of WAYS. The structure is made of the material of `brdf`."""
+    info, texels, directions = structure._asdict(), run.settings.texels, run.settings.directions
+    common = {"seed": run.seed, "threads": run.threads}
+    path = run.work / f"{structure.kind}-{texels}-{directions}-{run.seed}.velour"
     with contextlib.ExitStack() as handles, Scene() as scene:
-        tiles.add(tile, scene)
-        with run.progress.work(f"BTF of {info['kind']}", texels**2):
+        structure.add_to(scene, brdf)
+        with run.progress.work(f"BTF of {structure.kind}", texels**2):
             if not path.exists():
-                options = {"texels": texels, "resume": 1}
-                fitted, _ = tiles.model_of_tile(scene, info, path.with_suffix(".btf"), _DIRECTIONS, **options)
+                options = {"texels": texels, "resume": 1, **common}
+                fitted, _ = tiles.model_of_tile(scene, info, path.with_suffix(".btf"), directions, **options)
                 with fitted:
                     fitted.save(path)
-            own = handles.enter_context(Model.load(path))
-        shells = [handles.enter_context(tiles.with_shell(scene, info, model)[0]) for model in (plain, own)]
-        yield Look("BRDF", plain, shells[0], plain), Look("BTF", own, shells[1], None)
+        btf = handles.enter_context(Model.load(path))
+        shells = [tiles.with_shell(scene, info, model, **common)[0] for model in (btf, brdf)]
+        for shell in shells:
+            handles.enter_context(shell)
+        yield dict(zip(WAYS, (brdf, btf, *shells), strict=True))
 
 
-def _rows(run: Run, name: str, tile: Tile, look: Look) -> list[dict]:
-    own, rows, sheet = run.settings, [], []
-    for surface_name, surface in _surfaces(tile).items():
-        for pixels in own.tile_pixels:
-            # Large enough for the whole surface.
-            side = math.ceil(2.6 * surface.radius / surface.period * pixels)
-            shot = Shot(surface, pixels, min(_MOST_SIDE, max(own.side, side)), own.samples)
-            with run.progress.work(f"{name}, {look.name}, {surface_name}, {pixels} pixels a tile", pixels**2):
-                truth = shot.of_geometry(tile, look.of_geometry)
-                pictures = [truth, shot.of_model(look.smooth), shot.of_model(look.shell)]
-            row = {"tile": name, "look": look.name, "surface": surface_name, "tile_pixels": pixels}
-            for way, picture in zip(_WAYS, pictures, strict=True):
-                found = {"seconds": picture.seconds, "bytes": picture.bytes}
-                if picture is not truth:
-                    found |= shell_errors(picture.pixels, truth.pixels)._asdict()
-                row |= {f"{way}_{name}": number for name, number in found.items()}
-            rows.append(row)
-            if pixels == max(own.tile_pixels):
-                sheet += _pictures(surface_name, [picture.pixels for picture in pictures])
-    path = run.output / "images" / f"{_stem(name, look.name)}.png"
-    charts.sheet(path, sheet, (3.0, 3.25), few_colors=True)
-    return rows
+def _measured(
+    run: Run, kind: str, views: dict[str, View], ways: dict[str, Subject]
+) -> tuple[list[dict], dict[str, Pictures]]:
+    """The rows of a structure on a surface, and the pictures by way."""
+    own, rows, found = run.settings, [], {}
+    for way, subject in ways.items():
+        # Equal random numbers everywhere: noise cancels where pictures agree. Another seed shows it.
+        seeds = (run.seed, run.seed + 1) if way == WAYS[0] else (run.seed,)
+        sets, size = photographed(run, subject, views, seeds)
+        found[way], truth = sets[-1], found.setdefault("reference", sets[0])
+        for view, pixels in itertools.product(views, own.tile_pixels):
+            row = {"structure": kind, "view": view, "tile_pixels": pixels, "way": way}
+            row |= errors(found[way][view, pixels].pixels, truth[view, pixels].pixels)
+            row["shadow"] = shadow_error(*(p["shadow", pixels].pixels for p in (found[way], truth)))
+            rows.append(row | {"seconds": found[way][view, pixels].seconds, "bytes": size})
+    return rows, found
 
 
-def _surfaces(tile: Tile) -> dict[str, Surface]:
-    info = tile.info()
-    period, (low, high) = info["period"][0], info["heights"]
-    radius = (high - low) / _HEIGHT
-    rows, across = (max(2, round(length / period)) for length in (math.pi * radius, 2 * radius))
-    tube = Cylinder(2 * rows, across, period)
-    return {"sphere": Sphere(rows, period), "cylinder": tube, "cloth": Cloth(across, period)}
+def _sheets(run: Run, kind: str, views: dict[str, View], found: dict[str, Pictures]) -> list:
+    """Saves the picture of a failure. Returns the row of the ball in the sheet of all structures."""
+    row = []
+    for view in views:
+        pictures = {way: _displayed(found[way][view, run.settings.shown].pixels) for way in WAYS}
+        if view.startswith("ball"):
+            row.append([(f"{kind}: {way}", picture) for way, picture in pictures.items()])
+        if FAILURES.get(kind) == view:
+            path = run.output / f"images/votf_failure_{kind}.png"
+            charts.sheet(path, [[*pictures.items()]], (4, 4.2), few_colors=True)
+    return row
 
 
-def _pictures(surface: str, pictures: list[np.ndarray]) -> list:
-    """Two rows of a sheet: the three pictures of a surface, and a magnified part of each."""
-    seen = [pixels[..., :3] + (1 - pixels[..., 3:]) * _BEHIND for pixels in pictures]
-    whole = [(f"{way}, {surface}", charts.display(p)) for way, p in zip(_WAYS, seen, strict=True)]
-    edges = [charts.display(_edge(picture, pictures[0][..., 3])) for picture in seen]
-    return [whole, [("the same, magnified", edge) for edge in edges]]
+def _behind(picture: np.ndarray) -> np.ndarray:
+    return picture[..., :3] + (1 - picture[..., 3:]) * _BEHIND
 
 
-def _edge(picture: np.ndarray, alpha: np.ndarray) -> np.ndarray:
-    """Crops a picture around the rightmost point of the object."""
-    side = picture.shape[0] // 5
-    column = int(np.flatnonzero(alpha.max(axis=0) > 0.5)[-1])
-    row = int(np.median(np.flatnonzero(alpha[:, column] > 0.5)))
-    left = np.clip(column - 3 * side // 4, 0, picture.shape[1] - side)
-    low = np.clip(row - side // 2, 0, picture.shape[0] - side)
-    return picture[low : low + side, left : left + side]
-
-
-class ShellErrors(NamedTuple):
-    outline: float  # soft intersection over union of alpha, with holes filled
-    alpha: float  # likewise, with holes
-    light: float | None  # RMS of the difference over that of the truth, where both show the object
+def _displayed(picture: np.ndarray) -> np.ndarray:
+    return charts.display(_behind(picture))
 
 
 def soft_iou(a: np.ndarray, b: np.ndarray) -> float:
@@ -204,38 +279,83 @@ def without_holes(alpha: np.ndarray) -> np.ndarray:
     return np.where(inside, 1.0, np.where(solid, np.maximum(alpha, 0.5), alpha))
 
 
-def shell_errors(picture: np.ndarray, truth: np.ndarray) -> ShellErrors:
+def errors(picture: np.ndarray, truth: np.ndarray) -> dict[str, float]:
+    """Soft intersection over union of alpha, with holes filled (outline) and with holes (alpha), and the mean
+    FLIP of the pixels where either shows the object."""
     a, b = picture[..., 3].astype(float), truth[..., 3].astype(float)
-    both = (a > 0.5) & (b > 0.5)
-    found, expected = picture[both][:, :3].astype(float), truth[both][:, :3].astype(float)
-    light = np.sqrt(np.square(found - expected).sum() / np.square(expected).sum()) if both.any() else None
-    outline = soft_iou(without_holes(a), without_holes(b))
-    return ShellErrors(outline, soft_iou(a, b), light and float(light))
+    either = (a > 0.5) | (b > 0.5)
+    flip, _percentile = flip_metric.of_object(_behind(truth), _behind(picture), either)
+    return {"outline": soft_iou(without_holes(a), without_holes(b)), "alpha": soft_iou(a, b), "flip": flip}
+
+
+def shadow_error(picture: np.ndarray, truth: np.ndarray) -> float:
+    """RMS of the difference of the irradiance that shadows take from the floor, over that of the truth."""
+    lit = truth[..., 1].max()
+    found, expected = (lit - each[..., 1].astype(float) for each in (picture, truth))
+    return float(np.sqrt(np.square(found - expected).sum() / np.square(expected).sum()))
 
 
 def values(found: dict) -> dict:
-    looks = {look: [row for row in found["rows"] if row["look"] == look] for look in ("BTF", "BRDF")}
-    largest = max(row["tile_pixels"] for row in looks["BTF"])
-    names = dict.fromkeys(row["tile"] for row in looks["BTF"])
-    brdf = ({f"{way}_brdf": row[f"{way}_light"] for way in _WAYS[1:]} for row in looks["BRDF"])
-    both = [own | other for own, other in zip(looks["BTF"], brdf, strict=True)]
-    shown = [row for row in both if row["tile_pixels"] == largest]
-    sheets = [{"tile": n, "look": look, "stem": _stem(n, look)} for look in looks for n in names]
-    return {"largest": largest, "rows": shown, "sheets": sheets} | {
-        f"{look}_ratios": _ratios(rows) for look, rows in looks.items()
+    shown = int(found["conditions"]["shown"])
+    cells = _cells(row for row in found["rows"] if row["tile_pixels"] == shown)
+    ratios = [cell[SHELL]["seconds"] / cell["geometry"]["seconds"] for cell in cells.values()]
+    return {
+        "rows": [_table_row(*key, cell) for key, cell in cells.items()],
+        "slower": sum(ratio > 1 for ratio in ratios),
+        "count": len(ratios),
+        "least": min(ratios),
+        "most": max(ratios),
     }
 
 
-def _stem(tile: str, look: str) -> str:
-    """File of a sheet, without its suffix."""
-    return f"votf_{tile}" if look == "BRDF" else f"votf_{tile}_{look.lower()}"
+def _cells(rows: Iterable[dict]) -> dict[tuple[str, str], dict[str, dict]]:
+    """Rows by structure and view, then by way."""
+    cells: dict[tuple[str, str], dict[str, dict]] = {}
+    for row in rows:
+        cells.setdefault((row["structure"], row["view"]), {})[row["way"]] = row
+    return cells
 
 
-def _ratios(rows: list[dict]) -> str:
-    """Ratio of the render times of the shell and the smooth surface, for each size of tiles."""
-    parts = []
-    for pixels in dict.fromkeys(row["tile_pixels"] for row in rows):
-        own = [row for row in rows if row["tile_pixels"] == pixels]
-        ratios = [row["shell_seconds"] / row["smooth_seconds"] for row in own]
-        parts.append(f"{min(ratios):.1f} to {max(ratios):.1f} with {pixels} pixels a tile")
-    return ", ".join(parts)
+def _table_row(structure: str, view: str, cell: dict[str, dict]) -> dict:
+    def shown(name: str, spec: str, ways: Iterable[str] = WAYS, scale: float = 1.0) -> str:
+        return " / ".join(format(scale * cell[way][name], spec) for way in ways)
+
+    shells = ("BTF", SHELL)  # the shell has the same outline with a BRDF
+    numbers = {name: shown(name, ".3f", shells) for name in ("outline", "alpha", "shadow")}
+    numbers |= {"flip": shown("flip", ".3f"), "seconds": shown("seconds", ".2f")}
+    return {"structure": structure, "view": view, **numbers, "bytes": shown("bytes", ".1f", WAYS, 1e-6)}
+
+
+def draw(output: Path, found: dict) -> None:
+    rows, shown = found["rows"], int(found["conditions"]["shown"])
+    _chart(output / "images/votf_pixels.png", rows, "tile_pixels", "pixels a tile")
+    plane = [
+        row | {"angle": int(row["view"].removeprefix("plane "))}
+        for row in rows
+        if row["tile_pixels"] == shown and row["view"].startswith("plane")
+    ]
+    _chart(
+        output / "images/votf_angles.png", plane, "angle", "degrees between the view and the plane's normal"
+    )
+
+
+def _chart(path: Path, rows: list[dict], x: str, label: str) -> None:
+    """Errors and seconds of WAYS against x, a column for each structure: means over the other rows."""
+    structures = list(dict.fromkeys(row["structure"] for row in rows))
+    panels = []
+    measures = {name: text for name, text in _ROWS.items() if (name, x) != ("shadow", "angle")}
+    for measure in measures:
+        for structure in structures:
+            own = [row for row in rows if row["structure"] == structure]
+            ways = WAYS if measure in ("flip", "seconds") else WAYS[1:]
+            panels.append((structure, {way: _curve(own, way, x, measure) for way in ways}))
+    log = "y" if x == "angle" else "xy"
+    charts.curves(path, panels, label, [*measures.values()], columns=len(structures), log=log, shared=False)
+
+
+def _curve(rows: list[dict], way: str, x: str, name: str) -> list[tuple[float, float]]:
+    points: dict[float, list[float]] = {}
+    for row in rows:
+        if row["way"] == way:
+            points.setdefault(row[x], []).append(1 - row[name] if name in ("outline", "alpha") else row[name])
+    return [(at, float(np.mean(own))) for at, own in sorted(points.items())]
