@@ -41,7 +41,7 @@ SchedulerParameters=batch_sched_delay=0,sched_min_interval=0
 PartitionName=all Nodes=ALL Default=YES State=UP
 """
 _NODE = (
-    "NodeName={name} NodeHostname={host} NodeAddr=127.0.0.1 Port={port} CPUs={processors} RealMemory=2000\n"
+    "NodeName={name} NodeHostname={host} NodeAddr=127.0.0.1 Port={port} CPUs={processors} RealMemory={mib}\n"
 )
 
 
@@ -66,19 +66,19 @@ def _version():
 
 
 class Slurm:
-    """`nodes`: their names; all share this machine. `processors`: of each node. `patience`: seconds until a node
-    that does not answer is down.
+    """`nodes`: their names; all share this machine. `processors`, `mib`: of each node. `patience`: seconds
+    until a node that does not answer is down.
 
     Raises RuntimeError with what the daemons said when the nodes do not come up.
     """
 
-    def __init__(self, nodes=("node1",), processors=2, patience=300):
+    def __init__(self, nodes=("node1",), processors=2, mib=2000, patience=300):
         self.folder = Path(tempfile.mkdtemp(prefix="velour-slurm-"))
         self.environment = {"SLURM_CONF": str(self.folder / "slurm.conf")}
         self.nodes = list(nodes)
         self._daemons = {}  # by the name of the node; the controller's is ""
         try:
-            self._configure(processors, patience)
+            self._configure(patience, {"processors": processors, "mib": mib})
             self._start("", "slurmctld", "-D", "-i")
             for name in self.nodes:
                 self.start_node(name)
@@ -87,7 +87,7 @@ class Slurm:
             self.stop()
             raise
 
-    def _configure(self, processors, patience):
+    def _configure(self, patience, each):
         (self.folder / "state").mkdir()
         host = socket.gethostname().split(".")[0]
         text = _CONFIGURATION.format(
@@ -95,7 +95,7 @@ class Slurm:
         )
         for name in self.nodes:
             (self.folder / f"spool-{name}").mkdir()
-            text = _NODE.format(name=name, host=host, port=_free_port(), processors=processors) + text
+            text = _NODE.format(name=name, host=host, port=_free_port(), **each) + text
         (self.folder / "slurm.conf").write_text(text)
         if (
             not any(Path("/sys/fs/cgroup").glob("*")) and _version() >= 24

@@ -9,6 +9,7 @@ import time
 import bpy
 import numpy as np
 
+from . import FRAME_MARK
 from . import scene as build
 
 _BOUNCES = 4
@@ -16,7 +17,6 @@ _SAMPLES_PER_FRAME = 0.5  # of the shutter, in frames
 _CLOTH_CELLS = 24  # along a side
 _FAR = 40.0
 STATIC = (0.0, 0.25, 0.55, 0.95)  # left, right, bottom, top of what nothing moves in, as parts of the picture
-_MARK = "night frame: "  # begins the line of a frame in the log of listen()
 
 
 def main(task):
@@ -125,8 +125,8 @@ def _animate(owner, path, values, index=-1):
 
 
 def noise(task):
-    """Renders `count` pictures each of consecutive frames with one seed and with the seeds of the shot, and of
-    one frame with independent seeds. Returns the mean squared differences of consecutive pictures within
+    """Renders `count` images each of consecutive frames with the seeds of the shot and with one seed, and of
+    one frame with independent seeds. Returns the mean squared difference of consecutive images within
     STATIC, by kind."""
     bpy.ops.wm.open_mainfile(filepath=task["blend"])
     scene = bpy.context.scene
@@ -201,17 +201,12 @@ class _Listener(logging.Handler):
             "frame": scene.frame_current,
             "seconds": time.monotonic() - self._start,
             "rays": sum(report["rays"] for report in self._reports),
+            "noise": max(report["noise"] for report in self._reports),
             "tracing": sum(report["seconds"] for report in self._reports),
             "nan_samples": sum(report["nan_samples"] for report in self._reports),
             **_memory(),
         }
-        print(f"{_MARK}{json.dumps(found)}", flush=True)
-
-
-def frames_of(log):
-    """The frames that a log of listen() names."""
-    lines = log.read_text(encoding="utf-8", errors="replace").splitlines()
-    return [json.loads(line.removeprefix(_MARK)) for line in lines if line.startswith(_MARK)]
+        print(f"{FRAME_MARK}{json.dumps(found)}", flush=True)
 
 
 def _memory():

@@ -1,0 +1,117 @@
+"""Judges a night: for each target whether it is met, and a sentence that says so if it is not."""
+
+from __future__ import annotations
+
+from .. import page
+from .still import ROUNDING
+
+MEMORY_GROWTH = 0.02
+FLICKER = 1.1
+FEWEST_FOR_MEMORY = 100  # frames: in a shorter run, a tenth is only the start of Blender
+
+
+def judge(found: dict) -> list[dict]:
+    night, frames = found["farm"], found["frames"]
+    return [
+        *_frames(night, frames, found["unbroken"]["digests"]),
+        *_farm(night),
+        _memory(found["unbroken"]["rows"]),
+        *_flicker(found["noise"]),
+        _still(found["still"]),
+    ]
+
+
+def _judged(name: str, target: str, measured: str, met: bool | None, sentence: str) -> dict:
+    return page.judged(target, "", measured, met) | {"name": name, "sentence": sentence}
+
+
+def _frames(night: dict, frames: int, unbroken: dict[str, str]) -> list[dict]:
+    expected, there = set(range(1, frames + 1)), {int(number) for number in night["frames"]}
+    wrong = sorted(expected ^ there)
+    wrong += [int(number) for number, each in night["frames"].items() if each["says"] != int(number)]
+    other = [
+        number for number, each in night["frames"].items() if each["digest"] != unbroken.get(str(number))
+    ]
+    return [
+        _judged(
+            "every_frame_once",
+            "every frame is there once",
+            f"{len(there)} of {frames}",
+            not wrong and night["done"],
+            f"frames are missing or not what they say: {wrong}; --status says: {night['status']}",
+        ),
+        _judged(
+            "same_bits",
+            "each has the bits of an unbroken run",
+            f"{len(there) - len(other)} of {frames}",
+            not other and bool(there),
+            f"frames differ from those of an unbroken run: {', '.join(other)}",
+        ),
+        _judged(
+            "nothing_half_written",
+            "no parts, failures or temporary files are left",
+            f"{len(night['leftovers'])} files",
+            not night["leftovers"],
+            f"files are left of frames that are done: {', '.join(night['leftovers'])}",
+        ),
+    ]
+
+
+def _farm(night: dict) -> list[dict]:
+    missed = night["planned"] - len(night["events"])
+    return [
+        _judged(
+            "no_job_waits",
+            "no job waits for ever",
+            "none" if not night["waits"] else night["waits"].replace("\n", ", "),
+            not night["waits"],
+            f"jobs wait for ever: {night['waits']}",
+        ),
+        _judged(
+            "all_trouble_happened",
+            "all planned trouble happened",
+            f"{len(night['events'])} of {night['planned']}",
+            missed == 0,
+            f"{missed} of the planned events did not happen, so the night proves less than it should",
+        ),
+    ]
+
+
+def growth(rows: list[dict]) -> float | None:
+    """Of the resident memory of one process: the largest of its last tenth over that of its first tenth."""
+    tenth = len(rows) // 10
+    if len(rows) < FEWEST_FOR_MEMORY:
+        return None
+    first, last = (max(row["mib"] for row in part) for part in (rows[:tenth], rows[-tenth:]))
+    return last / first - 1
+
+
+def _memory(rows: list[dict]) -> dict:
+    grown = growth(rows)
+    return _judged(
+        "memory",
+        f"memory of one process grows by less than {MEMORY_GROWTH:.0%} after its first tenth",
+        "the run is too short" if grown is None else f"{grown:.2%}",
+        None if grown is None else grown < MEMORY_GROWTH,
+        f"the resident memory of one process grew by {grown or 0:.2%} after its first tenth",
+    )
+
+
+def _flicker(noise: dict) -> list[dict]:
+    found = []
+    for kind, name in (("seed per frame", "flicker_seed_per_frame"), ("fixed seed", "flicker_fixed_seed")):
+        ratio = noise[kind] / noise["independent"]
+        target = f"flicker of what does not move, {kind}: at most {FLICKER} of independent noise"
+        sentence = f"what does not move flickers {ratio:.3f} times as much as independent noise ({kind})"
+        found.append(_judged(name, target, f"{ratio:.3f}", ratio <= FLICKER, sentence))
+    return found
+
+
+def _still(still: dict) -> dict:
+    return _judged(
+        "still",
+        f"a still in {still['parts']} parts equals a single run within {ROUNDING:g} of its brightest value",
+        f"{still['difference']:.1e}",
+        still["difference"] <= ROUNDING,
+        f"the merged still differs from the single run by {still['difference']:.1e} of its brightest value",
+    )
