@@ -36,7 +36,7 @@ def plan(seed: int, frames: int, has_disk: bool) -> list[Event]:
         (BLENDER, max(2, frames // 15), 0, 0),
         (STEP, max(1, frames // 75), 0, 0),
         (POWER, max(1, frames // 100), 14, 25),
-        (DISK, max(1, frames // 150) if has_disk else 0, 4, 8),
+        (DISK, max(1, frames // 150) if has_disk else 0, 8, 15),
     ):
         for _ in range(count):
             events.append(Event(chance.uniform(0.05, _LATEST), kind, chance.uniform(shortest, longest)))
