@@ -3,33 +3,25 @@
 import json
 import logging
 import math
-import os
 import time
 
 import bpy
-import numpy as np
 
 from . import FRAME_MARK
 from . import scene as build
 
 _BOUNCES = 4
-_SAMPLES_PER_FRAME = 0.5  # of the shutter, in frames
+_SHUTTER = 0.5  # frames
 _CLOTH_CELLS = 24  # along a side
 _FAR = 40.0
-STATIC = (0.0, 0.25, 0.55, 0.95)  # left, right, bottom, top of what nothing moves in, as parts of the picture
 
 
 def main(task):
-    """Calls the function that the task names."""
-    return {"shot": shot, "noise": noise}[task["do"]](task)
-
-
-def shot(task):
     """Saves the .blend of `frames` frames."""
     scene = build.empty(task["size"], task["samples"], _BOUNCES)
     scene.frame_start, scene.frame_end = 1, task["frames"]
     scene.render.use_motion_blur = True
-    scene.render.motion_blur_shutter = _SAMPLES_PER_FRAME
+    scene.render.motion_blur_shutter = _SHUTTER
     scene.render.image_settings.file_format = "OPEN_EXR_MULTILAYER"
     scene.render.image_settings.color_depth = "32"
     scene.world = _studio(scene)
@@ -65,7 +57,7 @@ def _surroundings():
 
 
 def _paint(frames):
-    """A monkey in car paint, and a panel that turns from facing the camera to a grazing view."""
+    """A monkey in car paint, which turns from a grazing view to one that faces the camera, and on."""
     obj = build.monkey(1.5, (-10, 0), levels=2)
     obj.location = (0.2, 0.6, 1.0)
     bpy.ops.velour.add_preset(preset="Midnight Car Paint", object=obj.name)
@@ -122,55 +114,6 @@ def _animate(owner, path, values, index=-1):
     for curve in part.id_data.animation_data.action.fcurves:
         for point in curve.keyframe_points:
             point.interpolation = "LINEAR"
-
-
-def noise(task):
-    """Renders `count` images each of consecutive frames with the seeds of the shot and with one seed, and of
-    one frame with independent seeds. Returns the mean squared difference of consecutive images within
-    STATIC, by kind."""
-    bpy.ops.wm.open_mainfile(filepath=task["blend"])
-    scene = bpy.context.scene
-    for layer in scene.view_layers[1:]:
-        layer.use = False
-    scene.render.use_border = scene.render.use_crop_to_border = True
-    border = dict(zip(("min_x", "max_x", "min_y", "max_y"), STATIC, strict=True))
-    for name, value in border.items():
-        setattr(scene.render, f"border_{name}", value)
-    middle, count = task["frame"], task["count"]
-    frames = range(middle, middle + count)
-    found = {"seed per frame": _difference(task, "own", [(frame, None) for frame in frames])}
-    curves = scene.animation_data.action.fcurves
-    curves.remove(next(curve for curve in curves if curve.data_path == "velour.seed"))
-    found["fixed seed"] = _difference(task, "fixed", [(frame, 1) for frame in frames])
-    found["independent"] = _difference(task, "one", [(middle, 1000 + 7919 * k) for k in range(count)])
-    return found
-
-
-def _difference(task, name, pictures):
-    """Mean squared difference of consecutive pictures. `pictures`: frames and seeds (None: the shot's)."""
-    scene, before, found = bpy.context.scene, None, []
-    for frame, seed in pictures:
-        if seed is not None:
-            scene.velour.seed = seed
-        scene.frame_set(frame)
-        now = _rendered(os.path.join(task["folder"], f"{name}.exr"))
-        if before is not None:
-            found.append(float(np.mean((now - before) ** 2)))
-        before = now
-    return sum(found) / len(found)
-
-
-def _rendered(path):
-    """The pixels of the current frame."""
-    scene = bpy.context.scene
-    bpy.ops.render.render()
-    scene.render.image_settings.file_format = "OPEN_EXR"
-    bpy.data.images["Render Result"].save_render(path, scene=scene)
-    image = bpy.data.images.load(path)
-    pixels = np.empty(len(image.pixels), np.float32)
-    image.pixels.foreach_get(pixels)
-    bpy.data.images.remove(image)
-    return pixels.reshape(-1, 4)[:, :3].astype(np.float64)
 
 
 def listen():

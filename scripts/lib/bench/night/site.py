@@ -20,7 +20,7 @@ BLENDER_USER_SCRIPTS="{folder}/${{SLURMD_NODENAME:-{good}}}" PATH="{programs}:$P
 
 
 class Site:
-    """`blender`: starts the Blender of the node that runs it. `output`: folder of the images, a small disk."""
+    """`blender`: starts the Blender of the node that runs it. `output`: the images, on a small disk."""
 
     def __init__(self, folder: Path, stage: Path, nodes: list[str], mib: int):
         self.folder, self.nodes = folder, nodes

@@ -78,7 +78,7 @@ def _farm(night: dict) -> list[dict]:
 
 
 def growth(rows: list[dict]) -> float | None:
-    """Of the resident memory of one process: the largest of its last tenth over that of its first tenth."""
+    """Growth of the resident memory of a process, from the most in its first tenth to the most in its last."""
     tenth = len(rows) // 10
     if len(rows) < FEWEST_FOR_MEMORY:
         return None

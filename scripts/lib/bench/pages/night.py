@@ -8,9 +8,8 @@ from pathlib import Path
 
 from .. import blender, project
 from ..inside import frames_of
-from ..night import shift, still, verdicts
+from ..night import shift, site, still, trouble, verdicts
 from ..night.pictures import digest
-from ..night.trouble import KINDS
 from ..run import Run
 
 from support import process, slurm  # isort: skip - bench.blender knows where it is
@@ -38,13 +37,10 @@ def measure(run: Run) -> dict:
     if why := slurm.why_not():
         raise project.MissingError(f"skipped, {why}.")
     run.progress.expect(1, 5)
-    sources = _sources()
-    blend = _shot(run, sources)
-    unbroken = _unbroken(run, blend, sources)
-    night = _night(run, blend, sources)
-    noise = _noise(run, blend, sources)
-    found = {"frames": run.settings.frames, "farm": night, "noise": noise, "unbroken": unbroken}
-    found["still"] = _still(run, sources)
+    blend = _shot(run)
+    unbroken, night = _unbroken(run, blend), _night(run, blend)
+    found = {"frames": run.settings.frames, "farm": night, "unbroken": unbroken}
+    found |= {"noise": _noise(run, blend), "still": _still(run)}
     judgements = verdicts.judge(found)
     rows = [_row(row, night["frames"].get(str(row["frame"]), {})) for row in unbroken["rows"]]
     summary = {
@@ -64,35 +60,33 @@ def failures(found: dict) -> list[str]:
     return [each["sentence"] for each in found["judgements"] if each["met"] is False]
 
 
-def _sources() -> dict[str, Path]:
-    """The Python programs that decide what is rendered: kept results depend on them."""
-    own = [
-        *Path(shift.__file__).parent.glob("*.py"),
-        blender.INSIDE / "night.py",
-        blender.INSIDE / "scene.py",
-    ]
-    addon = [path for path in (blender.STAGE / "addons/velour").rglob("*.py")]
-    farm = (project.ROOT / "addon/velour/farm").glob("*.py")
-    return {str(path): path for path in sorted([*own, *addon, *farm])}
+def _velour() -> dict[str, Path]:
+    """The Python programs of the add-on that renders: kept results depend on them."""
+    return _files(*(blender.STAGE / "addons/velour").rglob("*.py"))
 
 
-def _shot(run: Run, sources: dict) -> Path:
+def _files(*paths: Path) -> dict[str, Path]:
+    return {str(path): path for path in sorted(paths)}
+
+
+def _shot(run: Run) -> Path:
     """The .blend."""
-    task = {name: getattr(run.settings, name) for name in ("frames", "size", "samples")} | {"do": "shot"}
-    stem = run.stem("shot", task | sources)
-    blend = stem.with_suffix(".blend")
-    make = lambda: _inside(run, task | {"blend": str(blend)}, stem) or {}  # noqa: E731
-    run.keep("shot", "shot", task | sources, make, 1)
+    task = {name: getattr(run.settings, name) for name in ("frames", "size", "samples")}
+    parameters = task | _velour() | _files(blender.INSIDE / "night.py", blender.INSIDE / "scene.py")
+    blend = run.stem("shot", parameters) / "shot.blend"
+    blend.parent.mkdir(exist_ok=True)
+    make = lambda: _inside(run, "night", task | {"blend": str(blend)}, blend) or {}  # noqa: E731
+    run.keep("shot", "shot", parameters, make, 1)
     return blend
 
 
-def _inside(run: Run, task: dict, stem: Path) -> dict | None:
-    return blender.run("night", task, stem.with_suffix(".log"), ("-t", str(run.threads)))
+def _inside(run: Run, script: str, task: dict, stem: Path) -> dict | None:
+    return blender.run(script, task, stem.with_suffix(".log"), ("-t", str(run.threads)))
 
 
-def _unbroken(run: Run, blend: Path, sources: dict) -> dict:
+def _unbroken(run: Run, blend: Path) -> dict:
     """All frames in one process of plain Blender: what it prints of each, and hashes of their pixels."""
-    parameters = {"blend": blend, "threads": run.threads} | sources
+    parameters = {"blend": blend, "threads": run.threads} | _velour()
     stem = run.stem("unbroken", parameters)
 
     def make() -> dict:
@@ -113,30 +107,32 @@ def _unbroken(run: Run, blend: Path, sources: dict) -> dict:
     return run.keep("unbroken run", "unbroken", parameters, make, 1)
 
 
-def _night(run: Run, blend: Path, sources: dict) -> dict:
-    parameters = {"blend": blend, "seed": run.seed} | sources
-    folder = run.stem("site", parameters)
-    frames = run.settings.frames
+def _night(run: Run, blend: Path) -> dict:
+    programs = [Path(module.__file__) for module in (shift, site, trouble)]
+    programs += (project.ROOT / "addon/velour/farm").glob("*.py")
+    parameters = {"blend": blend, "seed": run.seed} | _velour() | _files(*programs)
+    folder, frames = run.stem("site", parameters), run.settings.frames
     make = lambda: shift.work(blend, frames, folder, blender.STAGE, run.seed)  # noqa: E731
     return run.keep("night", "night", parameters, make, 1)
 
 
-def _noise(run: Run, blend: Path, sources: dict) -> dict:
+def _noise(run: Run, blend: Path) -> dict:
     """Mean squared differences of consecutive images where nothing moves."""
     count = run.settings.noise_frames
-    middle = max(1, (run.settings.frames - count) // 2)
-    task = {"do": "noise", "count": count, "frame": middle}
-    stem = run.stem("noise", task | {"shot": blend} | sources)
+    task = {"count": count, "frame": max(1, (run.settings.frames - count) // 2)}
+    parameters = task | {"shot": blend} | _velour() | _files(blender.INSIDE / "night_noise.py")
+    stem = run.stem("noise", parameters)
     more = {"blend": str(blend), "folder": str(run.kept)}
-    make = lambda: _inside(run, task | more, stem)  # noqa: E731
-    return run.keep("noise", "noise", task | {"shot": blend} | sources, make, 1)
+    make = lambda: _inside(run, "night_noise", task | more, stem)  # noqa: E731
+    return run.keep("noise", "noise", parameters, make, 1)
 
 
-def _still(run: Run, sources: dict) -> dict:
+def _still(run: Run) -> dict:
     settings = {"size": run.settings.still_size, "spp": run.settings.still_samples}
     settings |= {"seed": run.seed, "threads": run.threads}
-    folder = run.stem("still-parts", settings | sources)
-    return run.keep("still", "still", settings | sources, lambda: still.render(folder, **settings), 1)
+    parameters = settings | _files(Path(still.__file__))
+    folder = run.stem("still-parts", parameters)
+    return run.keep("still", "still", parameters, lambda: still.render(folder, **settings), 1)
 
 
 def _row(unbroken: dict, farm: dict) -> dict:
@@ -166,7 +162,7 @@ def values(found: dict) -> dict:
     ]
     return {
         "judgements": found["judgements"],
-        "kinds": [{"kind": kind, "count": counts[kind]} for kind in KINDS],
+        "kinds": [{"kind": kind, "count": counts[kind]} for kind in trouble.KINDS],
         "summary": summary,
         "seconds": night["seconds"],
         "share": share,
