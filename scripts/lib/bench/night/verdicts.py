@@ -78,7 +78,7 @@ def _farm(night: dict) -> list[dict]:
 
 
 def growth(rows: list[dict]) -> float | None:
-    """Growth of the resident memory of a process, from the most in its first tenth to the most in its last."""
+    """Growth of the resident memory of a process, from the peak of its first tenth to that of its last."""
     tenth = len(rows) // 10
     if len(rows) < FEWEST_FOR_MEMORY:
         return None
