@@ -46,6 +46,7 @@ class _Shift:
 
     def work(self) -> dict:
         start, waits = time.monotonic(), ""
+        self._trouble.tick(0)  # wrong nodes are wrong from the first task on
         while not (done := self._is_done()) and len(self._submissions) < ROUNDS and not waits:
             self._submit(time.monotonic() - start)
             waits = self._wait()

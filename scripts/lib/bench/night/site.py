@@ -12,6 +12,7 @@ from ..project import ROOT
 GOOD, MISSING, OLDER = "good", "missing", "older"
 _STAMP = 'result.stamp_data_add_field("velour.version", version_text())'
 _BALLAST = ".ballast"
+_OURS = ("PYTHONPATH", "PYTHONSAFEPATH", "BLENDER_USER_SCRIPTS")
 _STARTER = """\
 #!/bin/sh
 # Each node has a Velour of its own; nodes cannot differ otherwise, as they share this machine.
@@ -86,12 +87,17 @@ def _unmount(folder: Path) -> None:
         subprocess.run(["umount", "-l", folder], check=True)
 
 
+def of_user() -> dict[str, str]:
+    """The environment of a user's shell: the path of scripts/bench would give all nodes the same Velour."""
+    return {name: value for name, value in os.environ.items() if name not in _OURS}
+
+
 def farm(site: Site, environment: dict[str, str], *arguments) -> subprocess.CompletedProcess:
     """Runs scripts/farm as a user would; both outputs as one text."""
     command = [ROOT / "scripts/farm", "--blender", site.blender, *arguments]
     return subprocess.run(
         [str(part) for part in command],
-        env={**os.environ, **environment},
+        env={**of_user(), **environment},
         stdin=subprocess.DEVNULL,
         stdout=subprocess.PIPE,
         stderr=subprocess.STDOUT,

@@ -19,6 +19,8 @@ BLENDER, STEP, POWER, DISK, NO_VELOUR, OLD_VELOUR = KINDS = (
     "node without Velour",
     "node with an older Velour",
 )
+# What the job's failures say of nodes with a wrong Velour.
+REFUSALS = {NO_VELOUR: "VELOUR", OLD_VELOUR: "Velour 0.0.9 rendered it"}
 _LATEST = 0.85  # share of the frames after which nothing begins: all must happen before the end
 
 

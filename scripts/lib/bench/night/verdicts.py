@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from .. import page
 from .still import ROUNDING
+from .trouble import REFUSALS
 
 MEMORY_GROWTH = 0.02
 FLICKER = 1.1
@@ -15,6 +16,7 @@ def judge(found: dict) -> list[dict]:
     return [
         *_frames(night, frames, found["unbroken"]["digests"]),
         *_farm(night),
+        _wrong_nodes(night),
         _memory(found["unbroken"]["rows"]),
         *_flicker(found["noise"]),
         _still(found["still"]),
@@ -75,6 +77,20 @@ def _farm(night: dict) -> list[dict]:
             f"{missed} of the planned events did not happen, so the night proves less than it should",
         ),
     ]
+
+
+def _wrong_nodes(night: dict) -> dict:
+    """That the same bits came out proves nothing if no such node was asked."""
+    failed = [line for each in night["submissions"] for line in each["failed"]]
+    counts = {kind: sum(words in line for line in failed) for kind, words in REFUSALS.items()}
+    missed = [kind for kind, count in counts.items() if not count]
+    return _judged(
+        "wrong_nodes_refused",
+        "frames of nodes with a wrong Velour fail, with a message that says so",
+        ", ".join(f"{kind}: {count}" for kind, count in counts.items()),
+        not missed,
+        f"no frame failed that says why: {', '.join(missed)}",
+    )
 
 
 def growth(rows: list[dict]) -> float | None:

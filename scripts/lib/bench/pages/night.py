@@ -97,7 +97,8 @@ def _unbroken(run: Run, blend: Path) -> dict:
         command += ["--addons", "velour", blend, "-E", "VELOUR", "-t", run.threads]
         command += ["--python-expr", _LISTEN.format(path=path), "-o", stem / "####"]
         command += ["-F", "OPEN_EXR_MULTILAYER", "-x", "1", "-a"]
-        variables, log = process.environment(program, blender.STAGE), stem.with_suffix(".log")
+        log, variables = stem.with_suffix(".log"), process.environment(program, blender.STAGE)
+        variables = {name: variables[name] for name in variables if name != "PYTHONPATH"}
         if status := process.execute(list(map(str, command)), variables, log, None):
             raise blender.BlenderError(f"Blender ended with status {status}; {log} has its output")
         rows = frames_of(log)
