@@ -7,6 +7,7 @@ import ast
 import importlib
 import json
 import re
+import signal
 import subprocess
 import sys
 import textwrap
@@ -177,5 +178,10 @@ def load(module, folder: Path, name: str) -> dict:
     return found
 
 
+def _interrupt(*_: object) -> None:
+    raise KeyboardInterrupt
+
+
 if __name__ == "__main__":
+    signal.signal(signal.SIGTERM, _interrupt)  # as Ctrl-C: what a page has started ends, too
     sys.exit(main(sys.argv[1:]))
