@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+import statistics
+
 from .. import page
 from .still import ROUNDING
 from .trouble import REFUSALS
 
 MEMORY_GROWTH = 0.02
 FLICKER = 1.1
-FEWEST_FOR_MEMORY = 100  # frames: in a shorter run, a tenth is only the start of Blender
+FEWEST_FOR_RESIDENT, FEWEST_FOR_PEAK = 100, 300  # frames
 
 
 def judge(found: dict) -> list[dict]:
@@ -17,7 +19,7 @@ def judge(found: dict) -> list[dict]:
         *_frames(night, frames, found["unbroken"]["digests"]),
         *_farm(night),
         _wrong_nodes(night),
-        _memory(found["unbroken"]["rows"]),
+        *_memory(found["unbroken"]["rows"]),
         *_flicker(found["noise"]),
         _still(found["still"]),
     ]
@@ -93,24 +95,31 @@ def _wrong_nodes(night: dict) -> dict:
     )
 
 
-def growth(rows: list[dict]) -> float | None:
-    """Growth of the resident memory of a process, from the peak of its first tenth to that of its last."""
+def _memory(rows: list[dict]) -> list[dict]:
+    """The median of the resident memory, which varies by some per cent from frame to frame, and the peak, which
+    such chance still raises in the first tenth of a short run."""
     tenth = len(rows) // 10
-    if len(rows) < FEWEST_FOR_MEMORY:
-        return None
-    first, last = (max(row["mib"] for row in part) for part in (rows[:tenth], rows[-tenth:]))
-    return last / first - 1
+    first, last = rows[:tenth], rows[-tenth:]
+    resident = peak = None
+    if len(rows) >= FEWEST_FOR_RESIDENT:
+        resident = _median(last) / _median(first) - 1
+    if len(rows) >= FEWEST_FOR_PEAK:
+        peak = last[-1]["peak"] / first[-1]["peak"] - 1
+    return [
+        _grown("memory_resident", "resident memory of one process", resident),
+        _grown("memory_peak", "peak memory of one process", peak),
+    ]
 
 
-def _memory(rows: list[dict]) -> dict:
-    grown = growth(rows)
-    return _judged(
-        "memory",
-        f"memory of one process grows by less than {MEMORY_GROWTH:.0%} after its first tenth",
-        "the run is too short" if grown is None else f"{grown:.2%}",
-        None if grown is None else grown < MEMORY_GROWTH,
-        f"the resident memory of one process grew by {grown or 0:.2%} after its first tenth",
-    )
+def _median(rows: list[dict]) -> float:
+    return statistics.median(row["mib"] for row in rows)
+
+
+def _grown(name: str, what: str, grown: float | None) -> dict:
+    target = f"{what} grows by less than {MEMORY_GROWTH:.0%} from its first tenth to its last"
+    if grown is None:
+        return _judged(name, target, "the run is too short", None, "")
+    return _judged(name, target, f"{grown:.2%}", grown < MEMORY_GROWTH, f"{what} grew by {grown:.2%}")
 
 
 def _flicker(noise: dict) -> list[dict]:
