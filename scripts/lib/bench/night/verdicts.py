@@ -96,7 +96,7 @@ def _wrong_nodes(night: dict) -> dict:
 
 
 def _memory(rows: list[dict]) -> list[dict]:
-    """The median of the resident memory, which varies by some per cent from frame to frame, and the peak, which
+    """The median of the resident memory, which varies by some per cent between frames, and the peak, which
     such chance still raises in the first tenth of a short run."""
     tenth = len(rows) // 10
     first, last = rows[:tenth], rows[-tenth:]
