@@ -13,8 +13,7 @@ STATIC = (0.0, 0.25, 0.55, 0.95)  # left, right, bottom, top of what nothing mov
 
 def main(task):
     """Renders `count` images each of consecutive frames with the seeds of the shot and with one seed, and of
-    one frame with independent seeds. Returns the mean squared difference of consecutive images within
-    STATIC, by kind."""
+    one frame with independent seeds. Returns _difference() of each kind."""
     addon_utils.enable("velour", default_set=False, handle_error=build.refuse)
     bpy.ops.wm.open_mainfile(filepath=task["blend"])
     scene = bpy.context.scene
@@ -35,7 +34,8 @@ def main(task):
 
 
 def _difference(task, name, images):
-    """Mean squared difference of consecutive images. `images`: frames and seeds (None: the shot's)."""
+    """Mean squared difference of consecutive images within STATIC: the median of the pairs, as a single firefly would outweigh
+    all others. `images`: frames and seeds (None: the shot's)."""
     scene, before, found = bpy.context.scene, None, []
     for frame, seed in images:
         if seed is not None:
@@ -45,7 +45,7 @@ def _difference(task, name, images):
         if before is not None:
             found.append(float(np.mean((now - before) ** 2)))
         before = now
-    return sum(found) / len(found)
+    return float(np.median(found))
 
 
 def _rendered(path):

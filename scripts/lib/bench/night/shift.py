@@ -14,6 +14,7 @@ from .site import Site, farm
 from .trouble import Trouble, plan
 
 NODES = ["node1", "node2", "node3", "node4"]
+THREADS = 1  # of a task: a node has one processor
 ROUNDS = 25  # submissions at most
 _PATIENCE = 10  # seconds until Slurm takes a node for down
 _FRAME_SECONDS = 30  # of waiting a frame, at most, before a job counts as one that waits for ever
@@ -74,7 +75,7 @@ class _Shift:
 
     def _submit(self, seconds: float) -> None:
         output = ("--output", self._site.output, "--format", "OPEN_EXR_MULTILAYER")
-        options = ("--threads", 1, "--memory", _MEMORY)
+        options = ("--threads", THREADS, "--memory", _MEMORY)
         failed = [line for line in self._status()[1] if " failed: " in line]
         said = farm(self._site, self._slurm.environment, self._blend, *output, *options)
         last = said.stdout.splitlines()[-1] if said.stdout else ""

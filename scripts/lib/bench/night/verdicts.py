@@ -17,6 +17,7 @@ def judge(found: dict) -> list[dict]:
     night, frames = found["farm"], found["frames"]
     return [
         *_frames(night, frames, found["unbroken"]["digests"]),
+        _threads(found["unbroken"]["digests"], found["threads"]["digests"]),
         *_farm(night),
         _wrong_nodes(night),
         *_memory(found["unbroken"]["rows"]),
@@ -59,6 +60,17 @@ def _frames(night: dict, frames: int, unbroken: dict[str, str]) -> list[dict]:
             f"files are left of frames that are done: {', '.join(night['leftovers'])}",
         ),
     ]
+
+
+def _threads(one: dict[str, str], several: dict[str, str]) -> dict:
+    other = [number for number, digest in several.items() if digest != one.get(number)]
+    return _judged(
+        "same_bits_any_threads",
+        "frames have the same bits for any number of threads",
+        f"{len(several) - len(other)} of {len(several)}",
+        not other and bool(several),
+        f"frames differ with another number of threads: {', '.join(other)}",
+    )
 
 
 def _farm(night: dict) -> list[dict]:

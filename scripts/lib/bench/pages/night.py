@@ -23,6 +23,7 @@ SETTINGS = {
     "still_samples": (4, 4),
 }
 CSV = "night.csv"
+_THREADS_STEP = 3  # every third frame is rendered with another number of threads
 PAGES = {"night.md": "night"}
 _LISTEN = """\
 import sys
@@ -36,10 +37,11 @@ def measure(run: Run) -> dict:
     """Raises MissingError where Slurm cannot run."""
     if why := slurm.why_not():
         raise project.MissingError(f"skipped, {why}.")
-    run.progress.expect(1, 5)
+    run.progress.expect(1, 6)
     blend = _shot(run)
-    unbroken, night = _unbroken(run, blend), _night(run, blend)
+    unbroken, night = _unbroken(run, blend, shift.THREADS, 1), _night(run, blend)
     found = {"frames": run.settings.frames, "farm": night, "unbroken": unbroken}
+    found["threads"] = _unbroken(run, blend, run.threads, _THREADS_STEP)
     found |= {"noise": _noise(run, blend), "still": _still(run)}
     judgements = verdicts.judge(found)
     rows = [_row(row, night["frames"].get(str(row["frame"]), {})) for row in unbroken["rows"]]
@@ -84,28 +86,33 @@ def _inside(run: Run, script: str, task: dict, stem: Path) -> dict | None:
     return blender.run(script, task, stem.with_suffix(".log"), ("-t", str(run.threads)))
 
 
-def _unbroken(run: Run, blend: Path) -> dict:
-    """All frames in one process of plain Blender: what it prints of each, and hashes of their pixels."""
-    parameters = {"blend": blend, "threads": run.threads} | _velour()
+def _unbroken(run: Run, blend: Path, threads: int, step: int) -> dict:
+    """Every `step`th frame in one process of plain Blender: what it prints of each, and hashes of their
+    pixels."""
+    parameters = {"blend": blend, "threads": threads, "step": step} | _velour()
     stem = run.stem("unbroken", parameters)
 
     def make() -> dict:
         shutil.rmtree(stem, ignore_errors=True)
-        path = [str(project.ROOT / "scripts/lib"), str(project.ROOT / "blend-tests")]
-        program = shutil.which("blender")
-        command = [program, "-b", "--factory-startup", "-noaudio", "--python-exit-code", "7", "-Y"]
-        command += ["--addons", "velour", blend, "-E", "VELOUR", "-t", run.threads]
-        command += ["--python-expr", _LISTEN.format(path=path), "-o", stem / "####"]
-        command += ["-F", "OPEN_EXR_MULTILAYER", "-x", "1", "-a"]
-        log, variables = stem.with_suffix(".log"), process.environment(program, blender.STAGE)
-        variables = {name: variables[name] for name in variables if name != "PYTHONPATH"}
-        if status := process.execute(list(map(str, command)), variables, log, None):
-            raise blender.BlenderError(f"Blender ended with status {status}; {log} has its output")
-        rows = frames_of(log)
+        _render_all(blend, stem, threads, step)
+        rows = frames_of(stem.with_suffix(".log"))
         digests = {str(int(path.stem)): digest(path) for path in sorted(stem.glob("*.exr"))}
         return {"rows": rows, "digests": digests, "seconds": sum(row["seconds"] for row in rows)}
 
-    return run.keep("unbroken run", "unbroken", parameters, make, 1)
+    return run.keep(f"unbroken run, {threads} threads", "unbroken", parameters, make, 1)
+
+
+def _render_all(blend: Path, stem: Path, threads: int, step: int) -> None:
+    path = [str(project.ROOT / "scripts/lib"), str(project.ROOT / "blend-tests")]
+    program = shutil.which("blender")
+    command = [program, "-b", "--factory-startup", "-noaudio", "--python-exit-code", "7", "-Y"]
+    command += ["--addons", "velour", blend, "-E", "VELOUR", "-t", threads]
+    command += ["--python-expr", _LISTEN.format(path=path), "-o", stem / "####"]
+    command += ["-F", "OPEN_EXR_MULTILAYER", "-x", "1", "-j", step, "-a"]
+    log, variables = stem.with_suffix(".log"), process.environment(program, blender.STAGE)
+    variables = {name: variables[name] for name in variables if name != "PYTHONPATH"}
+    if status := process.execute(list(map(str, command)), variables, log, None):
+        raise blender.BlenderError(f"Blender ended with status {status}; {log} has its output")
 
 
 def _night(run: Run, blend: Path) -> dict:
