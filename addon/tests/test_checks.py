@@ -140,6 +140,7 @@ def test_all_runs_every_group_and_resumes(tmp_path, monkeypatch, capsys):
         return [Case(name, PASSED, 1.0)]
 
     monkeypatch.setattr(test_run, "GROUPS", {"style": lambda _run: passes("style")})
+    monkeypatch.setattr(groups, "night", lambda _run: passes("night"))
     monkeypatch.setattr(groups, "other_blender", lambda _run, version: passes(version))
     monkeypatch.setattr(groups, "fuzz", lambda _run: passes("fuzz"))
     monkeypatch.setattr(groups.Run, "results", tmp_path)
@@ -149,8 +150,8 @@ def test_all_runs_every_group_and_resumes(tmp_path, monkeypatch, capsys):
     monkeypatch.setattr(sys, "argv", ["scripts/test", "--all"])
     for _ in range(2):
         assert test_run.main() == 0
-        assert capsys.readouterr().out.splitlines()[-1] == "5 passed, 0 failed, 0 not run"
-    assert ran == ["style", "4.3", "5.2", "4.5", "fuzz"]
+        assert capsys.readouterr().out.splitlines()[-1] == "6 passed, 0 failed, 0 not run"
+    assert ran == ["style", "night", "4.3", "5.2", "4.5", "fuzz"]
 
 
 def test_the_table_of_times_has_groups_their_sum_and_the_slowest():

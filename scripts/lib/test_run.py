@@ -80,6 +80,8 @@ def main() -> int:
     for name in arguments.groups:
         needs_build = name != "style"
         _step(name, run, kept, total, built or not needs_build, GROUPS[name])
+    if arguments.all:
+        _step("night", run, kept, total, built, groups.night)
     for version in arguments.blender:
         other = partial(groups.other_blender, version=version)
         _step(f"blender {version}", run, kept, total, built, other)

@@ -7,6 +7,7 @@ import ast
 import importlib
 import json
 import re
+import signal
 import subprocess
 import sys
 import textwrap
@@ -67,7 +68,7 @@ def run(name: str, words: list[str]) -> int:
 
     module = importlib.import_module(f"{__package__}.pages.{name}")
     try:
-        _measure(module, name, _arguments(module, name, words))
+        return _judge(module, name, _measure(module, name, _arguments(module, name, words)))
     except MissingError as absent:
         print(f"{name}: {absent}")
     except KeyboardInterrupt:
@@ -119,7 +120,16 @@ def _reader(name: str, value):
     return lambda text: tuple(kind(part) for part in text.split(separator) if part)
 
 
-def _measure(module, name: str, args: argparse.Namespace) -> None:
+def _judge(module, name: str, found: dict) -> int:
+    """The exit status: 1 with a sentence for each target that the page's `failures` name."""
+    failures = module.failures(found) if hasattr(module, "failures") else []
+    for sentence in failures:
+        print(f"{name}: {sentence}", file=sys.stderr)
+    return 1 if failures else 0
+
+
+def _measure(module, name: str, args: argparse.Namespace) -> dict:
+    """The numbers of the page; empty if it has none of its own."""
     from . import page
     from .project import RESULTS
     from .run import Run
@@ -129,6 +139,7 @@ def _measure(module, name: str, args: argparse.Namespace) -> None:
     output = args.output or (work / "documents" if args.quick else RESULTS)
     settings = SimpleNamespace(**{setting: getattr(args, setting) for setting in module.SETTINGS})
     run = Run(name, work, output, settings, args.seed, args.threads, args.fresh)
+    found = {}
     if not args.page:
         _keep(module, run, module.measure(run))
     if hasattr(module, "PAGES"):
@@ -138,6 +149,7 @@ def _measure(module, name: str, args: argparse.Namespace) -> None:
             page.write(run.output, file, page.text(template, values))
     if hasattr(module, "draw"):
         module.draw(run.output, found)
+    return found
 
 
 def _keep(module, run, found: dict | None) -> None:
@@ -167,5 +179,10 @@ def load(module, folder: Path, name: str) -> dict:
     return found
 
 
+def _interrupt(*_: object) -> None:
+    raise KeyboardInterrupt
+
+
 if __name__ == "__main__":
+    signal.signal(signal.SIGTERM, _interrupt)  # as Ctrl-C: what a page has started ends, too
     sys.exit(main(sys.argv[1:]))

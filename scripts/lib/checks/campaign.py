@@ -21,6 +21,7 @@ _UNREAD: dict[str, tuple[str, ...]] = {
     "native": ("addon/", "blend-tests/", "docs/", *_RUNNER),
     "fuzz": ("addon/", "blend-tests/", "docs/", *_RUNNER),
     "scenes": (*_TESTS, "docs/", *_RUNNER),
+    "night": (*_TESTS, "docs/", *_RUNNER),
     "blender": (*_TESTS, *_RUNNER),
 }
 # blend-tests/run itself sees whether these have changed.

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import json
 import os
+import re
 import shutil
 import time
 from collections.abc import Callable, Sequence
@@ -16,6 +18,8 @@ ROOT = Path(__file__).resolve().parents[3]
 PYTHON = "/usr/bin/python3"
 _NOT_HERE = (3, 124)  # exit statuses of scripts/blenders and scripts/fuzz if unavailable, and of timeout
 _SETUP_SECONDS = 1800
+# 300 frames, so that memory and bits are judged over a whole night; small, for ten minutes on two cores.
+_SHORT_NIGHT = ("--size", "96x54", "--samples", "16", "--still-samples", "4")
 # Lines of blend-tests/run that are omitted after a failure.
 _PASSED = r": ok, [0-9]+ passed|^Warning: [0-9]+ x |^ *(Fra|Saved|Time): ?"
 
@@ -125,6 +129,27 @@ def scenes(run: Run) -> list[Case]:
     if run.long and not run.scenes and not run.update:
         found.append(check(run, "check-bench", PYTHON, ROOT / "blend-tests/run_check_bench", "--afresh"))
     return found
+
+
+def night(run: Run) -> list[Case]:
+    """A night on a farm, at a reduced size: a case for each of its judgements."""
+    log, output = run.results / "night.log", run.results / "night"
+    shutil.rmtree(output, ignore_errors=True)
+    command = [ROOT / "scripts/night", "--built", "--fresh", *_SHORT_NIGHT, "--output", output]
+    command += ["--work", output / "work"]
+    status = running.run(command, log, running.last(r"(?m)^\[ *\d+/\d+\] (.*)$", ""), **run.variables)
+    if why := re.search(r"^night: skipped, (.*)\.$", log.read_text(errors="replace"), re.MULTILINE):
+        return [skipped("night", why[1])]
+    return _judged("night", status or 0, _judgements(output / "night.json"), log)
+
+
+def _judgements(report: Path) -> list[Case]:
+    """The cases of a measured page that judges; empty if it was not written."""
+    if not report.is_file():
+        return []
+    outcomes = {True: PASSED, False: FAILED, None: SKIPPED}
+    found = json.loads(report.read_text(encoding="utf-8"))["judgements"]
+    return [Case(f"night.{each['name']}", outcomes[each["met"]], 0.0, each["measured"]) for each in found]
 
 
 def _scenes(run: Run, name: str, *options: str | Path, before: Sequence[str | Path] = ()) -> list[Case]:

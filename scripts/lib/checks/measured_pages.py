@@ -20,6 +20,7 @@ PAGES = {
     "docs/results/figures/README.md": _FITS + _PICTURES,
     "docs/results/for_scene.md": (*_FITS, *_PICTURES, "usage"),
     "docs/results/models.md": _FITS,
+    "docs/results/night.md": _PICTURES,
     "docs/results/perceptual.md": _FITS + _PICTURES,
     "docs/results/performance.md": _PICTURES,
     "docs/results/viewport.md": _PICTURES,
