@@ -26,7 +26,7 @@ def test_has_what_it_is_to_have():
         "Paints": 6,
         "Plastics and Papers": 5,
         "Matt Whites and Clays": 4,
-        "Cloths": 9,
+        "Cloths": 8,
         "Leathers": 2,
     }
     for preset in PRESETS:
