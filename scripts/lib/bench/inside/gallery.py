@@ -42,23 +42,23 @@ def metals():
     """Metals and paints on sculptures."""
     _ground()
     _dress(_monkey((0.0, 0.1, 0.0), 1.25, -14), "Midnight Car Paint")
-    _dress(_knot((-2.35, 0.35, 0.0), 0.62), "Polished Gold")
+    _dress(_knot((-2.35, 0.55, 0.0), 0.43), "Polished Gold")
     _dress(_ball((2.2, 0.5, 0.0), 0.85), "Brushed Aluminium")
     _dress(_ball((-1.05, -1.5, 0.0), 0.42), "Red Enamel")
     _dress(_knot((1.25, -1.45, 0.0), 0.34, turn=70), "Satin Copper")
     _dress(_ball((3.35, -0.75, 0.0), 0.5), "Glazed Porcelain")
     _dress(_ball((-3.3, -0.85, 0.0), 0.45), "Brushed Brass")
-    build.camera((0.15, -8.4, 2.5), (0.05, 0, 0.72), lens=40)
+    build.camera((0.15, -8.4, 2.5), (0.05, 0, 0.78), lens=39)
 
 
 def cloths():
     """Cloths draped over balls and a block."""
     _ground()
-    places = ((-2.5, 0.3, "Denim"), (0.0, -0.1, "Crimson Velvet"), (2.5, 0.3, "Knitted Wool"))
+    places = ((-2.3, 0.3, "Denim"), (0.0, -0.1, "Crimson Velvet"), (2.3, 0.3, "Knitted Wool"))
     for x, y, preset in places:
         form = _ball((x, y, 0.0), 0.72) if preset != "Crimson Velvet" else _pedestal((x, y, 0.0))
-        _dress(_draped(form, side=2.7), preset)
-    build.camera((0, -8.6, 3.0), (0, 0, 0.55), lens=38)
+        _dress(_draped(form, side=3.5), preset)
+    build.camera((0, -8.6, 3.0), (0, 0, 0.5), lens=62)
 
 
 def product():
@@ -78,7 +78,7 @@ def product():
         part.location = cup
         part.rotation_euler[2] = math.radians(-35)
         _worn(part, "Glazed Porcelain", "Cast Iron", "Z", (0.66, 0.84))
-    build.camera((0.5, -7.4, 2.5), (0.08, 0, 0.94), lens=80)
+    build.camera((0.5, -7.4, 2.7), (0.1, 0, 1.02), lens=54)
 
 
 SCENES = {"metals": metals, "cloths": cloths, "product": product}
