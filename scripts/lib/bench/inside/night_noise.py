@@ -34,8 +34,8 @@ def main(task):
 
 
 def _difference(task, name, images):
-    """Mean squared difference of consecutive images within STATIC: the median of the pairs, as a single firefly would outweigh
-    all others. `images`: frames and seeds (None: the shot's)."""
+    """Mean squared difference of consecutive images within STATIC: the median of the pairs, as a firefly
+    would outweigh all others. `images`: frames and seeds (None: the shot's)."""
     scene, before, found = bpy.context.scene, None, []
     for frame, seed in images:
         if seed is not None:
