@@ -57,8 +57,12 @@ def _surroundings():
 
 
 def _paint(frames):
-    """A monkey in car paint, which turns from a grazing view to one that faces the camera, and on."""
-    obj = build.monkey(1.5, (-10, 0), levels=2)
+    """A monkey in car paint, which turns from a grazing view to one that faces the camera, and on.
+
+    Flat: Blender 3.4 adds up the normals of large smooth meshes in the order in which its threads come.
+    """
+    obj = build.monkey(1.5, (-10, 0), levels=3)
+    bpy.ops.object.shade_flat()
     obj.location = (0.2, 0.6, 1.0)
     bpy.ops.velour.add_preset(preset="Midnight Car Paint", object=obj.name)
     _animate(obj, "rotation_euler", {1: math.radians(-85), frames: math.radians(85)}, index=2)
