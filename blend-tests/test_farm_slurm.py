@@ -42,7 +42,10 @@ class FarmSlurm(SlurmTest, FarmTest):
         self.assertEqual(self.job(number)["JobState"], "FAILED")
         status, said = self.status()
         self.assertEqual(status, 1, said)
-        self.assertEqual(re.findall(r"frame (\d) failed: .*VELOUR", said), ["1", "2", "3"], said)
+        node = self.slurm.run("sinfo", "-h", "-N", "-o", "%N").strip()
+        self.assertEqual(
+            re.findall(rf"frame (\d) failed: .*VELOUR.* Node: {node}", said), ["1", "2", "3"], said
+        )
         self.assertEqual(self.pictures(), [])
 
         number, _ = self._submit("--threads", "1", "--memory", "700M")

@@ -11,6 +11,7 @@ import argparse
 import json
 import os
 import shutil
+import socket
 import sys
 from collections.abc import Callable
 from pathlib import Path
@@ -104,8 +105,13 @@ def _attempt(task: job.Job, unit: job.Unit) -> int:
     if left:
         task.failure(unit).unlink(missing_ok=True)  # failure of an earlier attempt
         return UNFINISHED
-    _note(task.failure(unit), sentence)
+    _note(task.failure(unit), f"{sentence} Node: {_node()}")
     return FAILED
+
+
+def _node() -> str:
+    """Its name, for sbatch --exclude: several nodes of Slurm may share a host."""
+    return os.environ.get("SLURMD_NODENAME") or socket.gethostname()
 
 
 def _note(path: Path, sentence: str) -> None:

@@ -64,7 +64,7 @@ TEST(EmissiveMeshes, AQuadLightsAFloorInClosedForm) {
     for (const NamedStrategy& s : test::all_strategies()) {
       const bool blind = s.strategy != Strategy::light && !is_mixed(s.strategy);
       if (blind && k > 0 && !test::long_tests()) continue;  // what surfaces reflect does not know of lights
-      RenderOptions options = test::small_options(s.strategy, blind ? 512 : 128);
+      RenderOptions options = test::small_options(s.strategy, blind ? 1024 : 256);
       options.heuristic = s.heuristic;
       options.light_share = s.light_share;
       const std::string name = s.name + " place " + std::to_string(k);
