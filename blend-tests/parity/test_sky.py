@@ -34,7 +34,8 @@ class Sky(ParityTest):
                 self.node.sky_type = kind
                 if kind in _WITH_SUN:
                     self.node.sun_disc, self.node.sun_rotation, self.node.sun_elevation = False, 2.5, 0.4
-                self.assert_parity(f"Sky: {kind.lower()}")
+                # Its horizon is an edge, which lies within a row of texels.
+                self.assert_parity(f"Sky: {kind.lower()}", up_to=0.3 if kind in _WITH_SUN else 0.0)
 
     def test_a_sun(self):
         """Through other nodes, too."""
