@@ -36,9 +36,12 @@ class Campaign:
     def __init__(self, file: Path, root: Path = ROOT):
         self._file, self._root = file, root
         self._at_first: dict[str, str] = {}  # hashes before a run, so that changes during it are noticed
-        self._ended: dict[str, dict] = {}
+        self._ended = self._read()
+
+    def _read(self) -> dict[str, dict]:
         with contextlib.suppress(OSError, ValueError, TypeError):
-            self._ended = dict(json.loads(file.read_text()))
+            return dict(json.loads(self._file.read_text()))
+        return {}
 
     def kept(self, name: str) -> list[Case] | None:
         """The group's cases, or None if it has not passed or its sources have changed since."""
@@ -52,7 +55,9 @@ class Campaign:
             return None
 
     def keep(self, name: str, found: list[Case]) -> None:
-        """Call it after kept() returned None and the group passed."""
+        """Call it after kept() returned None and the group passed. What a run of other groups beside this
+        one has added to the file stays."""
+        self._ended |= self._read()
         self._ended[name] = {"sources": self._at_first[name], "cases": found}
         self._file.parent.mkdir(parents=True, exist_ok=True)
         partial = self._file.with_suffix(".partial")
