@@ -8,7 +8,7 @@ import numpy as np
 from support import inputs, scenes
 from support.blender import BlenderTest
 
-STRATEGIES = ("UNIFORM", "COSINE", "TABLE", "SRBF", "LIGHT", "MIS", "GGX", "MIS_GGX", "PRODUCT")
+STRATEGIES = ("AUTO", "UNIFORM", "COSINE", "TABLE", "SRBF", "LIGHT", "MIS", "GGX", "MIS_GGX", "PRODUCT")
 ALBEDO = (0.8, 0.5, 0.2)
 
 

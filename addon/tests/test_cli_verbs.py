@@ -48,6 +48,7 @@ RENDER_KEYS = [
     "spp_mean",
     "block_noise",
     "blocks_unfinished",
+    "pilot",
     "biased_by",
     "denoised",
     "sky",

@@ -247,7 +247,7 @@ GRADIENTS = ("linear", "quadratic", "easing", "diagonal", "spherical", "quadrati
 VALUES = ("color", "number", "normal")
 STRATEGIES = (
     *("uniform", "cosine", "table", "srbf", "light", "mis", "ggx", "mis-ggx", "product"),
-    *("dissertation", "mis-dissertation"),
+    *("dissertation", "mis-dissertation", "auto"),
 )
 MOST_SPLIT = 48  # maximum of vlr_render_options.split
 

@@ -76,6 +76,7 @@ class VelourRenderSettings(bpy.types.PropertyGroup):
         name="Strategy",
         description="How light directions are sampled. All strategies converge to the same image",
         items=(
+            ("AUTO", "Automatic", "What a short test render finds best for each material", 11),
             ("UNIFORM", "Uniform", "Uniform over the hemisphere", 0),
             ("COSINE", "Cosine", "Proportional to the cosine", 1),
             ("TABLE", "Table", "From tables of the material's reflectance", 2),
@@ -101,7 +102,7 @@ class VelourRenderSettings(bpy.types.PropertyGroup):
                 8,
             ),
         ),
-        default="MIS",
+        default="AUTO",
         override=_OVERRIDE,
     )
     share: FloatProperty(
@@ -293,7 +294,7 @@ class VelourRenderSettings(bpy.types.PropertyGroup):
     )
     use_cache: BoolProperty(
         name="Cache World",
-        description="Cache the fit of the environment image that Products uses, for later renders",
+        description="Cache the fit of the environment image for products, for later renders",
         default=True,
         override=_OVERRIDE,
     )

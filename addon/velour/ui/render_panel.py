@@ -95,7 +95,7 @@ class VELOUR_RENDER_PT_sampling_advanced(_RenderPanel, bpy.types.Panel):
             column = layout.column(align=True)
             column.prop(settings, "share")
             column.prop(settings, "heuristic")
-        if settings.strategy == "PRODUCT":
+        if settings.strategy in ("AUTO", "PRODUCT"):
             layout.prop(settings, "use_cache")
         layout.prop(settings, "sequence")
 

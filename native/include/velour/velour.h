@@ -1193,7 +1193,10 @@ enum {
    * for others as SRBF; independent random numbers, regardless of `sequence`. MIS: half of the directions from the
    * lights. */
   VLR_STRATEGY_DISSERTATION = 9,
-  VLR_STRATEGY_MIS_DISSERTATION = 10
+  VLR_STRATEGY_MIS_DISSERTATION = 10,
+  /* MIS or PRODUCT and the share of the lights, for each material what a pilot of up to 2048 pixels found best; MIS
+   * where an image is so small that a pilot would take more than a twenty-fifth of its time, and in the viewport. */
+  VLR_STRATEGY_AUTO = 11
 };
 
 enum { VLR_HEURISTIC_BALANCE = 0, VLR_HEURISTIC_POWER = 1 };
@@ -1288,8 +1291,9 @@ typedef struct vlr_render_options {
 } vlr_render_options;
 VLR_API void vlr_render_options_init(vlr_render_options* options);
 /* JSON: seconds, rays, samples_per_second, ray_share (or null), stages, nan_samples, spp, passes, noise, spp_mean,
- * block_noise, blocks_unfinished (null without a noise target), sky (null, or for VLR_STRATEGY_PRODUCT the fit of the
- * environment: lobes, relative_l2, seconds, cached). */
+ * block_noise, blocks_unfinished (null without a noise target), sky (null, or for products the fit of the environment:
+ * lobes, relative_l2, seconds, cached), pilot (null, or what VLR_STRATEGY_AUTO chose, means over its pixels: pixels,
+ * products: share lit with them, light_share). */
 VLR_API vlr_status vlr_render_create_job(const vlr_scene* scene, const vlr_render_options* options, vlr_job** out);
 
 /* Reads the film so far, row 0 at the bottom. Passes and channels: "Combined" 4 (RGBA, premultiplied), "Depth" 1,

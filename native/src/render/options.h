@@ -71,8 +71,9 @@ enum class Strategy : int {  // values of velour.h
   product = 8,               // three quarters or less from BRDF times environment, the rest from lights and BRDF
   dissertation = 9,          // per-view models: the interpolated densities of the nearest views [T09 7.3]
   mis_dissertation = 10,     // as mis, with those densities instead of the material's
+  automatic = 11,            // mis or product, and its light_share, by material: whichever a pilot found best (pilot.h)
 };
-inline constexpr Strategy kLastStrategy = Strategy::mis_dissertation;
+inline constexpr Strategy kLastStrategy = Strategy::automatic;
 
 /// Whether some directions are sampled from the surface and some from the lights.
 constexpr bool is_mixed(Strategy strategy) {
@@ -81,6 +82,7 @@ constexpr bool is_mixed(Strategy strategy) {
     case Strategy::mis_ggx:
     case Strategy::product:
     case Strategy::mis_dissertation:
+    case Strategy::automatic:
       return true;
     case Strategy::uniform:
     case Strategy::cosine:
@@ -116,7 +118,7 @@ struct RenderOptions {
   int spp = 64;   // light directions per pixel
   int split = 8;  // light directions that share a camera ray; 1..kMaxSplit
   int bounces = 0;
-  Strategy strategy = Strategy::mis;
+  Strategy strategy = Strategy::automatic;
   int threads = 0;  // 0: all
   uint64_t seed = 0;
   double time_limit = 0;  // seconds of tracing and shading; 0: no limit; a render stops after a whole pass

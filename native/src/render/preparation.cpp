@@ -4,6 +4,8 @@
 #include <cmath>
 #include <string>
 
+#include "render/pilot.h"
+
 namespace velour {
 namespace {
 
@@ -102,7 +104,7 @@ void prepare(RenderContext& context, tbb::task_arena& arena, Progress& progress,
   if (surface_sampling(strategy) == SurfaceSampling::ggx) {
     stage("ggx fit", [&] { context.ggx = ggx_samplers(scene, context.options.threads, progress); });
   }
-  if (strategy == Strategy::product && !scene.environment().black()) {
+  if ((strategy == Strategy::product && !scene.environment().black()) || pilot_tries_products(context)) {
     const std::string& folder = context.options.cache_folder;
     stage("sky", [&] { arena.execute([&] { context.sky = environment_sampler(scene, folder, progress); }); });
   }

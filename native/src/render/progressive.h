@@ -17,7 +17,7 @@ namespace velour {
 
 /// Renders levels that each halve the pixel size, one camera ray per pixel, then continues at full size. Camera rays,
 /// strategies and light are those of render(): after all spp the image is the same, bit for bit. The time that the
-/// previous image took determines how coarse an image begins.
+/// previous image took determines how coarse an image begins. The strategy `automatic` is `mis` here, without a pilot.
 class ProgressiveRender {
  public:
   struct Picture {

@@ -11,6 +11,7 @@
 
 #include "base/parallel.h"
 #include "render/film/noise_target.h"
+#include "render/pilot.h"
 #include "render/preparation.h"
 #include "render/ray_log.h"
 #include "render/tile_renderer.h"
@@ -58,6 +59,7 @@ class Renderer {
     if (!options_.onto_film) film_.clear();
     before_ = film_.directions();
     prepare(context_, arena_, progress_, report_.stages);
+    if (pilot_pays(context_)) run_pilot();
     if (context_.sky) report_.sky = context_.sky->report;
     render_passes();
     if (options_.measure_ray_share && !stopped()) measure_ray_share();  // a stop must not wait for it
@@ -65,6 +67,11 @@ class Renderer {
   }
 
  private:
+  void run_pilot() {
+    run_stage(progress_, report_.stages, "pilot", kPreparation, kPreparation,
+              [&] { arena_.execute([&] { report_.pilot = choose_mixing(context_, progress_); }); });
+  }
+
   void render_passes() {
     const int first = context_.first_camera_ray(), end = context_.end_camera_ray();
     run_stage(progress_, report_.stages, "render", report_.stages.empty() ? 0.0 : kPreparation, 1.0, [&] {

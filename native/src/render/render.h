@@ -39,6 +39,13 @@ struct RenderReport {
     bool cached;
   };
   std::optional<Sky> sky;
+  /// What `automatic` chose (pilot.h), as means over the pilot's pixels that show a surface.
+  struct Pilot {
+    uint64_t pixels;
+    double products;     // share lit by `product`
+    double light_share;  // RenderOptions::light_share
+  };
+  std::optional<Pilot> pilot;
 };
 
 /// Renders a committed scene into `film`, whose window must be that of `options`; clears it first unless

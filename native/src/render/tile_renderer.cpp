@@ -99,7 +99,7 @@ float covered(const Rgb& throughput) { return 1.0f - (throughput.r + throughput.
 TileRenderer::TileRenderer(const RenderContext& context)
     : context_(context),
       pixel_(context.scene, context.options.width, context.options.height, context.camera_rays()),
-      flight_(context.scene, context.lighting, context.options, context.sky.get()),
+      flight_(context.scene, *context.lighting, context.options, context.sky.get()),
       recorder_(context.scene, context.options.width, context.options.height) {}
 
 void TileRenderer::render(const PixelRect& tile, int first, int count, Film& film, RayLog* log,
@@ -233,9 +233,10 @@ void TileRenderer::follow(size_t index, int depth) {
   if (depth == 0 || !flight_.light.counts_emissive(hit)) {
     sample.radiance += clamped(path.throughput * vertex.emission(), light_paths.limit(depth - 1));
   }
+  const Mixing* const mixing = depth == 0 && !context_.mixing.empty() ? &context_.mixing[material] : nullptr;
   const int most = depth == 0 ? context_.options.split : std::min(context_.options.split, kIndirectDirections);
   flight_.receivers.push_back({vertex, &path.numbers, path.throughput, path.sample, std::min(sample.directions, most),
-                               most, path.past, light_paths.limit(depth)});
+                               most, path.past, light_paths.limit(depth), mixing});
 }
 
 void TileRenderer::add_background() {

@@ -70,15 +70,25 @@ class SurfaceRecorder {
 struct RenderContext {
   /// Throws Error(cancelled).
   RenderContext(const Scene& of, const RenderOptions& asked, const Progress& progress)
-      : scene(of), options(asked), lighting(of, progress) {}
+      : scene(of), options(asked), lighting(std::make_shared<const Lighting>(of, progress)) {}
+  /// The same scene and samplers with other options.
+  RenderContext(const RenderContext& other, const RenderOptions& asked)
+      : scene(other.scene),
+        options(asked),
+        lighting(other.lighting),
+        tables(other.tables),
+        ggx(other.ggx),
+        sky(other.sky),
+        mixing(other.mixing) {}
 
   const Scene& scene;
   const RenderOptions& options;  // split <= spp, samples.end > 0
-  Lighting lighting;
+  std::shared_ptr<const Lighting> lighting;
   // Null unless the strategy needs them.
   std::shared_ptr<const TableSamplers> tables;
   std::shared_ptr<const GgxSamplers> ggx;
   std::shared_ptr<const EnvironmentProductSampler> sky;
+  std::vector<Mixing> mixing;  // at the first surface, by material; empty: that of the strategy
 
   /// Camera rays per pixel of the whole image.
   int camera_rays() const { return rays_of(options.spp); }

@@ -32,6 +32,7 @@ KEYS = (
     "biased_by",
     "denoised",
     "sky",
+    "pilot",
     "out_of_domain",
     "samples",
     "memory",
@@ -57,7 +58,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "--bounces", type=numbers.whole(0, 1024), metavar="B", help="indirect bounces (0: direct light only)"
     )
     parser.add_argument(
-        "--strategy", choices=table.STRATEGIES, default="mis", help="sampling strategy (default: mis)"
+        "--strategy", choices=table.STRATEGIES, help="sampling strategy (default: auto, or mis with --share)"
     )
     parser.add_argument(
         "--share",
@@ -250,6 +251,8 @@ def _options(args: argparse.Namespace) -> dict:
     names += ("threads", "seed", "noise", "time_limit")
     names += ("clamp_direct", "clamp_indirect", "filter_glossy", "reflective_caustics")
     options = {name: getattr(args, name) for name in names if getattr(args, name) is not None}
+    if args.share is not None:
+        options.setdefault("strategy", "mis")
     if args.noise is not None:
         options.setdefault("spp", _MOST_SPP)
     cache_folder = user_cache_folder() if args.cache is None else args.cache
@@ -292,4 +295,9 @@ def _tell(args: argparse.Namespace, report: dict, info: dict) -> None:
             "The environment was fitted with %(lobes)d lobes, relative L2 error %(relative_l2).3f.",
             report["sky"],
         )
+    if report["pilot"]:
+        output.log.info(
+            "A pilot chose products for %.0f %% of the surfaces seen, and a light share of %.2f on average.",
+            100 * report["pilot"]["products"], report["pilot"]["light_share"],
+        )  # fmt: skip
     output.log.info("%d passes, %d light directions per pixel.", report["passes"], report["spp"])

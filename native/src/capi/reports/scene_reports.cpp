@@ -91,6 +91,10 @@ Json sky_json(const RenderReport::Sky& sky) {
   return {{"lobes", sky.lobes}, {"relative_l2", sky.relative_l2}, {"seconds", sky.seconds}, {"cached", sky.cached}};
 }
 
+Json pilot_json(const RenderReport::Pilot& pilot) {
+  return {{"pixels", pilot.pixels}, {"products", pilot.products}, {"light_share", pilot.light_share}};
+}
+
 }  // namespace
 
 std::string scene_json(const Scene& scene) {
@@ -125,7 +129,8 @@ std::string render_json(const RenderReport& report) {
                {"spp_mean", report.spp_mean},
                {"block_noise", report.block_noise},
                {"blocks_unfinished", report.blocks_unfinished ? Json(*report.blocks_unfinished) : Json(nullptr)},
-               {"sky", report.sky ? sky_json(*report.sky) : Json(nullptr)}});
+               {"sky", report.sky ? sky_json(*report.sky) : Json(nullptr)},
+               {"pilot", report.pilot ? pilot_json(*report.pilot) : Json(nullptr)}});
 }
 
 }  // namespace velour::capi

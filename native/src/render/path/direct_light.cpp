@@ -61,7 +61,7 @@ void DirectLight::prepare(const Receiver& receiver, bool go_on, Output output, W
   choose_continuation(receiver, go_on, work);
   work.goes_on_along_all = go_on && output.is_incident();
   const bool lit = lighting_.has_extended() && work.deltas.rest > 0.0f, explores = !lit && work.goes_on_along_all;
-  work.shares = explores ? Shares{0.0f, 1.0f, 0.0f} : shares_at(vertex, view, work);
+  work.shares = explores ? Shares{0.0f, 1.0f, 0.0f} : shares_at(receiver, view, work);
   PathNumbers& numbers = *receiver.numbers;
   const auto all = numbers.all(lit || explores ? receiver.directions : 0, receiver.full);
   const auto [rest, product] = numbers.deal(all, work.shares.product, Purpose::product_side);
@@ -75,14 +75,16 @@ void DirectLight::prepare(const Receiver& receiver, bool go_on, Output output, W
   work.shared_term = -1;
 }
 
-Shares DirectLight::shares_at(const Vertex& vertex, const LightView& view, Work& work) {
-  if (options_.strategy != Strategy::product || sky_ == nullptr) return shares(options_, 0.0f);
+Shares DirectLight::shares_at(const Receiver& receiver, const LightView& view, Work& work) {
+  const Vertex& vertex = receiver.vertex;
+  const Mixing& mixing = receiver.mixing != nullptr ? *receiver.mixing : mixing_;
+  if (!mixing.products || sky_ == nullptr) return shares(mixing);
   ProposalLobes lobes;
   const bool proposed = work.prepared.brdf().proposal_lobes(lobes) &&
                         sky_->proposals.propose(lobes, vertex.frame, products_, work.product);
-  if (!proposed) return shares(options_, 0.0f);
+  if (!proposed) return shares(mixing);
   const float both = kProductShare * view.environment, lights = lights_part(vertex) * both;
-  return shares(options_, both - lights, lights);
+  return shares(mixing, both - lights, lights);
 }
 
 void DirectLight::make_points(std::span<const Receiver> receivers) {

@@ -74,6 +74,7 @@ struct Receiver {
   int full;         // number of directions of a camera ray other than the last of its pixel
   PathPast past{};
   float limit = std::numeric_limits<float>::infinity();  // LightPathOptions::limit
+  const Mixing* mixing = nullptr;                        // null: that of the strategy
 };
 
 /// Light that arrives if the continuation ray of a vertex hits nothing closer than `far`.
@@ -108,7 +109,7 @@ struct IncidentLight {
 /// in a batch of directions: all share memory and vectors while their lobes stay in the cache.
 class DirectLight {
  public:
-  /// `sky` is needed by `product`; null for other strategies.
+  /// `sky` is needed for products; null: there are none.
   DirectLight(const Scene& scene, const Lighting& lighting, const RenderOptions& options,
               const EnvironmentProductSampler* sky)
       : working_space_(scene.rec709_to_working()),
@@ -116,7 +117,7 @@ class DirectLight {
         lighting_(lighting),
         options_(options),
         sampling_(surface_sampling(options.strategy)),
-        meets_surfaces_(shares(options, 0.0f).surface > 0.0f),
+        mixing_(mixing_of(options)),
         shares_rays_(VisibleRays(scene).plain()),
         even_sky_(!lighting.environment().black() && lighting.environment().equirectangular() == nullptr),
         sky_(sky) {}
@@ -160,7 +161,7 @@ class DirectLight {
   /// must add it: emitters that are not light-sampled, under a strategy that samples no directions from the surface.
   bool counts_emissive(const Hit& hit) const {
     const EmissiveMeshes& emissive = lighting_.emissive();
-    return meets_surfaces_ ? emissive.holds(hit) : emissive.draws(hit);
+    return shares(mixing_).surface > 0.0f ? emissive.holds(hit) : emissive.draws(hit);
   }
 
   /// Continuation ray of vertex `place` of the last gather(), sampled from the surface alone, or along one of its lobes
@@ -209,7 +210,7 @@ class DirectLight {
   /// Requests the points of all vertices; those for the lights come first, contiguously.
   void make_points(std::span<const Receiver> receivers);
   /// Computes the products of the vertex, if it has any.
-  Shares shares_at(const Vertex& vertex, const LightView& view, Work& work);
+  Shares shares_at(const Receiver& receiver, const LightView& view, Work& work);
   float lights_part(const Vertex& vertex) const {
     return sky_->lights_part[static_cast<size_t>(vertex.surface - materials_.data())];
   }
@@ -261,9 +262,9 @@ class DirectLight {
   const Lighting& lighting_;
   const RenderOptions& options_;
   const SurfaceSampling sampling_;
-  const bool meets_surfaces_;  // whether any directions are sampled from the surface
-  const bool shares_rays_;     // whether a continuation ray may also serve as a shadow ray
-  const bool even_sky_;        // the environment has one color
+  const Mixing mixing_;     // of the strategy
+  const bool shares_rays_;  // whether a continuation ray may also serve as a shadow ray
+  const bool even_sky_;     // the environment has one color
   const EnvironmentProductSampler* sky_;
 
   ScratchArena arena_;  // for the points of a batch, until the next gather()

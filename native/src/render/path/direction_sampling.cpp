@@ -25,6 +25,7 @@ SurfaceSampling surface_sampling(Strategy strategy) {
     case Strategy::product:
     case Strategy::dissertation:
     case Strategy::mis_dissertation:
+    case Strategy::automatic:
       break;
   }
   return SurfaceSampling::material;

@@ -84,19 +84,27 @@ inline constexpr Heuristic kLampHeuristic = Heuristic::power;
 /// Six of eight directions; the rest guards against light and shadow that the lobes do not represent.
 inline constexpr float kProductShare = 0.75f;
 
-/// Shares of the sampling techniques of a strategy.
+/// How a vertex mixes sampling techniques.
+struct Mixing {
+  bool products = false;     // up to kProductShare of the directions from products
+  float light_share = 0.5f;  // share of the lights in the rest; the others come from the surface
+};
+
+inline Mixing mixing_of(const RenderOptions& options) {
+  const float unmixed = options.strategy == Strategy::light ? 1.0f : 0.0f;
+  return {options.strategy == Strategy::product, is_mixed(options.strategy) ? options.light_share : unmixed};
+}
+
+/// Shares of the sampling techniques at a vertex.
 struct Shares {
   float product = 0, surface = 0, lights = 0;
 };
 
-/// Shares at a vertex where a share `product` of the directions comes from products and `instead` from the lights in
-/// their place (both 0 for all strategies except `product`). Mixed strategies split the rest between surface and
-/// lights; the others have a single density.
-inline Shares shares(const RenderOptions& options, float product, float instead = 0) {
-  const float lights =
-      is_mixed(options.strategy) ? options.light_share : (options.strategy == Strategy::light ? 1.0f : 0.0f);
+/// Shares where a share `product` of the directions comes from products and `instead` from the lights in their place
+/// (both 0 without products).
+inline Shares shares(const Mixing& mixing, float product = 0, float instead = 0) {
   const float rest = 1.0f - product - instead;
-  return {product, rest * (1.0f - lights), rest * lights + instead};
+  return {product, rest * (1.0f - mixing.light_share), rest * mixing.light_share + instead};
 }
 
 // Continuation rays of paths.

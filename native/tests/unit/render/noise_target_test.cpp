@@ -119,13 +119,13 @@ TEST(Combination, SharesAreThoseOfTheStrategy) {
   RenderOptions options;
   options.light_share = 0.3f;
   options.strategy = Strategy::product;
-  const Shares product = shares(options, 0.5f);
+  const Shares product = shares(mixing_of(options), 0.5f);
   EXPECT_FLOAT_EQ(product.lights, 0.15f);
   EXPECT_FLOAT_EQ(product.surface, 0.35f);
   options.strategy = Strategy::light;
-  EXPECT_EQ(shares(options, 0).lights, 1.0f);
+  EXPECT_EQ(shares(mixing_of(options)).lights, 1.0f);
   options.strategy = Strategy::ggx;
-  EXPECT_EQ(shares(options, 0).surface, 1.0f);
+  EXPECT_EQ(shares(mixing_of(options)).surface, 1.0f);
 }
 
 RenderOptions two_halves(Sequence sequence) {
