@@ -11,11 +11,11 @@ namespace velour {
 namespace {
 
 constexpr size_t kMostPixels = 2048, kLeastPixels = 512;
-constexpr int kDirections = 64;       // a pixel; unless a camera ray has more
-constexpr double kPart = 0.04;        // of the directions of the image
-constexpr double kForProducts = 3e7;  // directions of an image that repay a fit of the environment
-constexpr int kRun = 4;               // neighboring pixels, traced together
-constexpr size_t kRarePixels = 64;    // fewer say too little about a material
+constexpr int kDirections[] = {64, 256};  // a pixel, unless a camera ray has more; few if the image has few
+constexpr double kPart = 0.04;            // of the directions of the image
+constexpr double kForProducts = 3e7;      // directions of an image that repay a fit of the environment
+constexpr int kRun = 4;                   // neighboring pixels, traced together
+constexpr size_t kRarePixels = 64;        // fewer say too little about a material
 constexpr size_t kMixings = 3, kSeeds = 2;
 
 /// Time a sample, measured (docs/results/performance.md); the strategy's own mixing, the first, wins near ties.
@@ -38,9 +38,11 @@ Plan plan_of(const RenderContext& context) {
   const double image = static_cast<double>(o.width) * o.height * o.spp;
   Plan plan{};
   plan.products = environment.equirectangular() != nullptr && !environment.black() && image >= kForProducts;
-  plan.camera_rays = std::min(context.camera_rays(), std::max(kDirections / o.split, 1));
-  const double pixel = static_cast<double>(std::min(plan.camera_rays * o.split, o.spp));
-  const double pixels = kPart * image / (pixel * static_cast<double>(kSeeds * plan.mixings()));
+  const double part = kPart * image / static_cast<double>(kSeeds * plan.mixings());  // directions of a trial
+  const int directions = static_cast<int>(
+      std::clamp<double>(part / (kMostPixels / 2), kDirections[0], kDirections[1]));
+  plan.camera_rays = std::min(context.camera_rays(), std::max(directions / o.split, 1));
+  const double pixels = part / static_cast<double>(std::min(plan.camera_rays * o.split, o.spp));
   plan.pixels = static_cast<size_t>(std::min(pixels, static_cast<double>(kMostPixels))) / kRun * kRun;
   return plan;
 }
