@@ -68,6 +68,7 @@ def test_gains_and_levels():
     assert error == pytest.approx(0.5 * (2 * (1 / 3) ** 2) ** 0.5)
     assert result.level == 0.1
     assert result.means("mis")[1] == pytest.approx((1.0, 0.3, 0.2))
+    assert result.to_best("product").value == result.error_ratio("product", "mis").value
     assert result.seconds_to_level("product").value == pytest.approx(1.5 * 2 ** (np.log(1.5) / np.log(3)))
 
 

@@ -70,6 +70,7 @@ class Renderer {
   void run_pilot() {
     run_stage(progress_, report_.stages, "pilot", kPreparation, kPreparation,
               [&] { arena_.execute([&] { report_.pilot = choose_mixing(context_, progress_); }); });
+    report_.seconds += report_.stages.back().seconds;
   }
 
   void render_passes() {
@@ -84,7 +85,7 @@ class Renderer {
         if (next_ == next_decision()) decide();
       }
     });
-    report_.seconds = report_.stages.back().seconds;
+    report_.seconds += report_.stages.back().seconds;
   }
 
   bool is_done() const { return denoised_ ? denoised_->done() : target_.active().empty(); }

@@ -20,11 +20,11 @@ struct RenderStage {
 };
 
 struct RenderReport {
-  double seconds = 0;               // tracing and shading only
+  double seconds = 0;               // tracing and shading only, of the pilot, too
   uint64_t rays = 0;                // camera, shadow and continuation rays
   double samples_per_second = 0;    // pixels x spp / seconds
   std::optional<double> ray_share;  // seconds of the recorded rays alone / seconds of their tiles
-  std::vector<RenderStage> stages;  // in order; "render" is `seconds`
+  std::vector<RenderStage> stages;  // in order; `seconds` are those of "pilot" and "render"
   uint64_t nan_samples = 0;         // light directions dropped because they were not finite
   uint64_t spp = 0;                 // maximum number of light directions of a pixel
   uint64_t passes = 0;

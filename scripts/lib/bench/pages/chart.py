@@ -37,7 +37,7 @@ SETTINGS = {
 SKY = "synthetic sky"
 DEFAULT, DISSERTATION = "mis", "mis-dissertation"
 # Curves that targets compare closely have more seeds. Curves that no target names end a step earlier.
-COMPARED = (DEFAULT, "mis-ggx", "product")
+COMPARED = (DEFAULT, "mis-ggx", "product", "auto")
 LONG = (*COMPARED, "uniform", DISSERTATION)
 # Maximum relmse of `product` relative to the default strategy at equal samples.
 _EQUAL_SAMPLES = {
@@ -48,7 +48,8 @@ _EQUAL_SAMPLES = {
     ("krylon-blue", STUDIO): 0.5,
 }
 # Curves with a column in the table of equal errors; the pictures and the CSV have all.
-_SHOWN = ("uniform", "light", "mis", "mis-ggx", "product", "mis-dissertation", "mis, random")
+_SHOWN = ("uniform", "light", "mis", "mis-ggx", "product", "auto", "mis-dissertation", "mis, random")
+_WITHIN = 1.1  # of the best: `auto`, at equal time
 _MOST_GGX_ERROR = 0.2  # relative L2 above which SRBF lobes must be clearly faster
 
 
@@ -151,6 +152,11 @@ class Result:
         seconds = self.means(DEFAULT)[self.level_spp][0]
         return ratio(*(self.curves[curve].error_at(seconds) for curve in (name, other)))
 
+    def to_best(self, name: str) -> Reading | None:
+        """Ratio of `name` to the best other strategy in relmse at equal time."""
+        found = [self.error_ratio(name, other) for other in self.points if other != name]
+        return max(filter(None, found), key=lambda reading: reading.value, default=None)
+
     def gain(self, name: str, other: str, spp: int) -> tuple[float, float]:
         """Ratio of `name` to `other` in relmse at equal samples, of means over seeds, and its standard error,
         estimated from the seeds."""
@@ -213,6 +219,12 @@ def verdicts(results: list[Result], peers: list[Mapping], spp: int) -> Iterator[
             (f"{to_equal} {words} `mis-ggx`", result.time_ratio(DEFAULT, "mis-ggx"), most),
         ):
             yield judged(target, name, shown(found), found and found.value <= bound)
+    for result in results:
+        if "auto" not in result.points:
+            continue
+        found = result.to_best("auto")
+        target = f"relmse of `auto` at equal time at most {_WITHIN} of the best strategy's"
+        yield judged(target, result.about["name"], shown(found), found and found.value <= _WITHIN)
     readings = [result.error_ratio("product", DEFAULT) for result in figures]
     better = sum(reading is not None and reading.value < 1 for reading in readings)
     target = "`product` better than `mis` at equal time on at least four of six"
