@@ -18,6 +18,7 @@ NAMES = [
     "knit",
     "velvet",
     "leather",
+    "denim",
 ]
 
 

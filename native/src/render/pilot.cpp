@@ -39,8 +39,7 @@ Plan plan_of(const RenderContext& context) {
   Plan plan{};
   plan.products = environment.equirectangular() != nullptr && !environment.black() && image >= kForProducts;
   const double part = kPart * image / static_cast<double>(kSeeds * plan.mixings());  // directions of a trial
-  const int directions = static_cast<int>(
-      std::clamp<double>(part / (kMostPixels / 2), kDirections[0], kDirections[1]));
+  const int directions = static_cast<int>(std::clamp<double>(part / (kMostPixels / 2), kDirections[0], kDirections[1]));
   plan.camera_rays = std::min(context.camera_rays(), std::max(directions / o.split, 1));
   const double pixels = part / static_cast<double>(std::min(plan.camera_rays * o.split, o.spp));
   plan.pixels = static_cast<size_t>(std::min(pixels, static_cast<double>(kMostPixels))) / kRun * kRun;

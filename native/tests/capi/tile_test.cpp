@@ -61,7 +61,7 @@ TEST(CTile, ListsTheKinds) {
   const char* json = nullptr;
   ASSERT_EQ(VLR_OK, vlr_tile_kinds_json(&json));
   for (const char* kind :
-       {"weave", "twill", "net", "chainmail", "gravel", "corduroy", "satin", "knit", "velvet", "leather"}) {
+       {"weave", "twill", "net", "chainmail", "gravel", "corduroy", "satin", "knit", "velvet", "leather", "denim"}) {
     EXPECT_NE(std::string(json).find('"' + std::string(kind) + '"'), std::string::npos) << kind;
   }
 }

@@ -10,7 +10,7 @@ from ...native.errors import refuse
 from . import numbers
 
 HELP = (
-    "tile (weave, twill, satin, knit, net, chainmail, gravel, corduroy, velvet, leather)"
+    "tile (weave, twill, satin, knit, net, chainmail, gravel, corduroy, velvet, leather, denim)"
     " or mesh file (.obj, .ply)"
 )
 # The up axis of the file becomes +z; y-up: (x, y, z) -> (x, -z, y), as in Blender's OBJ import.

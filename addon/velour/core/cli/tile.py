@@ -15,7 +15,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "kind",
         metavar="KIND",
-        help="weave, twill, satin, knit, net, chainmail, gravel, corduroy, velvet or leather",
+        help="weave, twill, satin, knit, net, chainmail, gravel, corduroy, velvet, leather or denim",
     )
     parser.add_argument(
         "-o",

@@ -17,6 +17,8 @@ using Pattern = bool (*)(int weft, int warp);
 
 bool plain(int weft, int warp) { return (weft + warp) % 2 == 0; }
 bool twill_2_2(int weft, int warp) { return (warp + 4 - weft % 4) % 4 < 2; }
+/// 3/1 twill, warp-faced.
+bool twill_3_1(int weft, int warp) { return (warp + 4 - weft % 4) % 4 == 0; }
 /// Five-end satin, warp-faced, with a step of two between the crossings of neighboring wefts.
 bool satin_5(int weft, int warp) { return (warp + 3 * weft) % 5 == 0; }
 
@@ -116,6 +118,11 @@ TileParts make_weave(const TileShape& shape) {
 TileParts make_twill(const TileShape& shape) {
   return make_cloth(shape, twill_2_2,
                     {yarn("warp", {0.02f, 0.045f, 0.14f}, 0.6f), yarn("weft", {0.6f, 0.58f, 0.52f}, 0.6f)});
+}
+
+TileParts make_denim(const TileShape& shape) {
+  return make_cloth(shape, twill_3_1,
+                    {yarn("warp", {0.015f, 0.04f, 0.16f}, 0.6f), yarn("weft", {0.3f, 0.29f, 0.27f}, 0.6f)});
 }
 
 TileParts make_satin(const TileShape& shape) {

@@ -23,6 +23,7 @@ double yarn_amplitude(double half_width);
 
 TileParts make_weave(const TileShape& shape);
 TileParts make_twill(const TileShape& shape);
+TileParts make_denim(const TileShape& shape);
 /// Five-end satin: the warp floats over four wefts, so that it covers the face.
 TileParts make_satin(const TileShape& shape);
 /// The plain weave, with cords far apart.

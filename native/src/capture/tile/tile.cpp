@@ -45,6 +45,8 @@ constexpr std::array kKinds = {
              make_velvet},
     TileKind{"leather", "grained leather: cushions between creases", shape_of(8e-3, 7, 16, 0.2, 0.7, 0.8), 1, 0.05, 1.0,
              true, make_leather},
+    TileKind{"denim", "3/1 twill: warp over three, under one", shape_of(2e-3, 4, 16, 0.3, 0.06, 0.1), 4, 0.04, 0.6,
+             true, make_denim},
 };
 
 template <typename T>

@@ -42,7 +42,7 @@ TEST_P(Cloth, HasTheVolumeOfItsYarns) {
   EXPECT_NEAR(volume(tile.parts.mesh, {0, 1}) / expected, 1, 1e-5);
 }
 
-INSTANTIATE_TEST_SUITE_P(Kinds, Cloth, ::testing::Values("weave", "twill", "satin", "net"));
+INSTANTIATE_TEST_SUITE_P(Kinds, Cloth, ::testing::Values("weave", "twill", "denim", "satin", "net"));
 
 /// Height of the middle of yarn `yarn` above crossing `crossing`, from the vertices near it.
 double middle(const Tile& tile, bool weft, int yarn, int crossing) {
@@ -85,6 +85,13 @@ TEST(Cloth, TwillGoesOverTwoUnderTwoAndShiftsByOne) {
       EXPECT_EQ(over, middle(tile, false, j, i) < 0);
     }
     EXPECT_EQ(above, 2);
+  }
+}
+
+TEST(Cloth, DenimShowsThreeWarpsForEachWeft) {
+  const Tile tile = make_tile({.kind = "denim"});
+  for (int i = 0; i < 4; ++i) {
+    for (int j = 0; j < 4; ++j) EXPECT_EQ(middle(tile, true, i, j) > 0, i == j);
   }
 }
 
