@@ -37,7 +37,10 @@ def codes_of(header: str) -> set[str]:
 
 
 def test_every_reason_has_its_words():
-    assert codes_of(HEADER.read_text(encoding="utf-8")) == {*REASONS, "brightness", "measurement_noise"}
+    assert codes_of(HEADER.read_text(encoding="utf-8")) == {
+        *REASONS,
+        *("brightness", "measurement_noise", "unresolved_highlights"),
+    }
 
 
 @pytest.mark.parametrize(
@@ -54,6 +57,10 @@ def test_every_reason_has_its_words():
         (
             info("poor", "measurement_noise", 0.2),
             "Poor: the measurement is noisy. More lobes do not help; use a cleaner measurement",
+        ),
+        (
+            info("poor", "unresolved_highlights", 4.2),
+            "Poor: samples 4° apart do not resolve the highlights. More lobes do not help; measure more",
         ),
         (
             info("poor", "highlights", warning_codes=[{"code": "few_samples", "values": {}}]),

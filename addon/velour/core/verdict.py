@@ -72,6 +72,11 @@ def _cause(info: dict) -> str | None:
     """What no fit can mend, and the remedy."""
     if info["verdict"]["reason"] == "measurement_noise":
         return "the measurement is noisy. More lobes do not help; use a cleaner measurement"
+    if info["verdict"]["reason"] == "unresolved_highlights":
+        apart = info["verdict"]["value"]
+        return (
+            f"samples {apart:.0f}° apart do not resolve the highlights. More lobes do not help; measure more"
+        )
     if any(warning["code"] == "few_samples" for warning in info.get("warning_codes", ())):
         return "the measurement has too few samples. More lobes do not help; use a denser measurement"
     return None

@@ -13,8 +13,9 @@ namespace velour {
 namespace {
 
 constexpr std::array<std::string_view, 3> kQualities{"good", "fair", "poor"};
-constexpr std::array<std::string_view, 7> kReasons{"",      "grazing_views", "highlights",       "brightness",
-                                                   "color", "everywhere",    "measurement_noise"};
+constexpr std::array<std::string_view, 8> kReasons{
+    "",      "grazing_views", "highlights",        "brightness",
+    "color", "everywhere",    "measurement_noise", "unresolved_highlights"};
 
 }  // namespace
 

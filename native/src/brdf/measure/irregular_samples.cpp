@@ -210,4 +210,61 @@ std::vector<TableNode> resample_irregular(const IrregularInterpolant& interpolan
   return nodes;
 }
 
+namespace {
+
+constexpr double kRing = 10.0 * kPiD / 180.0;        // theta_d: half the width of a ring, and the step between rings
+constexpr double kNearMirror = 15.0 * kPiD / 180.0;  // theta_h of highlights
+constexpr double kSameHalf = 0.5 * kPiD / 180.0;     // samples closer in theta_h say nothing about a width
+constexpr double kStandsOut = 20.0;                  // the brightest sample over the median
+constexpr double kFalls = 0.1;                       // of the brightest: still part of the highlight
+constexpr size_t kFewestInRing = 8;
+
+struct RingSample {
+  double theta_h, value;
+};
+
+/// Angle from the brightest sample of a ring to the next, if none but the brightest shows its highlight. Nothing if
+/// there is no highlight.
+std::optional<double> gap_in_ring(std::vector<RingSample> ring) {
+  if (ring.size() < kFewestInRing) return std::nullopt;
+  const auto dimmer = [](const RingSample& a, const RingSample& b) { return a.value < b.value; };
+  std::ranges::sort(ring, dimmer);
+  const RingSample& top = ring.back();
+  const double median = ring[ring.size() / 2].value;
+  if (!(top.value > kStandsOut * std::max(median, 0.0)) || !(top.value > 0.0) || top.theta_h > kNearMirror)
+    return std::nullopt;
+  double gap = kPiD;
+  for (const RingSample& s : ring) {
+    const double apart = std::abs(s.theta_h - top.theta_h);
+    if (apart < kSameHalf) continue;
+    if (s.value >= kFalls * top.value) return 0.0;
+    gap = std::min(gap, apart);
+  }
+  return gap;
+}
+
+}  // namespace
+
+double gap_of_unresolved_highlights(std::span<const IrregularSample> samples) {
+  constexpr size_t kRings = 9;
+  std::array<std::vector<RingSample>, kRings> rings;
+  for (const IrregularSample& s : samples) {
+    const HalfDiff angle = half_diff(s.wl, s.wv);
+    const double theta_d = angle.theta_d;
+    for (size_t r = 0; r < kRings; ++r) {
+      if (std::abs(theta_d - static_cast<double>(r) * kRing) > kRing) continue;
+      rings[r].push_back({angle.theta_h, static_cast<double>(luminance(s.f))});
+    }
+  }
+  size_t open = 0, resolved = 0;
+  double sum = 0.0;
+  for (const auto& ring : rings) {
+    const auto gap = gap_in_ring(ring);
+    if (!gap) continue;
+    ++(*gap > 0.0 ? open : resolved);
+    sum += *gap;
+  }
+  return open > resolved ? sum / static_cast<double>(open) : 0.0;
+}
+
 }  // namespace velour

@@ -9,6 +9,7 @@
 #include "base/parallel.h"
 #include "brdf/fit/direction_tree.h"
 #include "brdf/fit/error/evaluate.h"
+#include "brdf/measure/irregular_samples.h"
 #include "brdf/verdict/surroundings.h"
 #include "math/sphere/frame.h"
 
@@ -364,6 +365,8 @@ void explain(const Measurement& measurement, const Material& material, const std
   const auto smooth = picture_pairs(measurement, material, Against::reciprocal_mean, threads, progress);
   const double against_smooth = differences_of(smooth, progress).all.value();
   if (against_smooth < enough) return because(LookReason::measurement_noise, against_smooth);
+  const double gap = gap_of_unresolved_highlights(measurement.samples());
+  if (gap > 0) return because(LookReason::unresolved_highlights, gap * 180 / kPiD);
   if (flip_after(pairs, progress, equal_brightness) < enough) {
     return because(LookReason::brightness, std::exp(found.log_luminance.value()));
   }

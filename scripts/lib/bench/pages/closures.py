@@ -29,6 +29,7 @@ def measure(run: Run) -> dict:
         model, _report = run.fit(measurement, "parametric", tolerance=0.02)
         stem = _pictures(run, name, measurement, model)
         for world in run.settings.worlds:
+            shown = []
             for shape in SHAPES:
                 reference, *others, where = _read(stem, f"{run.world(world).name}-{shape}")
                 row = {"material": name, "world": world, "shape": shape}
@@ -36,10 +37,11 @@ def measure(run: Run) -> dict:
                     found = _differences(reference, picture, where)
                     row |= {f"{kind}_{key}": value for key, value in found.items()}
                 rows.append(row)
-                if world == run.settings.worlds[0]:
-                    scale, pictures = flip_metric.exposure(reference, where), [reference, *others]
-                    shown = [charts.display(scale * picture) for picture in pictures]
-                    sheet.append([(f"{name}, {k}", p) for k, p in zip(KINDS, shown, strict=True)])
+                scale, pictures = flip_metric.exposure(reference, where), [reference, *others]
+                titles = (name, "nodes", "Principled")
+                shown += zip(titles, (charts.display(scale * p) for p in pictures), strict=True)
+            if world == run.settings.worlds[0]:
+                sheet.append(shown)
     charts.sheet(run.output / "images/closures.png", sheet, (1.6, 1.6))
     return {"conditions": run.conditions(), "rows": rows}
 
