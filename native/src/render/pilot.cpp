@@ -16,6 +16,7 @@ constexpr double kPart = 0.04;            // of the directions of the image
 constexpr double kForProducts = 3e7;      // directions of an image that repay a fit of the environment
 constexpr int kRun = 4;                   // neighboring pixels, traced together
 constexpr size_t kRarePixels = 64;        // fewer say too little about a material
+constexpr int kLikelySpp = 256;           // of images that may end before all samples are taken
 constexpr size_t kMixings = 3, kSeeds = 2;
 
 /// Time a sample, measured (docs/results/performance.md); the strategy's own mixing, the first, wins near ties.
@@ -35,7 +36,9 @@ struct Plan {
 Plan plan_of(const RenderContext& context) {
   const RenderOptions& o = context.options;
   const Environment& environment = context.lighting->environment();
-  const double image = static_cast<double>(o.width) * o.height * o.spp;
+  const bool may_end_early = o.noise > 0.0 || o.time_limit > 0.0;
+  const int spp = may_end_early ? std::min(o.spp, kLikelySpp) : o.spp;
+  const double image = static_cast<double>(o.width) * o.height * spp;
   Plan plan{};
   plan.products = environment.equirectangular() != nullptr && !environment.black() && image >= kForProducts;
   const double part = kPart * image / static_cast<double>(kSeeds * plan.mixings());  // directions of a trial

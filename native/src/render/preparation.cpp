@@ -4,8 +4,6 @@
 #include <cmath>
 #include <string>
 
-#include "render/pilot.h"
-
 namespace velour {
 namespace {
 
@@ -104,10 +102,14 @@ void prepare(RenderContext& context, tbb::task_arena& arena, Progress& progress,
   if (surface_sampling(strategy) == SurfaceSampling::ggx) {
     stage("ggx fit", [&] { context.ggx = ggx_samplers(scene, context.options.threads, progress); });
   }
-  if ((strategy == Strategy::product && !scene.environment().black()) || pilot_tries_products(context)) {
-    const std::string& folder = context.options.cache_folder;
-    stage("sky", [&] { arena.execute([&] { context.sky = environment_sampler(scene, folder, progress); }); });
-  }
+  if (strategy == Strategy::product && !scene.environment().black()) prepare_products(context, arena, progress, stages);
+}
+
+void prepare_products(RenderContext& context, tbb::task_arena& arena, Progress& progress,
+                      std::vector<RenderStage>& stages) {
+  const std::string& folder = context.options.cache_folder;
+  const auto make = [&] { context.sky = environment_sampler(context.scene, folder, progress); };
+  run_stage(progress, stages, "sky", 0.0, kPreparation, [&] { arena.execute(make); });
 }
 
 }  // namespace velour

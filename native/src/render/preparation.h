@@ -38,5 +38,8 @@ void run_stage(Progress& progress, std::vector<RenderStage>& stages, const char*
 
 /// Creates what the strategy of `context` needs beside its lighting. Throws Error(cancelled).
 void prepare(RenderContext& context, tbb::task_arena& arena, Progress& progress, std::vector<RenderStage>& stages);
+/// Creates what products need: RenderContext::sky. Throws Error(cancelled).
+void prepare_products(RenderContext& context, tbb::task_arena& arena, Progress& progress,
+                      std::vector<RenderStage>& stages);
 
 }  // namespace velour

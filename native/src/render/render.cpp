@@ -68,6 +68,7 @@ class Renderer {
 
  private:
   void run_pilot() {
+    if (pilot_tries_products(context_)) prepare_products(context_, arena_, progress_, report_.stages);
     run_stage(progress_, report_.stages, "pilot", kPreparation, kPreparation,
               [&] { arena_.execute([&] { report_.pilot = choose_mixing(context_, progress_); }); });
     report_.seconds += report_.stages.back().seconds;
@@ -100,10 +101,10 @@ class Renderer {
 
   bool stopped() const { return options_.stop != nullptr && options_.stop->load(std::memory_order_relaxed); }
 
-  /// Whether a pass of `count` camera rays would end after the limit, at the speed so far.
+  /// Whether a pass of `count` camera rays would end after the limit, which a pilot shortens, at the speed so far.
   bool out_of_time(double seconds, int count) const {
     const double pass = static_cast<double>(count) * static_cast<double>(target_.active().size());
-    return options_.time_limit > 0.0 && seconds * (1.0 + pass / work_) > options_.time_limit;
+    return options_.time_limit > 0.0 && report_.seconds + seconds * (1.0 + pass / work_) > options_.time_limit;
   }
 
   void render_pass(int count, int total) {
