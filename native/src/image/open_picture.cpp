@@ -201,8 +201,8 @@ Orientation of_png(const Part& png) {
 
 }  // namespace
 
-void check_png_chunks(const std::string& path) {
-  constexpr uint64_t kSignature = 8, kBesideData = 12;
+int check_png_chunks(const std::string& path) {
+  constexpr uint64_t kSignature = 8, kBesideData = 12, kBits = 24;
   constexpr uint64_t kLengthAndType = 8;
   constexpr int kMaxChunks = 1 << 20;
   const RandomAccessFile file(path);
@@ -219,6 +219,8 @@ void check_png_chunks(const std::string& path) {
     }
     at += kBesideData + length;
   }
+  const auto bits = png.number(kBits, 1, true);
+  return bits && (*bits == 2 || *bits == 4 || *bits == 8 || *bits == 16) ? static_cast<int>(*bits) : 1;
 }
 
 Orientation exif_orientation(PictureFormat format, const std::string& path) {

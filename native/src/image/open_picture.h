@@ -52,13 +52,13 @@ Picture upright(Picture stored, Orientation orientation);
 Orientation exif_orientation(PictureFormat format, const std::string& path);
 
 /// Throws Error(bad_data) for a PNG file with a chunk that extends beyond the file: libraries allocate the stated size
-/// of a chunk before they read it.
-void check_png_chunks(const std::string& path);
+/// of a chunk before they read it. Returns the bits per sample; 1 if the header does not state them validly.
+int check_png_chunks(const std::string& path);
 
 // A picture file opened for reading by the library for its format. Internal to image/.
 
-/// A byte of a DEFLATE stream expands to at most 1032 bytes, each of at most eight 1-bit values.
-inline constexpr uint64_t kMaxValuesPerByte = 1032 * 8;
+/// A byte of a DEFLATE stream expands to at most 1032 bytes.
+inline constexpr uint64_t kMaxExpansion = 1032;
 
 /// A file's claims about its pixels, unchecked.
 struct PictureHeader {

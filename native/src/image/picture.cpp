@@ -29,13 +29,15 @@ std::string size_text(int width, int height, int channels) {
 
 /// The size limits of OpenEXR and OpenImageIO are global to the process, which may be Blender's, and are left alone, so
 /// sizes are checked here.
-void check_size(const std::string& path, const PictureHeader& header) {
+/// `bits`: at least so many are stored per value.
+void check_size(const std::string& path, const PictureHeader& header, int bits) {
   const std::string size = size_text(header.width, header.height, header.channels);
   if (header.width <= 0 || header.height <= 0 || header.depth > 1 || header.channels <= 0 ||
       header.channels > kMaxChannels)
     throw Error(Status::bad_data, path + ": the header claims " + size + ", which is not a valid flat image.");
   const uint64_t pixels = static_cast<uint64_t>(header.width) * static_cast<uint64_t>(header.height);
-  const uint64_t bound = std::min(kMaxValues, kMaxValuesPerByte * std::filesystem::file_size(path));
+  const uint64_t bound =
+      std::min(kMaxValues, kMaxExpansion * 8 / static_cast<uint64_t>(bits) * std::filesystem::file_size(path));
   if (pixels > bound / static_cast<uint64_t>(header.channels))
     throw Error(Status::bad_data,
                 path + ": the header claims " + size + ", more than the file can contain; the file is damaged.");
@@ -61,8 +63,8 @@ PictureFormat format_of(const std::string& path) {
   return picture_format_of(read_file_head(path, kPictureHeadBytes), path);  // clear error message about a bad path
 }
 
-std::unique_ptr<OpenPicture> checked(const std::string& path, std::unique_ptr<OpenPicture> input) {
-  check_size(path, input->header());
+std::unique_ptr<OpenPicture> checked(const std::string& path, std::unique_ptr<OpenPicture> input, int bits = 1) {
+  check_size(path, input->header(), bits);
   check_frame(path, input->header());
   return input;
 }
@@ -74,10 +76,10 @@ std::unique_ptr<OpenPicture> open_picture(const std::string& path, const std::st
     throw Error(Status::unsupported, path + ": has no layer '" + layer +
                                          "', because only OpenEXR files have layers. Do not choose a layer.");
   }
-  if (format == PictureFormat::png) check_png_chunks(path);
-  return checked(path, format == PictureFormat::radiance ? open_radiance(path)
-                       : format == PictureFormat::tiff   ? open_tiff(path)
-                                                         : open_integers(path, format));
+  // The former run lengths of Radiance have no bound of their own; only a picture of one color exceeds this one.
+  if (format == PictureFormat::radiance) return checked(path, open_radiance(path), 8);
+  const int bits = format == PictureFormat::png ? check_png_chunks(path) : 1;
+  return checked(path, format == PictureFormat::tiff ? open_tiff(path) : open_integers(path, format), bits);
 }
 
 std::unique_ptr<OpenPicture> open_channels(const std::string& path) {

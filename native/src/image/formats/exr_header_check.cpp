@@ -195,7 +195,7 @@ class HeaderCheck {
     const double decoded = row * static_cast<double>(claims.height);
     const std::string said =
         "the header claims " + std::to_string(claims.width) + " x " + std::to_string(claims.height) + " pixels";
-    const double most_rows = static_cast<double>(kMaxValuesPerByte) * static_cast<double>(file_bytes_);
+    const double most_rows = static_cast<double>(kMaxExpansion * 8) * static_cast<double>(file_bytes_);
     if ((!claims.is_deep && decoded > packing.most_ratio * static_cast<double>(file_bytes_)) ||
         static_cast<double>(claims.height) > most_rows) {
       fail(said + ", more than the file can contain; the file is damaged.");

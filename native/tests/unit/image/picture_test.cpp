@@ -111,6 +111,36 @@ TEST(Picture, LyingSizeIsNotAllocated) {
   const std::string header = "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 60000 +X 60000\n";
   write_file(path, std::vector<uint8_t>(header.begin(), header.end()));
   EXPECT_NE(refusal([&] { read_picture(path); }).find("60000 x 60000"), std::string::npos);
+  const std::string bytes = "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 1000 +X 6000\n" + std::string(4096, 'x');
+  write_file(path, std::vector<uint8_t>(bytes.begin(), bytes.end()));
+  EXPECT_NE(refusal([&] { read_picture(path); }).find("more than the file can contain"), std::string::npos);
+}
+
+/// Of the bytes of a PNG chunk: its type and data.
+uint32_t png_checksum(std::span<const uint8_t> bytes) {
+  uint32_t crc = ~0u;
+  for (const uint8_t byte : bytes) {
+    crc ^= byte;
+    for (int bit = 0; bit < 8; ++bit) crc = (crc >> 1) ^ ((crc & 1) != 0 ? 0xedb88320u : 0u);
+  }
+  return ~crc;
+}
+
+/// Eight bits a value bound a picture more tightly than one.
+TEST(Picture, LyingPngsAreNotAllocated) {
+  constexpr size_t kTypeAt = 12, kSizeAt = 16, kChecksumAt = 29;  // of the chunk of the header
+  const std::string path = test::scratch_folder() / "lying.png";
+  write_picture(path, gradient(8, 8, 3));
+  std::vector<uint8_t> bytes = read_file(path);
+  const auto put = [&](size_t at, uint32_t value) {
+    for (size_t i = 0; i < 4; ++i) bytes[at + i] = static_cast<uint8_t>(value >> (24 - 8 * i));
+  };
+  put(kSizeAt, 1000);
+  put(kSizeAt + 4, static_cast<uint32_t>(bytes.size()));  // 3000 values a byte
+  put(kChecksumAt, png_checksum(std::span(bytes).subspan(kTypeAt, kChecksumAt - kTypeAt)));
+  write_file(path, bytes);
+  const std::string complaint = refusal([&] { read_picture(path); });
+  EXPECT_NE(complaint.find("more than the file can contain"), std::string::npos) << complaint;
 }
 
 /// OpenEXR itself would make a table of a gigabyte for them.
