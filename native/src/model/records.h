@@ -61,7 +61,7 @@ enum class LookReason : uint8_t {
   color,              // value 0
   everywhere,         // value 0
   measurement_noise,  // value: mean FLIP against the mean of the measurement and itself with light and view exchanged
-  unresolved_highlights,    // by irregular samples; value: the angle between those, degrees
+  unresolved_highlights,  // by irregular samples; value: the angle between those, degrees
 };
 
 struct Verdict {

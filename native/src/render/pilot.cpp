@@ -10,7 +10,7 @@
 namespace velour {
 namespace {
 
-constexpr size_t kMostPixels = 2048, kLeastPixels = 512;
+constexpr size_t kMaxPixels = 2048, kMinPixels = 512;
 constexpr int kDirections[] = {64, 256};  // a pixel, unless a camera ray has more; few if the image has few
 constexpr double kPart = 0.04;            // of the directions of the image
 constexpr double kForProducts = 3e7;      // directions of an image that repay a fit of the environment
@@ -42,10 +42,10 @@ Plan plan_of(const RenderContext& context) {
   Plan plan{};
   plan.products = environment.equirectangular() != nullptr && !environment.black() && image >= kForProducts;
   const double part = kPart * image / static_cast<double>(kSeeds * plan.mixings());  // directions of a trial
-  const int directions = static_cast<int>(std::clamp<double>(part / (kMostPixels / 2), kDirections[0], kDirections[1]));
+  const int directions = static_cast<int>(std::clamp<double>(part / (kMaxPixels / 2), kDirections[0], kDirections[1]));
   plan.camera_rays = std::min(context.camera_rays(), std::max(directions / o.split, 1));
   const double pixels = part / static_cast<double>(std::min(plan.camera_rays * o.split, o.spp));
-  plan.pixels = static_cast<size_t>(std::min(pixels, static_cast<double>(kMostPixels))) / kRun * kRun;
+  plan.pixels = static_cast<size_t>(std::min(pixels, static_cast<double>(kMaxPixels))) / kRun * kRun;
   return plan;
 }
 
@@ -182,7 +182,7 @@ class Pilot {
 
 bool pilot_pays(const RenderContext& context) {
   return context.options.strategy == Strategy::automatic && context.options.width >= kRun &&
-         context.lighting->has_extended() && plan_of(context).pixels >= kLeastPixels;
+         context.lighting->has_extended() && plan_of(context).pixels >= kMinPixels;
 }
 
 bool pilot_tries_products(const RenderContext& context) { return pilot_pays(context) && plan_of(context).products; }

@@ -42,8 +42,8 @@ class IrregularInterpolant {
 };
 
 /// Whether the samples leave the width of the highlights open: for most difference angles theta_d at which f is much
-/// larger near theta_h = 0 than elsewhere, f is below a tenth of that at every other theta_h. Returns the mean angle from
-/// the brightest sample to the next theta_h, radians; 0 if highlights are resolved, or there are none.
+/// larger near theta_h = 0 than elsewhere, f is below a tenth of that at every other theta_h. Returns the mean angle
+/// from the brightest sample to the next theta_h, radians; 0 if highlights are resolved, or there are none.
 double gap_of_unresolved_highlights(std::span<const IrregularSample> samples);
 
 /// The interpolant at the nodes of `layout` (phi_h 1, phi_d even), so that a look-up costs as little as MERL's.

@@ -116,7 +116,7 @@ TEST(Picture, LyingSizeIsNotAllocated) {
   EXPECT_NE(refusal([&] { read_picture(path); }).find("more than the file can contain"), std::string::npos);
 }
 
-/// Of the bytes of a PNG chunk: its type and data.
+/// Checksum of a PNG chunk: of its type and data.
 uint32_t png_checksum(std::span<const uint8_t> bytes) {
   uint32_t crc = ~0u;
   for (const uint8_t byte : bytes) {
