@@ -69,7 +69,7 @@ class Renderer {
  private:
   void run_pilot() {
     if (pilot_tries_products(context_)) prepare_products(context_, arena_, progress_, report_.stages);
-    // Not all of the preparation: who sees its end may stop a render that then has a pass.
+    // If nothing was prepared before, progress stays below kPreparation until the first pass begins.
     run_stage(progress_, report_.stages, "pilot", report_.stages.empty() ? 0.0 : kPreparation, kPreparation,
               [&] { arena_.execute([&] { report_.pilot = choose_mixing(context_, progress_); }); });
     report_.seconds += report_.stages.back().seconds;
