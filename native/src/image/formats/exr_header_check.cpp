@@ -36,9 +36,10 @@ constexpr Packing kPackings[] = {{1, 1},     {1, 128}, {1, kDeflate}, {16, kDefl
 
 /// Claims of a header about its part.
 struct Claims {
+  bool has_window = false;
   int64_t width = 0, height = 0;
   double pixel_bytes = 0;
-  uint8_t compression = 0;
+  std::optional<uint8_t> compression;
   uint32_t tile_width = 0, tile_height = 0;
   bool is_deep = false;  // any number of values per pixel
 };
@@ -106,9 +107,12 @@ class HeaderCheck {
       take_claim(*name, *type, *size, at, claims);
       at += *size;
     }
-    if (at >= head_.size()) require_end();
+    if (at >= head_.size()) {
+      require_end();
+      return kEnd;
+    }
     check_claims(claims);
-    return at < head_.size() ? at + 1 : kEnd;
+    return at + 1;
   }
 
   /// OpenEXR reads a value by its type and ignores the size, so a wrong size would misplace the next attribute.
@@ -155,6 +159,7 @@ class HeaderCheck {
   void take_claim(const std::string& name, const std::string& type, uint32_t size, size_t at, Claims& claims) const {
     const auto value = [&](size_t offset) { return int64_t{*number<int32_t>(at + offset)}; };
     if (name == "dataWindow" && size == 16) {
+      claims.has_window = true;
       claims.width = value(8) - value(0) + 1;
       claims.height = value(12) - value(4) + 1;
     } else if (name == "chunkCount" && size == 4) {
@@ -189,8 +194,14 @@ class HeaderCheck {
 
   void check_claims(const Claims& claims) const {
     constexpr double kAlwaysAllowed = 64 << 20, kTimesDecoded = 4;
+    // OpenEXR assumes defaults for what is missing: 64 x 64 pixels, ZIP.
+    const auto require = [&](bool is_there, const char* name) {
+      if (!is_there) fail("its header is damaged: attribute " + std::string(name) + " is missing.");
+    };
+    require(claims.has_window, "dataWindow");
+    require(claims.compression.has_value(), "compression");
     if (claims.width <= 0 || claims.height <= 0) return;  // reported by OpenEXR
-    const Packing& packing = kPackings[std::min<size_t>(claims.compression, std::size(kPackings) - 1)];
+    const Packing& packing = kPackings[std::min<size_t>(*claims.compression, std::size(kPackings) - 1)];
     const double row = static_cast<double>(claims.width) * claims.pixel_bytes;
     const double decoded = row * static_cast<double>(claims.height);
     const std::string said =

@@ -346,5 +346,17 @@ TEST_F(ForeignExr, BlocksManyTimesAsLargeAsThePictureAreRefused) {
       << refusal(path_);
 }
 
+/// Without a size, OpenEXR takes 64 x 64 pixels, and tiles of any size.
+TEST_F(ForeignExr, HeadersWithoutASizeOrACompressionAreRefused) {
+  write(path_, {{"R", 1}}, header_of({{"R", 1}}, kWindow, kWindow));
+  const std::vector<uint8_t> whole = read_file(path_);
+  for (const std::string name : {"dataWindow", "compression"}) {
+    std::vector<uint8_t> bytes = whole;
+    *std::ranges::search(bytes, name).begin() = 'X';
+    write_file(path_, bytes);
+    EXPECT_NE(refusal(path_).find("attribute " + name + " is missing"), std::string::npos) << refusal(path_);
+  }
+}
+
 }  // namespace
 }  // namespace velour
