@@ -3,9 +3,105 @@
 #include <algorithm>
 #include <cmath>
 
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "brdf/verdict/surroundings.cpp"
+#include "hwy/foreach_target.h"
+#include "hwy/highway.h"
+// Requires Highway's namespace of the target.
+#include "base/simd_dispatch.h"
+
+#ifndef VELOUR_BRDF_VERDICT_SURROUNDINGS_LIT
+#define VELOUR_BRDF_VERDICT_SURROUNDINGS_LIT
+namespace velour {
+
+/// A surface under lights. `count` is a whole number of vectors.
+struct LitSurface {
+  const Frame& frame;
+  const Surroundings::Radiance* texels;
+  const float *x, *y, *z, *first, *side;
+  const std::array<float, 8>* reflected;
+  size_t count;
+};
+
+}  // namespace velour
+#endif
+
+HWY_BEFORE_NAMESPACE();
+namespace velour::HWY_NAMESPACE {
+
+namespace hn = hwy::HWY_NAMESPACE;
+
+void Reflect(const LitSurface& lit, Surroundings::Radiance out[2]) {
+  const hn::CappedTag<float, 16> tag;
+  const hn::RebindToSigned<decltype(tag)> whole;
+  const hn::CappedTag<float, 4> rgb;
+  constexpr size_t kLanes = hn::MaxLanes(rgb), kNext = Surroundings::Radiance().size(), kVectors = kNext / kLanes;
+  using V = hn::Vec<decltype(tag)>;
+  const auto every = [tag](float value) { return hn::Set(tag, value); };
+  const V zero = hn::Zero(tag), half = every(0.5f), one = every(1.0f), two = every(2.0f);
+  hn::Vec<decltype(rgb)> sum[2][kVectors];
+  for (auto& of_material : sum) {
+    for (auto& s : of_material) s = hn::Zero(rgb);
+  }
+  const size_t lanes = hn::Lanes(tag);
+  HWY_ALIGN int32_t texel[16];
+  HWY_ALIGN int32_t below[16];
+  HWY_ALIGN float right[16];
+  HWY_ALIGN float down[16];
+  for (size_t i = 0; i < lit.count; i += lanes) {
+    const V x = hn::LoadU(tag, lit.x + i), y = hn::LoadU(tag, lit.y + i), z = hn::LoadU(tag, lit.z + i);
+    const auto to_world = [&](int c) {
+      const V xy = hn::MulAdd(x, every(lit.frame.x[c]), hn::Mul(y, every(lit.frame.y[c])));
+      return hn::MulAdd(z, every(lit.frame.z[c]), xy);
+    };
+    const V wx = to_world(0), wy = to_world(1), wz = to_world(2);
+    const V scale = hn::Div(one, hn::Add(hn::Abs(wx), hn::Add(hn::Abs(wy), hn::Abs(wz))));
+    const V u = hn::Mul(wx, scale), v = hn::Mul(wy, scale);
+    const auto is_below = hn::Lt(wz, zero);
+    const V map_x = hn::IfThenElse(is_below, hn::CopySign(hn::Sub(one, hn::Abs(v)), u), u);
+    const V map_y = hn::IfThenElse(is_below, hn::CopySign(hn::Sub(one, hn::Abs(u)), v), v);
+    const V side = hn::LoadU(tag, lit.side + i);
+    const auto texel_of = [&](V at) {
+      const V centers = hn::Sub(hn::Mul(hn::MulAdd(half, at, half), side), half);
+      return hn::Min(hn::Max(centers, zero), hn::Sub(side, one));
+    };
+    const V column = texel_of(map_x), row = texel_of(map_y);
+    const V left = hn::Min(hn::Floor(column), hn::Sub(side, two)), top = hn::Min(hn::Floor(row), hn::Sub(side, two));
+    hn::Store(hn::Sub(column, left), tag, right);
+    hn::Store(hn::Sub(row, top), tag, down);
+    hn::Store(hn::ConvertTo(whole, hn::Add(hn::LoadU(tag, lit.first + i), hn::MulAdd(top, side, left))), whole, texel);
+    hn::Store(hn::ConvertTo(whole, side), whole, below);
+    for (size_t k = 0; k < lanes; ++k) {
+      const float* const upper = lit.texels[texel[k]].data();
+      const float* const lower = lit.texels[texel[k] + below[k]].data();
+      const auto along = hn::Set(rgb, right[k]), across = hn::Set(rgb, down[k]);
+      const auto mix = [](auto from, auto to, auto share) { return hn::MulAdd(share, hn::Sub(to, from), from); };
+      const float* const reflected = lit.reflected[i + k].data();
+      for (size_t c = 0; c < kVectors; ++c) {
+        const auto in_row = [&](const float* from) {
+          return mix(hn::LoadU(rgb, from + c * kLanes), hn::LoadU(rgb, from + kNext + c * kLanes), along);
+        };
+        const auto radiance = mix(in_row(upper), in_row(lower), across);
+        const float* const factor = reflected + c * kLanes % 4;
+        sum[0][c] = hn::MulAdd(hn::LoadU(rgb, factor), radiance, sum[0][c]);
+        sum[1][c] = hn::MulAdd(hn::LoadU(rgb, factor + 4), radiance, sum[1][c]);
+      }
+    }
+  }
+  for (size_t m = 0; m < 2; ++m) {
+    for (size_t c = 0; c < kVectors; ++c) hn::StoreU(sum[m][c], rgb, out[m].data() + c * kLanes);
+  }
+}
+
+}  // namespace velour::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
 namespace velour {
 
 namespace {
+
+HWY_EXPORT(Reflect);
 
 constexpr int kSide = 128, kSamples = 2;  // of the finest level; per texel and axis
 
@@ -103,51 +199,52 @@ Surroundings::Radiance texel_mean(int x, int y) {
 }  // namespace
 
 Surroundings::Surroundings() {
-  const auto at = [](int side, int x, int y) { return static_cast<size_t>(y * side + x); };
-  levels_.push_back({kSide, {}});
+  levels_.push_back({kSide, 0});
   for (int y = 0; y < kSide; ++y) {
-    for (int x = 0; x < kSide; ++x) levels_[0].texels.push_back(texel_mean(x, y));
+    for (int x = 0; x < kSide; ++x) texels_.push_back(texel_mean(x, y));
   }
   for (int side = kSide / 2; side >= 2; side /= 2) {
-    const Level& finer = levels_.back();
-    Level level{side, std::vector<Radiance>(at(side, 0, side))};
+    const size_t finer = levels_.back().first, first = texels_.size();
+    const auto at = [](int width, int x, int y) { return static_cast<size_t>(y * width + x); };
+    levels_.push_back({side, first});
+    texels_.resize(first + at(side, 0, side));
     for (int y = 0; y < 2 * side; ++y) {
       for (int x = 0; x < 2 * side; ++x) {
-        add(level.texels[at(side, x / 2, y / 2)], finer.texels[at(2 * side, x, y)], 0.25f);
+        add(texels_[first + at(side, x / 2, y / 2)], texels_[finer + at(2 * side, x, y)], 0.25f);
       }
     }
-    levels_.push_back(std::move(level));
   }
 }
 
-int Surroundings::level_of(double solid_angle) const {
+const Surroundings::Level& Surroundings::level_of(double solid_angle) const {
   const double texels = solid_angle * kSide * kSide / (4 * kPiD);
-  return std::clamp(static_cast<int>(std::lround(0.5 * std::log2(std::max(texels, 1e-9)))), 0,
-                    static_cast<int>(levels_.size()) - 1);
+  const auto level = std::lround(0.5 * std::log2(std::max(texels, 1e-9)));
+  return levels_[static_cast<size_t>(std::clamp<long>(level, 0, static_cast<long>(levels_.size()) - 1))];
 }
 
-Surroundings::Radiance Surroundings::at(const Vec3& world, int level) const {
-  const Level& map = levels_[static_cast<size_t>(level)];
-  const float scale = 1 / (std::abs(world.x) + std::abs(world.y) + std::abs(world.z));
-  float u = world.x * scale, v = world.y * scale;
-  if (world.z < 0) {
-    const float folded = std::copysign(1 - std::abs(v), u);
-    v = std::copysign(1 - std::abs(u), v);
-    u = folded;
+void Surroundings::Lights::add(const Surroundings& surroundings, const Vec3& wl, double solid_angle,
+                               const std::array<Rgb, 2>& reflected) {
+  if (count_ % kPadding == 0) {
+    for (std::vector<float>* values : {&x_, &y_, &z_, &first_, &side_}) values->resize(count_ + kPadding, 2.0f);
+    reflected_.resize(count_ + kPadding, {});
   }
-  const auto side = static_cast<float>(map.side);
-  const float x = std::clamp((0.5f * u + 0.5f) * side - 0.5f, 0.0f, side - 1);
-  const float y = std::clamp((0.5f * v + 0.5f) * side - 0.5f, 0.0f, side - 1);
-  const int left = std::min(static_cast<int>(x), map.side - 2), top = std::min(static_cast<int>(y), map.side - 2);
-  const float right = x - static_cast<float>(left), below = y - static_cast<float>(top);
-  const Radiance* row = &map.texels[static_cast<size_t>(top * map.side + left)];
-  Radiance out;
-  for (size_t i = 0; i < out.size(); ++i) {
-    const float upper = row[0][i] + right * (row[1][i] - row[0][i]);
-    const float lower = row[map.side][i] + right * (row[map.side + 1][i] - row[map.side][i]);
-    out[i] = upper + below * (lower - upper);
+  const Level& level = surroundings.level_of(solid_angle);
+  x_[count_] = wl.x, y_[count_] = wl.y, z_[count_] = wl.z;
+  first_[count_] = static_cast<float>(level.first), side_[count_] = static_cast<float>(level.side);
+  for (size_t m = 0; m < 2; ++m) {
+    for (int c = 0; c < 3; ++c) reflected_[count_][4 * m + static_cast<size_t>(c)] = reflected[m][c];
   }
+  ++count_;
+}
+
+std::array<Surroundings::Radiance, 2> Surroundings::reflected(const Frame& surface, const Lights& lights) const {
+  std::array<Radiance, 2> out;
+  VELOUR_SIMD_DISPATCH(Reflect)
+  ({surface, texels_.data(), lights.x_.data(), lights.y_.data(), lights.z_.data(), lights.first_.data(),
+    lights.side_.data(), lights.reflected_.data(), lights.x_.size()},
+   out.data());
   return out;
 }
 
 }  // namespace velour
+#endif  // HWY_ONCE

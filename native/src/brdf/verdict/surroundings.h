@@ -3,7 +3,7 @@
 
 #include <array>
 #include <vector>
-#include "math/sphere/vec.h"
+#include "math/sphere/frame.h"
 
 namespace velour {
 
@@ -12,23 +12,42 @@ namespace velour {
 /// for a solid angle gets the mean radiance about it.
 class Surroundings {
  public:
-  static constexpr int kCount = 3;
+  static constexpr size_t kCount = 3;
   /// Three channels of each environment and one of padding.
   using Radiance = std::array<float, 4 * kCount>;
 
+  /// The directions from which a surface is lit, in its frame, and what two materials reflect from each. Radiance is
+  /// interpolated between texels as large as the solid angle (sr) that a direction stands for.
+  class Lights {
+   public:
+    /// `reflected`: f cos(theta_l) times the solid angle.
+    void add(const Surroundings& surroundings, const Vec3& wl, double solid_angle, const std::array<Rgb, 2>& reflected);
+    bool empty() const { return count_ == 0; }
+
+   private:
+    friend class Surroundings;
+    static constexpr size_t kPadding = 16;  // lights per vector, at most; those that pad reflect nothing
+
+    size_t count_ = 0;
+    std::vector<float> x_, y_, z_;
+    std::vector<float> first_, side_;  // first texel and side of the level
+    std::vector<std::array<float, 8>> reflected_;
+  };
+
   Surroundings();
 
-  /// The level whose texels are as large as `solid_angle` (sr).
-  int level_of(double solid_angle) const;
-  /// Interpolates between the texels of a level.
-  Radiance at(const Vec3& world, int level) const;
+  /// The radiance that each of the materials reflects in each environment.
+  std::array<Radiance, 2> reflected(const Frame& surface, const Lights& lights) const;
 
  private:
   struct Level {
     int side;
-    std::vector<Radiance> texels;  // octahedral map [PH03]
+    size_t first;
   };
+  const Level& level_of(double solid_angle) const;
+
   std::vector<Level> levels_;
+  std::vector<Radiance> texels_;  // octahedral maps [PH03], one level after the other
 };
 
 }  // namespace velour

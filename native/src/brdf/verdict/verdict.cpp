@@ -119,13 +119,6 @@ class ViewBins {
   int polar_, azimuths_;
 };
 
-/// f cos(theta_l) times the solid angle of each light of one view.
-struct ViewValues {
-  std::vector<Vec3> wl;
-  std::vector<int> level;  // of Surroundings
-  std::vector<Rgb> measured, shown;
-};
-
 /// The mean of each f with that of the exchanged pair, where that is covered.
 void make_reciprocal(const Measurement& measurement, const Vec3& wv, std::span<const Vec3> wl, std::span<Rgb> f) {
   for (size_t i = 0; i < wl.size(); ++i) {
@@ -161,8 +154,9 @@ WeightedLights lights_of(const Measurement& measurement, const Material& materia
   return lights;
 }
 
-ViewValues values_of(const Measurement& measurement, const Material& material, Against against, const Vec3& wv,
-                     const Surroundings& surroundings) {
+/// The lights of a view, and what the measurement and the material reflect from each.
+Surroundings::Lights lights_in(const Measurement& measurement, const Material& material, Against against,
+                               const Vec3& wv, const Surroundings& surroundings) {
   const WeightedLights lights = lights_of(measurement, material, wv);
   const size_t count = lights.wl.size();
   std::vector<Rgb> measured(count), shown(count);
@@ -170,15 +164,13 @@ ViewValues values_of(const Measurement& measurement, const Material& material, A
   measurement.eval(wv, lights.wl, measured, covered);
   if (against == Against::reciprocal_mean) make_reciprocal(measurement, wv, lights.wl, measured);
   evaluate(material, wv, lights.wl, shown);
-  ViewValues out;
+  Surroundings::Lights out;
   for (size_t i = 0; i < count; ++i) {
     if (!covered[i]) continue;
-    const auto weight = static_cast<float>(lights.weight[i]) * lights.wl[i].z;
-    out.wl.push_back(lights.wl[i]);
-    out.level.push_back(surroundings.level_of(lights.weight[i]));
+    const float weight = static_cast<float>(lights.weight[i]) * lights.wl[i].z;
     // Colors outside Rec. 709 as renders of a measurement show them (measured_values).
-    out.measured.push_back(weight * glm::max(measured[i], 0.0f));
-    out.shown.push_back(weight * glm::max(shown[i], 0.0f));
+    out.add(surroundings, lights.wl[i], lights.weight[i],
+            {weight * glm::max(measured[i], 0.0f), weight * glm::max(shown[i], 0.0f)});
   }
   return out;
 }
@@ -196,17 +188,8 @@ struct PixelRadiance {
   Rgb measured[Surroundings::kCount]{}, shown[Surroundings::kCount]{};
 };
 
-PixelRadiance lit(const Frame& frame, const ViewValues& view, const Surroundings& surroundings) {
-  Surroundings::Radiance measured{}, shown{};
-  for (size_t i = 0; i < view.wl.size(); ++i) {
-    const Surroundings::Radiance light = surroundings.at(frame.to_world(view.wl[i]), view.level[i]);
-    const float m[4]{view.measured[i].r, view.measured[i].g, view.measured[i].b, 0};
-    const float s[4]{view.shown[i].r, view.shown[i].g, view.shown[i].b, 0};
-    for (size_t k = 0; k < light.size(); ++k) {
-      measured[k] += m[k % 4] * light[k];
-      shown[k] += s[k % 4] * light[k];
-    }
-  }
+PixelRadiance lit(const Frame& frame, const Surroundings::Lights& lights, const Surroundings& surroundings) {
+  const auto [measured, shown] = surroundings.reflected(frame, lights);
   PixelRadiance out;
   for (size_t e = 0; e < Surroundings::kCount; ++e) {
     out.measured[e] = {measured[4 * e], measured[4 * e + 1], measured[4 * e + 2]};
@@ -256,10 +239,10 @@ std::vector<PicturePair> picture_pairs(const Measurement& measurement, const Mat
   for (const Shape& shape : shapes) {
     for (const Shape::Pixel& pixel : shape.pixels) needed[bin_of(pixel)] = 1;
   }
-  std::vector<ViewValues> views(bins.count());
+  std::vector<Surroundings::Lights> views(bins.count());
   parallel_pieces(bins.count(), threads, progress, [&](size_t bin) {
     if (!needed[bin] || !measurement.covers_view(bins.theta(bin))) return;
-    views[bin] = values_of(measurement, material, against, direction(bins.theta(bin), bins.phi(bin)), surroundings);
+    views[bin] = lights_in(measurement, material, against, direction(bins.theta(bin), bins.phi(bin)), surroundings);
   });
   std::vector<PicturePair> pairs;
   for (const Shape& shape : shapes) {
@@ -267,7 +250,7 @@ std::vector<PicturePair> picture_pairs(const Measurement& measurement, const Mat
     std::vector<const Shape::Pixel*> pixels;
     for (const Shape::Pixel& pixel : shape.pixels) {
       const size_t bin = bin_of(pixel);
-      if (views[bin].wl.empty()) continue;
+      if (views[bin].empty()) continue;
       pixels.push_back(&pixel);
       lit_shape.object.push_back(pixel.index);
       lit_shape.view_angle.push_back(bins.theta(bin));

@@ -147,7 +147,11 @@ class LobeGrowth::Growth {
     problem_.evaluate(lobes_.model, lobes_.x);
     while (!done_ && lobes_.model.lobe_count() < most) {
       const double before = lobes_.cost;
-      done_ = !add_lobe(problem_, lobes_, spaces);
+      done_ = !add_lobe(problem_, lobes_, spaces, search_);
+      if (done_ && search_ == Search::quick && is_far()) {
+        search_ = Search::thorough;
+        done_ = !add_lobe(problem_, lobes_, spaces, search_);
+      }
       if (done_) return;
       // If the lobe gains next to nothing, another may be in the wrong place.
       if (lobes_.cost > (1 - kMinGain) * before) exchange_lobe(problem_, lobes_);
@@ -175,12 +179,17 @@ class LobeGrowth::Growth {
 
  private:
   bool good_enough() const { return points_.back().worst <= kViewGoalShare; }
+  /// Whether the views miss their goals on average.
+  bool is_far() const {
+    return problem_.dense() && (points_.empty() || points_.back().relative_l2 > kViewGoalShare * options_.tolerance);
+  }
 
   FitProblem& problem_;
   const GrowthOptions& options_;
   Progress& progress_;
   FitLobes lobes_;
   std::vector<OrderPoint> points_;
+  Search search_ = Search::quick;
   int idle_ = 0;       // lobes in a row that gained next to nothing
   bool done_ = false;  // no more lobes are wanted
 };

@@ -211,9 +211,9 @@ std::vector<FitLobes> first_steps(const FitProblem& problem, const FitLobes& lob
 
 }  // namespace
 
-bool add_lobe(FitProblem& problem, FitLobes& lobes, std::span<const LobeSpace> spaces) {
+bool add_lobe(FitProblem& problem, FitLobes& lobes, std::span<const LobeSpace> spaces, Search search) {
   problem.evaluate(lobes.model, lobes.x);  // the search reads its residuals
-  std::vector<FitLobes> trials = first_steps(problem, lobes, spaces);
+  std::vector<FitLobes> trials = first_steps(search == Search::quick ? problem.thinned() : problem, lobes, spaces);
   const auto best = std::min_element(trials.begin(), trials.end(), costs_less);
   if (best != trials.end()) refine(problem, *best, kGrowthSteps - kFirstSteps, kGrowthTolerance);
   const bool better = best != trials.end() && best->cost < lobes.cost;

@@ -7,9 +7,12 @@
 
 namespace velour {
 
+/// Views in which the place of a lobe is sought: every second one if samples are dense, or all.
+enum class Search { quick, thorough };
+
 /// Adds the best lobe: a new one in one of the `spaces` or, if samples are dense, by splitting one in two. Returns
 /// false and changes nothing if that does not lower the cost.
-bool add_lobe(FitProblem& problem, FitLobes& lobes, std::span<const LobeSpace> spaces);
+bool add_lobe(FitProblem& problem, FitLobes& lobes, std::span<const LobeSpace> spaces, Search search = Search::quick);
 
 /// Removes the least important lobe and adds the one that gains most without it. Returns false and changes nothing if
 /// that does not lower the cost or there are fewer than two lobes.

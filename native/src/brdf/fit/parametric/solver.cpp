@@ -60,6 +60,14 @@ void FitProblem::weigh_for_pictures() {
   for (FitView& v : views_) v.weigh_for_pictures();
 }
 
+FitProblem FitProblem::thinned() const {
+  if (!dense()) return *this;
+  FitProblem out = *this;
+  out.views_.clear();
+  for (size_t i = 0; i < views_.size(); i += 2) out.views_.push_back(views_[i]);
+  return out;
+}
+
 FitProblem FitProblem::remainder() const {
   FitProblem out = *this;
   for (FitView& v : out.views_) {

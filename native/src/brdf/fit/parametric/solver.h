@@ -40,6 +40,8 @@ class FitProblem {
 
   /// Returns the cost; stores errors and residuals in the views. `model` gives the lobes' spaces and the order of x.
   double evaluate(const ParametricBrdf& model, const Eigen::VectorXd& x);
+  /// The problem with every second view, if the samples are dense: enough to see where a lobe belongs.
+  FitProblem thinned() const;
   /// The problem whose targets are the residuals of the last evaluate() or linearize().
   FitProblem remainder() const;
   /// remainder() with some of the lobes, those of `x`, added back.

@@ -270,11 +270,12 @@ std::vector<SliceSample> coarse_samples(const SliceSamples& samples) {
   return out;
 }
 
-/// The residual of the solver at the coarse samples.
+/// The residual of a solver of `samples` at the coarse samples, and the maximum sharpness of lobes at their centers.
 class CoarseResidual {
  public:
-  explicit CoarseResidual(const SliceSamples& samples) : samples_(coarse_samples(samples)) {
+  CoarseResidual(const SliceSamples& samples, const SliceSolver& solver) : samples_(coarse_samples(samples)) {
     for (AlignedFloats& r : residual_) r.assign(samples_.padded(), 0.0f);
+    for (size_t i = 0; i < samples_.count(); ++i) max_sharpness_.push_back(solver.max_sharpness(center(i)));
   }
   void take(const SliceSolver& solver) {
     const float scale = std::sqrt(static_cast<float>(kCoarseStride));
@@ -294,24 +295,24 @@ class CoarseResidual {
     }
     return gain / std::max(p.norm_sq, 1e-30);
   }
-  const SliceSamples& samples() const { return samples_; }
+  size_t count() const { return samples_.count(); }
+  Vec3d center(size_t i) const { return glm::normalize(samples_.wl(i)); }
+  double max_sharpness(size_t i) const { return max_sharpness_[i]; }
 
  private:
   SliceSamples samples_;
+  std::vector<double> max_sharpness_;
   std::array<AlignedFloats, 3> residual_;
 };
 
 /// The best single lobe for the residual: the maximum of the residual smoothed at every scale.
-LobeShape best_candidate(const SliceSolver& solver, Kernel kernel, const CoarseResidual& coarse,
-                         const Progress& progress) {
+LobeShape best_candidate(Kernel kernel, const CoarseResidual& coarse, const Progress& progress) {
   LobeShape best;
   double most = -1;
-  const SliceSamples& centers = coarse.samples();
-  for (size_t i = 0; i < centers.count(); ++i) {
+  for (size_t i = 0; i < coarse.count(); ++i) {
     if (i % 32 == 0) progress.check();
-    const Vec3d center = glm::normalize(centers.wl(i));
-    const double limit = solver.max_sharpness(center);
-    for (double k = kFirstSharpness; k <= limit; k *= kSharpnessRatio) {
+    const Vec3d center = coarse.center(i);
+    for (double k = kFirstSharpness; k <= coarse.max_sharpness(i); k *= kSharpnessRatio) {
       // A broad lobe does not need a fine grid of centers.
       if (k < 10 && i % 8 != 0) continue;
       const double gain = coarse.gain(kernel, {center, k});
@@ -335,10 +336,10 @@ std::vector<SliceFit> fit_slice(const SliceSamples& samples, const SliceFitOptio
   SliceSolver solver(options.kernel, samples, progress);
   std::vector<SliceFit> path{snapshot(solver)};
   if (samples.count() == 0 || !(samples.luminance_energy() > 0)) return path;
-  CoarseResidual coarse(samples);
+  CoarseResidual coarse(samples, solver);
   for (int j = 1; j <= options.max_lobes && path.back().relative_l2 > options.goal; ++j) {
     coarse.take(solver);
-    solver.add_lobe(best_candidate(solver, options.kernel, coarse, progress));
+    solver.add_lobe(best_candidate(options.kernel, coarse, progress));
     const bool last = j == options.max_lobes;
     solver.refine(last ? kFinalSteps : kStepsPerLobe, options.goal, last ? 1e-4 : 1e-3);
     path.push_back(solver.relative_l2() < path.back().relative_l2 ? snapshot(solver) : path.back());
@@ -349,7 +350,7 @@ std::vector<SliceFit> fit_slice(const SliceSamples& samples, const SliceFitOptio
     const double objective = solver.objective();
     solver.set_lobes(without(before, solver.least_important()));
     coarse.take(solver);
-    solver.add_lobe(best_candidate(solver, options.kernel, coarse, progress));
+    solver.add_lobe(best_candidate(options.kernel, coarse, progress));
     solver.refine(kFinalSteps, options.goal, 1e-4);
     if (solver.objective() >= objective) {
       solver.set_lobes(before);

@@ -152,13 +152,14 @@ TEST(Pictures, SumTheLight) {
   const std::vector<Vec3> lights = hemisphere_fibonacci(20000);
   std::vector<Rgb> f(lights.size());
   evaluate(*matte, glm::normalize(Vec3(0.01f, 0, 1)), lights, f);
+  const double solid_angle = 2 * kPiD / static_cast<double>(lights.size());
+  Surroundings::Lights lit;
+  for (size_t i = 0; i < lights.size(); ++i) {
+    lit.add(surroundings, lights[i], solid_angle, {f[i] * lights[i].z * static_cast<float>(solid_angle), Rgb(0)});
+  }
+  const Surroundings::Radiance whole = surroundings.reflected(Frame(), lit)[0];
   for (size_t e = 0; e < Surroundings::kCount; ++e) {
-    Rgb sum(0);
-    for (size_t i = 0; i < lights.size(); ++i) {
-      const auto light = surroundings.at(lights[i], 0);
-      sum += f[i] * lights[i].z * Rgb(light[4 * e], light[4 * e + 1], light[4 * e + 2]);
-    }
-    sum *= 2 * kPi / static_cast<float>(lights.size());
+    const Rgb sum(whole[4 * e], whole[4 * e + 1], whole[4 * e + 2]);
     const PicturePair& ball = pairs[e];
     const auto side = static_cast<size_t>(ball.measured.width);
     const Rgb middle = ball.measured.pixels[(side / 2) * side + side / 2] / static_cast<float>(ball.exposure);
