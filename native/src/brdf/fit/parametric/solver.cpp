@@ -34,7 +34,7 @@ void for_each_triple(const ViewSpline& spline, const Use& use) {
 FitProblem::FitProblem(const std::vector<MeasuredSlice>& slices, const ViewSpline& spline,
                        const std::function<double(const MeasuredSlice&)>& goal, bool seen_evenly, int threads,
                        const Progress& progress)
-    : threads_(threads), progress_(progress) {
+    : nodes_(static_cast<size_t>(spline.node_count())), threads_(threads), progress_(progress) {
   for (const MeasuredSlice& slice : slices) {
     FitView view(slice, spline, goal(slice) / std::sqrt(slice.weight));
     if (!(view.energy > 0)) continue;
@@ -61,7 +61,8 @@ void FitProblem::weigh_for_pictures() {
 }
 
 FitProblem FitProblem::thinned() const {
-  if (!dense()) return *this;
+  constexpr double kViewsPerNode = 2.5;
+  if (!dense() || static_cast<double>(views_.size()) < kViewsPerNode * static_cast<double>(nodes_)) return *this;
   FitProblem out = *this;
   out.views_.clear();
   for (size_t i = 0; i < views_.size(); i += 2) out.views_.push_back(views_[i]);

@@ -40,7 +40,8 @@ class FitProblem {
 
   /// Returns the cost; stores errors and residuals in the views. `model` gives the lobes' spaces and the order of x.
   double evaluate(const ParametricBrdf& model, const Eigen::VectorXd& x);
-  /// The problem with every second view, if the samples are dense: enough to see where a lobe belongs.
+  /// The problem with every second view, if its samples are dense and its views are many for the spline: enough to see
+  /// where a lobe belongs.
   FitProblem thinned() const;
   /// The problem whose targets are the residuals of the last evaluate() or linearize().
   FitProblem remainder() const;
@@ -53,6 +54,7 @@ class FitProblem {
   double cost(const ParametricBrdf& model, const Eigen::VectorXd& x) const;
 
   std::vector<FitView> views_;
+  size_t nodes_;  // of the spline
   double smoothness_ = kSmoothness;
   int threads_;
   const Progress& progress_;

@@ -4,7 +4,6 @@
 #include <array>
 #include <cmath>
 #include <Eigen/Cholesky>
-#include <Eigen/LU>
 
 #include "math/optimize/nnls.h"
 
@@ -236,29 +235,11 @@ void SliceSolver::refine(int steps, double goal, double least_gain) {
   }
 }
 
-int SliceSolver::least_important() const {
-  if (count() == 0) return -1;
-  Eigen::MatrixXd products;
-  gram(columns(state_), samples_.padded(), products);
-  products.diagonal() *= 1 + kSliceRidge;
-  const Eigen::MatrixXd inverse = products.inverse();
-  int least = 0;
-  double least_cost = std::numeric_limits<double>::infinity();
-  for (int j = 0; j < count(); ++j) {
-    double cost = 0;  // rise of E if lobe j is removed and the other peaks are solved for again
-    for (int c = 0; c < 3; ++c) {
-      cost += kLuminance[c] * state_.peaks(j, c) * state_.peaks(j, c) / std::max(inverse(j, j), 1e-300);
-    }
-    if (cost < least_cost) least_cost = cost, least = j;
-  }
-  return least;
-}
-
 namespace {
 
 constexpr size_t kCoarseStride = 8;  // candidates and their scores use one sample in eight
 constexpr double kFirstSharpness = 0.5, kSharpnessRatio = 2.5;
-constexpr int kStepsPerLobe = 8, kFinalSteps = 40, kSwapRounds = 6;
+constexpr int kStepsPerLobe = 8, kFinalSteps = 40;
 
 /// One sample in kCoarseStride, for the search for the next lobe.
 std::vector<SliceSample> coarse_samples(const SliceSamples& samples) {
@@ -324,12 +305,6 @@ LobeShape best_candidate(Kernel kernel, const CoarseResidual& coarse, const Prog
 
 SliceFit snapshot(const SliceSolver& solver) { return {solver.lobes(), solver.diffuse(), solver.relative_l2()}; }
 
-std::vector<LobeShape> without(const std::vector<LobeShape>& shapes, int removed) {
-  std::vector<LobeShape> out = shapes;
-  out.erase(out.begin() + removed);
-  return out;
-}
-
 }  // namespace
 
 std::vector<SliceFit> fit_slice(const SliceSamples& samples, const SliceFitOptions& options, const Progress& progress) {
@@ -343,20 +318,6 @@ std::vector<SliceFit> fit_slice(const SliceSamples& samples, const SliceFitOptio
     const bool last = j == options.max_lobes;
     solver.refine(last ? kFinalSteps : kStepsPerLobe, options.goal, last ? 1e-4 : 1e-3);
     path.push_back(solver.relative_l2() < path.back().relative_l2 ? snapshot(solver) : path.back());
-  }
-  // At max_lobes and short of the goal: move the least important lobe to where it gains most.
-  for (int round = 0; round < kSwapRounds && path.back().relative_l2 > options.goal && solver.count() > 1; ++round) {
-    const auto before = solver.shapes();
-    const double objective = solver.objective();
-    solver.set_lobes(without(before, solver.least_important()));
-    coarse.take(solver);
-    solver.add_lobe(best_candidate(options.kernel, coarse, progress));
-    solver.refine(kFinalSteps, options.goal, 1e-4);
-    if (solver.objective() >= objective) {
-      solver.set_lobes(before);
-      break;
-    }
-    if (solver.relative_l2() < path.back().relative_l2) path.back() = snapshot(solver);
   }
   return path;
 }

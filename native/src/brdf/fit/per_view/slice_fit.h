@@ -36,9 +36,6 @@ class SliceSolver {
   /// most `goal` (relative L2) or if an accepted step gains less than `least_gain` of E. E never rises.
   void refine(int steps, double goal, double least_gain);
 
-  /// The lobe whose removal would raise E least; -1 if there are none.
-  int least_important() const;
-
   double objective() const { return state_.objective; }
   /// Relative L2 of the luminance over the samples; 0 for a black slice that is fitted as black.
   double relative_l2() const;

@@ -184,13 +184,5 @@ TEST(SliceSolver, TheCosineTermTakesWhatIsDiffuse) {
   EXPECT_NEAR(solver.lobes()[0].peak.x, 1, 1e-3);
 }
 
-TEST(SliceSolver, KnowsTheLobeThatMattersLeast) {
-  const SliceSamples samples = samples_of(Kernel::gaussian, {three_lobes()[0]}, 1000);
-  const Progress progress;
-  SliceSolver solver(Kernel::gaussian, samples, progress);
-  solver.set_lobes({three_lobes()[0].shape, {unit(-0.9, 0, 0.2), 400}});
-  EXPECT_EQ(solver.least_important(), 1);
-}
-
 }  // namespace
 }  // namespace velour
