@@ -32,6 +32,7 @@ NEEDS = {
     "btf_chart": Needs(tools="metrics"),
     "chart": Needs(("product_bound",), "peers"),
     "closures": Needs(tools="metrics"),
+    "eevee": Needs(tools="metrics"),
     "failure_modes": Needs(("test_failure_modes",)),
     "inputs": Needs(("test_image", "test_mesh", "test_brdf", "test_btf")),
     "models": Needs(("evaluation_cost",)),

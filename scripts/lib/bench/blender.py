@@ -30,17 +30,19 @@ def run(
     log: Path,
     options: tuple[str, ...] = (),
     version: str | None = None,
+    screen: bool = False,
 ) -> dict | None:
     """Calls main(task) of the module bench.inside.SCRIPT and returns what it returns.
 
     `options`: further options for Blender. `version`: one of scripts/blenders, with the packaged add-on.
+    `screen`: with a virtual screen, which EEVEE needs.
     """
     found = log.with_suffix(".report.json")
     found.unlink(missing_ok=True)
     done = f"bench.inside.start({script!r}, {json.dumps(task)!r}, {str(found)!r})"
     path = [str(ROOT / "scripts/lib"), str(ROOT / "blend-tests")]
     code = f"import sys; sys.path[:0] = {path!r}; import bench.inside; {done}"
-    command = [*_blender(version), "-b", "--factory-startup", "-noaudio"]
+    command = [*_blender(version, screen), "-b", "--factory-startup", "-noaudio"]
     # The order matters: --python-exit-code applies only to the arguments after it.
     command += ["--python-exit-code", "7", *options, "--python-expr", code]
     if status := process.execute(command, process.environment(command[0], STAGE), log, None):
@@ -89,11 +91,12 @@ def _ending(log: Path) -> str:
     return f"{log} ends: {' / '.join(lines[-3:])}"
 
 
-def _blender(version: str | None) -> list[str]:
+def _blender(version: str | None, screen: bool) -> list[str]:
+    on_screen = ["xvfb-run", "-a"] if screen else []
     if version:
         stage = f"BLENDER_USER_SCRIPTS={ROOT / 'build/package/blender'}"
-        return [str(ROOT / "scripts/blenders"), "--run", version, "env", stage, "blender"]
-    found = shutil.which("blender")
-    if not found:
-        raise BlenderError("blender is not installed; run scripts/setup")
-    return [found]
+        return [str(ROOT / "scripts/blenders"), "--run", version, "env", stage, *on_screen, "blender"]
+    for tool in (*on_screen[:1], "blender"):
+        if not shutil.which(tool):
+            raise BlenderError(f"{tool} is not installed; run scripts/setup")
+    return [*on_screen, shutil.which("blender")]

@@ -86,7 +86,7 @@ def data_folder() -> Path:
     data = Path(os.environ.get("VELOUR_DATA", ROOT.parent / "shared/data"))
     if not data.is_dir():
         raise MissingError(f"skipped, there is no test data in {data}; set VELOUR_DATA to its folder.")
-    return data
+    return data.resolve()  # scripts/blenders shows other Blenders the real folder
 
 
 def merl(data: Path, name: str) -> Path:

@@ -18,28 +18,30 @@ def main(task):
     cycles.samples, cycles.max_bounces, cycles.use_denoising = task["samples"], 0, False
     cycles.use_adaptive_sampling = False
     build.camera((0, -7, 1.5), lens=85)
-    materials = [_material(task, masking) for masking in ("closures", None)]
+    materials = [material(task, masking) for masking in ("closures", None)]
     for make in (_sphere, build.monkey):
         shape = make()
         for world in task["worlds"]:
             build.world(world)
             name = f"{os.path.basename(world)}-{shape.name}"
-            for engine, material in (("VELOUR", 0), ("CYCLES", 0), ("CYCLES", 1)):
+            for engine, own in (("VELOUR", 0), ("CYCLES", 0), ("CYCLES", 1)):
                 shape.data.materials.clear()
-                shape.data.materials.append(materials[material])
+                shape.data.materials.append(materials[own])
                 scene.render.engine = engine
-                kind = "measurement" if engine == "VELOUR" else ("network", "principled")[material]
+                kind = "measurement" if engine == "VELOUR" else ("network", "principled")[own]
                 build.render(task["folder"], f"{name}-{kind}")
         bpy.data.objects.remove(shape)
     tree = build.measured_node(materials[0]).group.node_tree
     return {"relative_l2": tree.velour.relative_l2, "fitted": tree.velour.fitted}
 
 
-def _material(task, masking):
-    """The material with the network, or with one Principled BSDF."""
+def material(task, masking):
+    """The measured material of a model and its measurement, with the network ("closures") or with one
+    Principled BSDF (None)."""
+    before = set(bpy.data.materials)
     bpy.ops.velour.load_material(filepath=task["model"])
-    material = bpy.data.materials[-1]
-    node = build.measured_node(material)
+    (found,) = set(bpy.data.materials) - before
+    node = build.measured_node(found)
     node.velour.measurement, node.velour.use_reference = file_image(task["measurement"]), True
     with read_model(node.image, "The material") as model:
         steps = approximation_group.Steps(
@@ -49,8 +51,8 @@ def _material(task, masking):
         )
         while job := steps.next_job():
             job.start().wait()
-        approximation_group.put(node, material, steps.result, model.info())
-    return material
+        approximation_group.put(node, found, steps.result, model.info())
+    return found
 
 
 def _sphere():

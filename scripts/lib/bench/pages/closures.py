@@ -34,7 +34,7 @@ def measure(run: Run) -> dict:
                 reference, *others, where = _read(stem, f"{run.world(world).name}-{shape}")
                 row = {"material": name, "world": world, "shape": shape}
                 for kind, picture in zip(KINDS[1:], others, strict=True):
-                    found = _differences(reference, picture, where)
+                    found = differences(reference, picture, where)
                     row |= {f"{kind}_{key}": value for key, value in found.items()}
                 rows.append(row)
                 scale, pictures = flip_metric.exposure(reference, where), [reference, *others]
@@ -65,10 +65,15 @@ def _pictures(run: Run, name: str, measurement: Path, model: Path) -> Path:
 def _read(folder: Path, stem: str) -> list[np.ndarray]:
     """The pictures of KINDS, and which pixels show the object."""
     pictures = [read_rgb(folder / f"{stem}-{kind}.exr") for kind in KINDS]
-    return [*pictures, images.read(folder / f"{stem}-{KINDS[0]}.exr")[..., 3] > 0.999]
+    return [*pictures, covered(folder / f"{stem}-{KINDS[0]}.exr")]
 
 
-def _differences(reference: np.ndarray, picture: np.ndarray, where: np.ndarray) -> dict:
+def covered(file: Path) -> np.ndarray:
+    """Which pixels show nothing but the object."""
+    return images.read(file)[..., 3] > 0.999
+
+
+def differences(reference: np.ndarray, picture: np.ndarray, where: np.ndarray) -> dict:
     """Mean color over the reference's, relative L2 of blocks, and mean FLIP, over pixels of the object."""
     mean = picture[where].mean(0) / reference[where].mean(0)
     blocks = [_blocks(each * where[..., None]) for each in (picture, reference)]
