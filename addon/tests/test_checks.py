@@ -153,6 +153,10 @@ def test_all_runs_every_group_and_resumes(tmp_path, monkeypatch, capsys):
         assert test_run.main() == 0
         assert capsys.readouterr().out.splitlines()[-1] == "6 passed, 0 failed, 0 not run"
     assert ran == ["style", "night", "4.3", "5.2", "4.5", "fuzz"]
+    (tmp_path / "all.json").unlink()
+    monkeypatch.setattr(sys, "argv", ["scripts/test", "--all", "--blender", "5.2", "fuzz"])
+    assert test_run.main() == 0
+    assert ran[6:] == ["5.2", "fuzz"]
 
 
 def test_the_table_of_times_has_groups_their_sum_and_the_slowest():

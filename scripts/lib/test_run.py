@@ -21,6 +21,7 @@ from checks.groups import GROUPS, ROOT, Run
 from checks.running import say
 
 SLOWEST = 20
+ONLY_LONG = ("night", "fuzz")  # groups of --all
 OTHER_BLENDERS = ("4.3", "5.2", "4.5")
 
 
@@ -77,16 +78,10 @@ def main() -> int:
     built = True
     if arguments.groups != ["style"] or arguments.blender:
         built = _build(run, total, "native" in arguments.groups)
-    for name in arguments.groups:
+    for name, work in _steps(arguments).items():
         needs_build = name != "style"
-        _step(name, run, kept, total, built or not needs_build, GROUPS[name])
+        _step(name, run, kept, total, built or not needs_build, work)
     if arguments.all:
-        _step("night", run, kept, total, built, groups.night)
-    for version in arguments.blender:
-        other = partial(groups.other_blender, version=version)
-        _step(f"blender {version}", run, kept, total, built, other)
-    if arguments.all:
-        _step("fuzz", run, kept, total, built, groups.fuzz)
         for sentence in measured_pages.told(ROOT):
             say(sentence)
     seconds, processor = clock.read()
@@ -94,6 +89,13 @@ def main() -> int:
     counts = cases.count(total.cases)
     say(f"{counts[PASSED]} passed, {counts[FAILED]} failed, {counts[SKIPPED]} not run")
     return 1 if counts[FAILED] else 0
+
+
+def _steps(arguments: argparse.Namespace) -> dict[str, Callable[[Run], list[Case]]]:
+    """What runs the chosen groups, in their order."""
+    other = {f"blender {v}": partial(groups.other_blender, version=v) for v in arguments.blender}
+    known = {**GROUPS, "night": groups.night, **other, "fuzz": groups.fuzz}
+    return {name: work for name, work in known.items() if name in arguments.groups or name in other}
 
 
 def _name_denoiser() -> None:
@@ -112,16 +114,14 @@ def _arguments() -> argparse.Namespace:
     parser.add_argument("--update", action="store_true")
     parser.add_argument("groups", nargs="*", metavar="GROUP")
     arguments = parser.parse_args()
-    for unknown in set(arguments.groups) - set(GROUPS):
-        parser.error(f"there is no group {unknown!r}; the groups are {', '.join(GROUPS)}")
+    known = [*GROUPS, *(ONLY_LONG if arguments.all else ())]
+    for unknown in set(arguments.groups) - set(known):
+        parser.error(f"there is no group {unknown!r}; the groups are {', '.join(known)}")
     if arguments.scene and "scenes" not in arguments.groups:
         arguments.groups.append("scenes")
-    if arguments.all and (arguments.groups or arguments.blender):
-        parser.error("--all runs everything: name no group and no Blender with it")
     if not arguments.groups and not arguments.blender:
-        arguments.groups = list(GROUPS)
-    if arguments.all:
-        arguments.blender = list(OTHER_BLENDERS)
+        arguments.groups = known
+        arguments.blender = list(OTHER_BLENDERS) if arguments.all else []
     if arguments.update and "scenes" not in arguments.groups:
         parser.error("--update is for the group scenes")
     return arguments
