@@ -238,7 +238,7 @@ void SliceSolver::refine(int steps, double goal, double least_gain) {
 namespace {
 
 constexpr size_t kCoarseStride = 8;  // candidates and their scores use one sample in eight
-constexpr double kFirstSharpness = 0.5, kSharpnessRatio = 2.5;
+constexpr double kFirstSharpness = 0.5, kSharpnessRatio = 2.5, kNarrow = 60;
 constexpr int kStepsPerLobe = 8, kFinalSteps = 40;
 
 /// One sample in kCoarseStride, for the search for the next lobe.
@@ -264,7 +264,11 @@ class CoarseResidual {
       AlignedFloats& r = residual_[static_cast<size_t>(c)];
       for (size_t i = 0; i < samples_.count(); ++i) r[i] = scale * solver.residual(c)[i * kCoarseStride];
     }
+    brightest_ = 0;
+    for (size_t i = 0; i < samples_.count(); ++i) brightest_ = std::max(brightest_, luminance_at(i));
   }
+  /// Whether a narrow lobe there may gain as much as elsewhere.
+  bool is_bright(size_t i) const { return luminance_at(i) >= kDim * brightest_; }
   /// Decrease of E if a single lobe of this shape is fitted to the residual.
   double gain(Kernel kernel, const LobeShape& shape) const {
     const float* const r[3] = {residual_[0].data(), residual_[1].data(), residual_[2].data()};
@@ -281,9 +285,18 @@ class CoarseResidual {
   double max_sharpness(size_t i) const { return max_sharpness_[i]; }
 
  private:
+  /// Of what the solver lacks.
+  double luminance_at(size_t i) const {
+    double sum = 0;
+    for (size_t c = 0; c < 3; ++c) sum += kLuminance[c] * std::max(0.0, static_cast<double>(residual_[c][i]));
+    return sum;
+  }
+
+  static constexpr double kDim = 0.2;
   SliceSamples samples_;
   std::vector<double> max_sharpness_;
   std::array<AlignedFloats, 3> residual_;
+  double brightest_ = 0;
 };
 
 /// The best single lobe for the residual: the maximum of the residual smoothed at every scale.
@@ -294,8 +307,9 @@ LobeShape best_candidate(Kernel kernel, const CoarseResidual& coarse, const Prog
     if (i % 32 == 0) progress.check();
     const Vec3d center = coarse.center(i);
     for (double k = kFirstSharpness; k <= coarse.max_sharpness(i); k *= kSharpnessRatio) {
-      // A broad lobe does not need a fine grid of centers.
+      // A broad lobe does not need a fine grid of centers, and a narrow one gains only what is at its center.
       if (k < 10 && i % 8 != 0) continue;
+      if (k > kNarrow && !coarse.is_bright(i)) break;
       const double gain = coarse.gain(kernel, {center, k});
       if (gain > most) most = gain, best = {center, k};
     }
