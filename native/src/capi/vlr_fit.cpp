@@ -80,23 +80,25 @@ MicrosurfaceOptions converted(const vlr_microsurface_options& given) {
 
 /// The verdict on a model of any scene; none on scene models.
 std::optional<Verdict> verdict_on(const Measurement& measurement, const std::shared_ptr<const Model>& model,
-                                  int threads, Progress& progress) {
+                                  bool explained, int threads, Progress& progress) {
   if (is_reduced(*model)) return std::nullopt;
-  return judge_look(measurement, *make_material(model, 0), threads, progress);
+  return judge_look(measurement, *make_material(model, 0), explained, threads, progress);
 }
 
 Model fit_and_judge(ModelKind kind, const Measurement& measurement, FitOptions options, Progress& progress) {
   constexpr double kFitShare = 0.9;  // of the time
-  options.verdict_on = [&](const Model& model, Progress& judging) {
-    return verdict_on(measurement, std::make_shared<const Model>(model), options.threads, judging);
+  const auto judged = [&](const Model& model, bool explained, Progress& judging) {
+    return verdict_on(measurement, std::make_shared<const Model>(model), explained, options.threads, judging);
   };
+  options.verdict_on = [&](const Model& model, Progress& judging) { return judged(model, false, judging); };
   Model model;
   {
     const Progress::Span fitting(progress, 0, kFitShare);
     model = fit_model(kind, measurement, options, progress);
   }
   progress.stage("comparing pictures", kFitShare, 1);
-  if (!model.fit.verdict) model.fit.verdict = options.verdict_on(model, progress);
+  const std::optional<Verdict>& verdict = model.fit.verdict;
+  if (!verdict || verdict->quality != LookQuality::good) model.fit.verdict = judged(model, true, progress);
   progress.update(1);
   return model;
 }
@@ -145,7 +147,7 @@ vlr_status vlr_compare_create_job(const vlr_measurement* measurement, const vlr_
     auto output = std::make_shared<JobOutput>();
     const auto task = [output, source = measurement->measurement, fitted = model->model](Progress& progress) {
       const Comparison errors = compare(*source, *make_material(fitted, 0), progress);
-      output->set(comparison_json(errors, verdict_on(*source, fitted, 0, progress)));
+      output->set(comparison_json(errors, verdict_on(*source, fitted, true, 0, progress)));
     };
     *out = new vlr_job(output, task);
   });

@@ -364,7 +364,7 @@ void explain(const Measurement& measurement, const Material& material, const std
 
 }  // namespace
 
-std::optional<Verdict> judge_look(const Measurement& measurement, const Material& material, int threads,
+std::optional<Verdict> judge_look(const Measurement& measurement, const Material& material, bool explained, int threads,
                                   Progress& progress) {
   const auto pairs = picture_pairs(measurement, material, Against::measurement, threads, progress);
   Differences found = differences_of(pairs, progress);
@@ -374,7 +374,7 @@ std::optional<Verdict> judge_look(const Measurement& measurement, const Material
   verdict.flip_95 = found.percentile_95();
   const bool good = verdict.flip_mean <= kGoodMean && verdict.flip_95 <= kGoodPercentile;
   verdict.quality = good ? LookQuality::good : verdict.flip_mean <= kFairMean ? LookQuality::fair : LookQuality::poor;
-  if (!good) explain(measurement, material, pairs, found, threads, progress, verdict);
+  if (!good && explained) explain(measurement, material, pairs, found, threads, progress, verdict);
   return verdict;
 }
 

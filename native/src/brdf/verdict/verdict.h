@@ -40,8 +40,9 @@ inline constexpr double kGoodMean = 0.04, kGoodPercentile = 0.15, kFairMean = 0.
 
 /// Compares pictures of `material`, for any scene, with pictures of the measurement (picture_pairs): good
 /// within kGoodMean and kGoodPercentile, fair within kFairMean, otherwise poor. Nothing if the measurement covers no
-/// view of the pictures. The result does not depend on `threads` (0: all).
-std::optional<Verdict> judge_look(const Measurement& measurement, const Material& material, int threads,
+/// view of the pictures. `explained`: with the reason if it is not good, which takes as long again. The result does not
+/// depend on `threads` (0: all).
+std::optional<Verdict> judge_look(const Measurement& measurement, const Material& material, bool explained, int threads,
                                   Progress& progress);
 
 }  // namespace velour

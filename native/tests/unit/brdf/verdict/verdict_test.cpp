@@ -36,7 +36,7 @@ std::vector<std::shared_ptr<const Material>> materials() {
 
 Verdict judged(const Measurement& measurement, const Material& material, int threads = 0) {
   Progress progress;
-  return judge_look(measurement, material, threads, progress).value();
+  return judge_look(measurement, material, true, threads, progress).value();
 }
 
 /// f of a material times a factor.
@@ -129,7 +129,7 @@ TEST(Verdict, NothingIsSaidOfWhatIsNotMeasured) {
   AnalyticMeasurement none(test::lambert);
   none.set_coverage([](const DirectionPair&) { return false; });
   Progress progress;
-  EXPECT_EQ(judge_look(none, *materials()[0], 0, progress), std::nullopt);
+  EXPECT_EQ(judge_look(none, *materials()[0], true, 0, progress), std::nullopt);
   const auto matte = materials()[0];
   AnalyticMeasurement part = changed(matte, [](const DirectionPair&) { return Rgb(1); });
   part.set_coverage([](const DirectionPair& p) { return p.wl.x > 0 && p.wv.z > 0.3f; });
@@ -139,7 +139,7 @@ TEST(Verdict, NothingIsSaidOfWhatIsNotMeasured) {
 TEST(Verdict, ACancelStopsIt) {
   Progress progress;
   progress.cancel();
-  EXPECT_THROW(judge_look(AnalyticMeasurement(test::lambert), *materials()[0], 1, progress), Error);
+  EXPECT_THROW(judge_look(AnalyticMeasurement(test::lambert), *materials()[0], true, 1, progress), Error);
 }
 
 /// The middle of the ball, whose normal is the view: against a sum over the whole environment.
