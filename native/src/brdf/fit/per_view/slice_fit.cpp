@@ -239,7 +239,7 @@ namespace {
 
 constexpr size_t kCoarseStride = 8;  // candidates and their scores use one sample in eight
 constexpr double kFirstSharpness = 0.5, kSharpnessRatio = 2.5, kNarrow = 60;
-constexpr int kStepsPerLobe = 8, kFinalSteps = 40;
+constexpr int kStepsPerLobe = 4, kFinalSteps = 40;
 
 /// One sample in kCoarseStride, for the search for the next lobe.
 std::vector<SliceSample> coarse_samples(const SliceSamples& samples) {
