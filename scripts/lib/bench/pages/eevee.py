@@ -19,7 +19,7 @@ SETTINGS = {
     "worlds": ((SUNSET, "potsdamer_platz", STUDIO), (SUNSET,)),
     "versions": (("", "4.3", "5.2"), ("",)),  # of scripts/blenders; empty: the installed one
     "size": (128, 48),
-    "samples": (128, 16),
+    "samples": (32, 16),
 }
 PAGES = {"eevee.md": "eevee"}
 PLAIN = ("Diffuse", "Glossy")  # closures of Blender, of inside/eevee.py

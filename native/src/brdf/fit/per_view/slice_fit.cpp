@@ -285,7 +285,7 @@ class CoarseResidual {
   double max_sharpness(size_t i) const { return max_sharpness_[i]; }
 
  private:
-  /// Of what the solver lacks.
+  /// Luminance of what the solver lacks.
   double luminance_at(size_t i) const {
     double sum = 0;
     for (size_t c = 0; c < 3; ++c) sum += kLuminance[c] * std::max(0.0, static_cast<double>(residual_[c][i]));
