@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import inputs
 import numpy as np
 import pytest
 from velour.native import Model, Status, VelourError
@@ -28,6 +29,13 @@ def test_curves_have_a_sample_per_angle(closures):
         for key, least, most in (("roughness", 0, 1), ("tilt", -1, 1), ("anisotropy", -0.99, 0.99)):
             assert np.shape(lobe[key]) == (SAMPLES,)
             assert least <= np.min(lobe[key]) <= np.max(lobe[key]) <= most
+
+
+def test_a_brushed_model_keeps_its_frame(closures):
+    brushed = Model.load(inputs.BRUSHED_MODEL).closures()
+    assert (closures["frame"], brushed["frame"]) == ("incidence", "surface")
+    assert max(abs(value) for lobe in brushed["lobes"] for value in lobe["anisotropy"]) > 0.2
+    assert brushed["relative_l2_mean"] < 0.05
 
 
 def test_errors_are_per_view_and_small(closures):

@@ -74,21 +74,6 @@ def test_a_brushed_model_lies_along_its_rougher_direction(tmp_path):
     assert (ElementTree.parse(path).getroot().find("bitangent") is not None) == is_turned
 
 
-def test_the_curves_of_a_lobe_are_its_fresnel_term():
-    from velour.core.closures import closures_of_ggx
-
-    ggx = {"f0": [0.5, 0.4, 0.3], "f90": [1, 1, 1], "alpha": [0.04, 0.16], "diffuse": [0.1, 0.2, 0.3]}
-    report = {"ggx": ggx, "relative_l2": 0.1, "by_view_angle": {}}
-    curves = closures_of_ggx(report)
-    (lobe,) = curves["lobes"]
-    assert lobe["color"][0] == pytest.approx([0.5, 0.4, 0.3])
-    assert lobe["color"][-1] == pytest.approx([1, 1, 1])
-    alpha, a = lobe["roughness"][0] ** 2, lobe["anisotropy"][0]
-    assert (alpha * (1 - a), alpha / (1 - a)) == pytest.approx((0.04, 0.16))
-    a = closures_of_ggx({**report, "ggx": {**ggx, "alpha": [0.16, 0.04]}})["lobes"][0]["anisotropy"][0]
-    assert (alpha / (1 + a), alpha * (1 + a)) == pytest.approx((0.16, 0.04))
-
-
 def test_gltf_declares_what_it_uses(exported):
     document = json.loads(exported["gltf"][0].read_text())
     (material,) = document["materials"]

@@ -10,7 +10,7 @@ import numpy as np
 
 from ..native import Job, Model, model_peer_job
 from .approximation_map import map_job, map_of, size_of
-from .closures import closures_of_fit, closures_of_ggx
+from .closures import closures_of
 from .read_job import ReadJob
 from .tile_maps import TileMapsJob
 
@@ -101,12 +101,8 @@ class Steps:
             }
             report = {"relative_l2": maps.relative_l2, "by_view_angle": maps.by_view_angle}
         elif masking is not None:
-            if isotropic:
-                yield (fitting := ReadJob(lambda: model.closures(masking=masking)))
-                report = closures_of_fit(fitting.result())
-            else:
-                report = closures_of_ggx(report)
-            values["closures"] = report
+            yield (fitting := ReadJob(lambda: closures_of(model, masking)))
+            values["closures"] = report = fitting.result()
         errors = {key: report[key] for key in ("relative_l2", "by_view_angle", "reason") if key in report}
         self.result = Approximation(**values, **errors)
 

@@ -83,7 +83,7 @@ def _write_gltf(request: Request) -> dict:
 
 
 def _write_cycles(request: Request) -> dict:
-    closures = closures_of(request.model, "correlated", request.progress)
+    closures = closures_of(request.model, "correlated")
     report = {key: closures[key] for key in _ERROR_KEYS}
     write_closures(request.path, request.name, closures, error_note(report), request.blender)
     return {"parameters": {"lobes": [lobe["distribution"] for lobe in closures["lobes"]]}, **report}

@@ -105,7 +105,8 @@ std::string closures_json(const ModelClosures& closures) {
     views.push_back(e.degrees);
     errors.push_back(e.luminance);
   }
-  return text(Json{{"lobes", lobes},
+  return text(Json{{"frame", fit.network.frame == ClosureFrame::surface ? "surface" : "incidence"},
+                   {"lobes", lobes},
                    {"diffuse", curve_json(fit.network.diffuse)},
                    {"views", views},
                    {"relative_l2", errors},

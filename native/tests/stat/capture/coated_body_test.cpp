@@ -8,7 +8,7 @@
 #include "capture/goniometer/goniometer.h"
 #include "math/sphere/directions.h"
 
-namespace velour {
+namespace velour::coated_body_test {
 namespace {
 
 constexpr double kIor = 1.5;
@@ -129,4 +129,4 @@ TEST(CoatedBody, MirrorsAsFresnelsFormulaSays) {
 }
 
 }  // namespace
-}  // namespace velour
+}  // namespace velour::coated_body_test

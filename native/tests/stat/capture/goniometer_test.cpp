@@ -9,7 +9,7 @@
 #include "support/beckmann.h"
 #include "support/statistics.h"
 
-namespace velour {
+namespace velour::goniometer_test {
 namespace {
 
 GoniometerOptions options_for(double roughness) {
@@ -181,4 +181,4 @@ TEST(Goniometer, HardlyAnyPathIsLost) {
 }
 
 }  // namespace
-}  // namespace velour
+}  // namespace velour::goniometer_test

@@ -13,7 +13,7 @@
 #include "support/captured.h"
 #include "support/level.h"
 
-namespace velour {
+namespace velour::large_capture_test {
 namespace {
 
 using test::ScratchFolder;
@@ -126,4 +126,4 @@ TEST(LargeCapture, KeepsToALimitOf256Megabytes) {
 #endif
 
 }  // namespace
-}  // namespace velour
+}  // namespace velour::large_capture_test

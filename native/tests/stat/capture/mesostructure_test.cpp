@@ -5,7 +5,7 @@
 
 #include "support/captured.h"
 
-namespace velour {
+namespace velour::mesostructure_test {
 namespace {
 
 using test::Captured;
@@ -155,4 +155,4 @@ TEST(Mesostructure, HasNoSeam) {
 }
 
 }  // namespace
-}  // namespace velour
+}  // namespace velour::mesostructure_test

@@ -4,7 +4,7 @@
 #include "math/sphere/random.h"
 #include "support/sampler_proof.h"
 
-namespace velour {
+namespace velour::environment_sampling_test {
 namespace {
 
 using test::Sampler;
@@ -115,4 +115,4 @@ TEST(EnvironmentSamplingConstant, FollowsItsDensity) {
 }
 
 }  // namespace
-}  // namespace velour
+}  // namespace velour::environment_sampling_test

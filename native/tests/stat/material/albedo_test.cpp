@@ -8,7 +8,7 @@
 #include "support/proof_materials.h"
 #include "support/statistics.h"
 
-namespace velour {
+namespace velour::albedo_test {
 namespace {
 
 using test::eval_one;
@@ -89,4 +89,4 @@ TEST(Albedo, ABadProposalIsUnbiased) {
 }
 
 }  // namespace
-}  // namespace velour
+}  // namespace velour::albedo_test

@@ -5,7 +5,7 @@
 #include "material/shader_layers.h"
 #include "support/proof_materials.h"
 
-namespace velour {
+namespace velour::glass_sampling_test {
 namespace {
 
 struct Case {
@@ -91,4 +91,4 @@ TEST(GlassSamplingControls, AreSeen) {
 }
 
 }  // namespace
-}  // namespace velour
+}  // namespace velour::glass_sampling_test

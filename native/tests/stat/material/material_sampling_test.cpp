@@ -7,7 +7,7 @@
 #include "support/proof_materials.h"
 #include "support/statistics.h"
 
-namespace velour {
+namespace velour::material_sampling_test {
 namespace {
 
 using test::Sampler;
@@ -198,4 +198,4 @@ TEST(MaterialSamplingControl, AnotherMaterialsDensityIsSeen) {
 }
 
 }  // namespace
-}  // namespace velour
+}  // namespace velour::material_sampling_test

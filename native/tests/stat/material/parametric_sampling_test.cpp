@@ -8,7 +8,7 @@
 #include "support/statistics.h"
 #include "support/warped_sampler.h"
 
-namespace velour {
+namespace velour::parametric_sampling_test {
 namespace {
 
 using test::LobeRecipe;
@@ -152,4 +152,4 @@ TEST(ParametricDensity, NarrowLobesAsideAreDrawn) {
 }
 
 }  // namespace
-}  // namespace velour
+}  // namespace velour::parametric_sampling_test

@@ -5,7 +5,7 @@
 #include "support/parametric_models.h"
 #include "support/warped_sampler.h"
 
-namespace velour {
+namespace velour::roughened_sampling_test {
 namespace {
 
 template <typename Body>
@@ -76,4 +76,4 @@ TEST(RoughenedSamplingControl, ARoughnessOffByTwoPercentIsSeen) {
 }
 
 }  // namespace
-}  // namespace velour
+}  // namespace velour::roughened_sampling_test

@@ -12,7 +12,7 @@
 #include "support/textured_materials.h"
 #include "support/through_btfs.h"
 
-namespace velour {
+namespace velour::shader_layers_sampling_test {
 namespace {
 
 LayerWeight by(LayerFactor::Kind kind, float value) { return {{{kind, value}}}; }
@@ -154,4 +154,4 @@ TEST(ShaderLayersSampling, ABatchIsItsSamples) {
 }
 
 }  // namespace
-}  // namespace velour
+}  // namespace velour::shader_layers_sampling_test

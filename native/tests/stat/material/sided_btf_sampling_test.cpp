@@ -7,7 +7,7 @@
 #include "support/statistics.h"
 #include "support/warped_sampler.h"
 
-namespace velour {
+namespace velour::sided_btf_sampling_test {
 namespace {
 
 using Shared = std::shared_ptr<const Material>;
@@ -126,4 +126,4 @@ TYPED_TEST(SidedBtfDraws, FollowTheHighlight) {
 }
 
 }  // namespace
-}  // namespace velour
+}  // namespace velour::sided_btf_sampling_test

@@ -7,7 +7,7 @@
 #include "support/proof_materials.h"
 #include "support/statistics.h"
 
-namespace velour {
+namespace velour::table_sampling_test {
 namespace {
 
 using test::Sampler;
@@ -82,4 +82,4 @@ TEST(TableSamplingGain, BeatsTheCosineOnAHighlight) {
 }
 
 }  // namespace
-}  // namespace velour
+}  // namespace velour::table_sampling_test

@@ -5,7 +5,7 @@
 #include "support/statistics.h"
 #include "support/through_btfs.h"
 
-namespace velour {
+namespace velour::through_sampling_test {
 namespace {
 
 template <typename Kind>
@@ -103,4 +103,4 @@ TYPED_TEST(ThroughSampling, ShareIsThatOfTheLight) {
 }
 
 }  // namespace
-}  // namespace velour
+}  // namespace velour::through_sampling_test

@@ -4,7 +4,7 @@
 #include "support/polygon_irradiance.h"
 #include "support/renders.h"
 
-namespace velour {
+namespace velour::closed_form_test {
 namespace {
 
 using test::mean_of;
@@ -220,4 +220,4 @@ TEST(ClosedForm, LargeScenesDoNotShadowThemselves) {
 }
 
 }  // namespace
-}  // namespace velour
+}  // namespace velour::closed_form_test

@@ -12,7 +12,7 @@
 #include "support/proof_scenes.h"
 #include "support/test_scene.h"
 
-namespace velour {
+namespace velour::denoised_error_test {
 namespace {
 
 constexpr int kWidth = 64, kHeight = 48;
@@ -115,4 +115,4 @@ TEST(DenoisedError, LiesBelowItsBoundInTenScenes) {
 }
 
 }  // namespace
-}  // namespace velour
+}  // namespace velour::denoised_error_test

@@ -13,7 +13,7 @@
 #include "support/sampler_proof.h"
 #include "support/textured_scenes.h"
 
-namespace velour {
+namespace velour::emissive_meshes_test {
 namespace {
 
 using test::NamedStrategy;
@@ -244,4 +244,4 @@ TEST(EmissiveMeshes, RaysAreDrawnByTheirDensity) {
 }
 
 }  // namespace
-}  // namespace velour
+}  // namespace velour::emissive_meshes_test

@@ -5,7 +5,7 @@
 #include "support/sampler_proof.h"
 #include "support/test_scene.h"
 
-namespace velour {
+namespace velour::light_sampling_test {
 namespace {
 
 using test::Sampler;
@@ -160,4 +160,4 @@ TEST(LightingSampling, AllLightOfASceneFollowsItsDensity) {
 }
 
 }  // namespace
-}  // namespace velour
+}  // namespace velour::light_sampling_test

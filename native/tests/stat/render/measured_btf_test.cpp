@@ -4,7 +4,7 @@
 #include "support/strategy_agreement.h"
 #include "support/striped_btf.h"
 
-namespace velour {
+namespace velour::measured_btf_test {
 namespace {
 
 using Shared = std::shared_ptr<const Material>;
@@ -56,4 +56,4 @@ TEST(MeasuredBtf, FarTilesKeepTheirMean) {
 }
 
 }  // namespace
-}  // namespace velour
+}  // namespace velour::measured_btf_test

@@ -5,7 +5,7 @@
 
 #include "support/renders.h"
 
-namespace velour {
+namespace velour::motion_blur_test {
 namespace {
 
 using test::shift;
@@ -269,4 +269,4 @@ TEST(MotionBlur, VectorIsTheMotionInPixels) {
 }
 
 }  // namespace
-}  // namespace velour
+}  // namespace velour::motion_blur_test

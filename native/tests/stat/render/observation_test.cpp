@@ -4,7 +4,7 @@
 #include "support/level.h"
 #include "support/observed_scenes.h"
 
-namespace velour {
+namespace velour::observation_test {
 namespace {
 
 using test::ObservedLight;
@@ -87,4 +87,4 @@ INSTANTIATE_TEST_SUITE_P(Lights, ObservedPicture,
                          ::testing::Values(ObservedLight::sky, ObservedLight::lamps, ObservedLight::delta_lights));
 
 }  // namespace
-}  // namespace velour
+}  // namespace velour::observation_test

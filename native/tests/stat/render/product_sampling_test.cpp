@@ -8,7 +8,7 @@
 #include "support/renders.h"
 #include "support/test_data.h"
 
-namespace velour {
+namespace velour::product_sampling_test {
 namespace {
 
 EnvironmentMixture sky_of(int lobes, float sharpest) {
@@ -239,4 +239,4 @@ TEST_F(ProductStrategy, UnderAConstantSkyToo) {
 }
 
 }  // namespace
-}  // namespace velour
+}  // namespace velour::product_sampling_test

@@ -4,7 +4,7 @@
 #include "support/gallery.h"
 #include "support/renders.h"
 
-namespace velour {
+namespace velour::sequences_test {
 namespace {
 
 TEST(Combinations, EveryShareAndHeuristicHasTheSameExpectation) {
@@ -148,4 +148,4 @@ TEST(Mis, NoiseEstimateIsHonest) {
 }
 
 }  // namespace
-}  // namespace velour
+}  // namespace velour::sequences_test

@@ -6,7 +6,7 @@
 #include "support/renders.h"
 #include "support/significance.h"
 
-namespace velour {
+namespace velour::shared_rays_test {
 namespace {
 
 using test::NamedStrategy;
@@ -65,4 +65,4 @@ TEST(SharedRays, SaveOneOfThreeRaysAVertex) {
 }
 
 }  // namespace
-}  // namespace velour
+}  // namespace velour::shared_rays_test

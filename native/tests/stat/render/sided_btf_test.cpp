@@ -6,7 +6,7 @@
 #include "support/sided_btfs.h"
 #include "support/strategy_agreement.h"
 
-namespace velour {
+namespace velour::sided_btf_test {
 namespace {
 
 template <typename Kind>
@@ -64,4 +64,4 @@ TYPED_TEST(SidedBtf, WhiteIsNotSeenInAFurnace) {
 }
 
 }  // namespace
-}  // namespace velour
+}  // namespace velour::sided_btf_test

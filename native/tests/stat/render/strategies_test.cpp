@@ -12,7 +12,7 @@
 #include "support/significance.h"
 #include "support/test_data.h"
 
-namespace velour {
+namespace velour::strategies_test {
 namespace {
 
 using test::NamedStrategy;
@@ -172,4 +172,4 @@ INSTANTIATE_TEST_SUITE_P(Scenes, Strategies, ::testing::ValuesIn(kCases));
 INSTANTIATE_TEST_SUITE_P(Scenes, SurfaceStrategies, ::testing::ValuesIn(std::begin(kCases) + 1, std::end(kCases)));
 
 }  // namespace
-}  // namespace velour
+}  // namespace velour::strategies_test

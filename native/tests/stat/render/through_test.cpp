@@ -11,7 +11,7 @@
 #include "support/through_btfs.h"
 #include "votf/capture/votf_capture.h"
 
-namespace velour {
+namespace velour::through_test {
 namespace {
 
 template <typename Kind>
@@ -199,4 +199,4 @@ TEST(ThroughGeometry, FrontAndBackAreReciprocal) {
 }
 
 }  // namespace
-}  // namespace velour
+}  // namespace velour::through_test

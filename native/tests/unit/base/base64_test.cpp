@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-namespace velour {
+namespace velour::base64_test {
 namespace {
 
 std::vector<uint8_t> bytes_of(const std::string& text) { return {text.begin(), text.end()}; }
@@ -39,4 +39,4 @@ TEST(Base64, WhatNoBytesGiveIsRefused) {
 }
 
 }  // namespace
-}  // namespace velour
+}  // namespace velour::base64_test

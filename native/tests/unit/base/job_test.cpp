@@ -6,7 +6,7 @@
 #include <chrono>
 #include <limits>
 
-namespace velour {
+namespace velour::job_test {
 namespace {
 
 using namespace std::chrono_literals;
@@ -135,4 +135,4 @@ TEST(Progress, NeverFalls) {
 }
 
 }  // namespace
-}  // namespace velour
+}  // namespace velour::job_test

@@ -6,7 +6,7 @@
 #include <thread>
 #include <vector>
 
-namespace velour {
+namespace velour::parallel_test {
 namespace {
 
 class Pieces : public testing::TestWithParam<int> {
@@ -79,4 +79,4 @@ TEST_P(Pieces, AnErrorBesideLeavesNoneOutOfATable) {
 }
 
 }  // namespace
-}  // namespace velour
+}  // namespace velour::parallel_test

@@ -12,7 +12,7 @@
 #include "base/process.h"
 #include "support/test_data.h"
 
-namespace velour {
+namespace velour::scratch_pages_test {
 namespace {
 
 constexpr uint64_t kBytes = 64 << 20;
@@ -68,4 +68,4 @@ TEST(ScratchPages, NothingIsNothing) {
 }
 
 }  // namespace
-}  // namespace velour
+}  // namespace velour::scratch_pages_test

@@ -9,7 +9,7 @@
 #include "base/error.h"
 #include "support/warnings.h"
 
-namespace velour {
+namespace velour::warning_test {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -97,4 +97,4 @@ TEST(Warning, DamageIsNamed) {
 }
 
 }  // namespace
-}  // namespace velour
+}  // namespace velour::warning_test

@@ -13,7 +13,7 @@
 #include "support/captured.h"
 #include "support/warnings.h"
 
-namespace velour {
+namespace velour::btf_capture_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -254,4 +254,4 @@ TEST(BtfCapture, BrokenMaterialsAreCountedAndCountAsNothing) {
 }
 
 }  // namespace
-}  // namespace velour
+}  // namespace velour::btf_capture_test

@@ -7,7 +7,7 @@
 #include "material/principled/principled_material.h"
 #include "support/captured.h"
 
-namespace velour {
+namespace velour::capture_failures_test {
 namespace {
 
 using test::Captured;
@@ -76,4 +76,4 @@ TEST(CaptureFailures, WhatCrossesItselfAndTheBorderIsFiniteFromBothSides) {
 }
 
 }  // namespace
-}  // namespace velour
+}  // namespace velour::capture_failures_test

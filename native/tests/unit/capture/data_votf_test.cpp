@@ -12,7 +12,7 @@
 #include "support/captured.h"
 #include "votf/capture/votf_capture.h"
 
-namespace velour {
+namespace velour::data_votf_test {
 namespace {
 
 constexpr uint32_t kTexels = 64;
@@ -174,4 +174,4 @@ TEST_F(DataVotf, CanBeCancelled) {
 }
 
 }  // namespace
-}  // namespace velour
+}  // namespace velour::data_votf_test

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace velour {
+namespace velour::height_field_test {
 namespace {
 
 double correlation_at(const std::vector<double>& field, int cells, int dx, int dy) {
@@ -96,4 +96,4 @@ TEST(Patches, CoverTheirShareExactly) {
 }
 
 }  // namespace
-}  // namespace velour
+}  // namespace velour::height_field_test

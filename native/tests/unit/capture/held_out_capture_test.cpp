@@ -5,7 +5,7 @@
 #include "btf/measure/pair_layout.h"
 #include "support/captured.h"
 
-namespace velour {
+namespace velour::held_out_capture_test {
 namespace {
 
 using test::Captured;
@@ -63,4 +63,4 @@ TEST(HeldOutCapture, OfAnOpenTileHasPairsOnBothSides) {
 }
 
 }  // namespace
-}  // namespace velour
+}  // namespace velour::held_out_capture_test

@@ -9,7 +9,7 @@
 #include "math/sphere/random.h"
 #include "support/simd_targets.h"
 
-namespace velour {
+namespace velour::light_kernels_test {
 namespace {
 
 /// Neither a multiple of any vector's length nor less than a group.
@@ -90,4 +90,4 @@ TEST(LightKernels, AddPathsAndLeaveOutWhatIsNotFinite) {
 }
 
 }  // namespace
-}  // namespace velour
+}  // namespace velour::light_kernels_test

@@ -12,7 +12,7 @@
 #include "math/sphere/directions.h"
 #include "support/test_data.h"
 
-namespace velour {
+namespace velour::microsurface_test {
 namespace {
 
 MicrosurfaceOptions quick() {
@@ -183,4 +183,4 @@ TEST(Microsurface, StopsSoonAfterACancelAndWritesNothing) {
 }
 
 }  // namespace
-}  // namespace velour
+}  // namespace velour::microsurface_test

@@ -8,7 +8,7 @@
 #include "math/sphere/random.h"
 #include "math/sphere/warp.h"
 
-namespace velour {
+namespace velour::pair_grid_test {
 namespace {
 
 DirectionPair random_pair(uint64_t i) {
@@ -116,4 +116,4 @@ TEST(PairGrid, CoarserBinsForgetAllAzimuths) {
 }
 
 }  // namespace
-}  // namespace velour
+}  // namespace velour::pair_grid_test

@@ -6,7 +6,7 @@
 
 #include "math/sphere/random.h"
 
-namespace velour {
+namespace velour::periodic_tile_test {
 namespace {
 
 constexpr int kCells = 32;
@@ -111,4 +111,4 @@ TEST(PeriodicTile, BaseCellsMarkBothTheirFacets) {
 }
 
 }  // namespace
-}  // namespace velour
+}  // namespace velour::periodic_tile_test

@@ -8,7 +8,7 @@
 #include "base/error.h"
 #include "capture/goniometer/microsurface.h"
 
-namespace velour {
+namespace velour::reflectance_test {
 namespace {
 
 /// Fresnel's formulas by complex numbers.
@@ -116,4 +116,4 @@ TEST(Metals, AnUnknownNameListsTheKnownOnes) {
 }
 
 }  // namespace
-}  // namespace velour
+}  // namespace velour::reflectance_test

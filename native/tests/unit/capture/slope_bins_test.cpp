@@ -6,7 +6,7 @@
 
 #include "math/sphere/random.h"
 
-namespace velour {
+namespace velour::slope_bins_test {
 namespace {
 
 /// A normally distributed slope of roughness alpha along each axis.
@@ -54,4 +54,4 @@ TEST(SlopeBins, AFewFacetsAreSpreadOverNeighbors) {
 }
 
 }  // namespace
-}  // namespace velour
+}  // namespace velour::slope_bins_test

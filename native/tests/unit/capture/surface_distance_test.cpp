@@ -7,7 +7,7 @@
 
 #include "math/sphere/random.h"
 
-namespace velour {
+namespace velour::surface_distance_test {
 namespace {
 
 Vec3 random_point(RandomStream& numbers) { return {numbers.next(), numbers.next(), 0.5f * numbers.next()}; }
@@ -136,4 +136,4 @@ TEST(SurfaceDistance, CanBeCancelled) {
 }
 
 }  // namespace
-}  // namespace velour
+}  // namespace velour::surface_distance_test

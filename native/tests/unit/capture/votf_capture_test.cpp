@@ -7,7 +7,7 @@
 #include "support/materials.h"
 #include "votf/eval/shell_trace.h"
 
-namespace velour {
+namespace velour::votf_capture_test {
 namespace {
 
 std::unique_ptr<Scene> scene_of(const std::string& kind) {
@@ -90,4 +90,4 @@ INSTANTIATE_TEST_SUITE_P(VotfCapture, OfTiles,
                          ::testing::Values("net", "chainmail", "weave", "twill", "gravel", "corduroy", "knit"));
 
 }  // namespace
-}  // namespace velour
+}  // namespace velour::votf_capture_test

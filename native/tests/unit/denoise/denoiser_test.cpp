@@ -9,7 +9,7 @@
 
 #include "math/sphere/random.h"
 
-namespace velour {
+namespace velour::denoiser_test {
 namespace {
 
 constexpr int kWidth = 67, kHeight = 45;
@@ -101,4 +101,4 @@ TEST(PrivateLibrary, NamesWhatItTried) {
 }
 
 }  // namespace
-}  // namespace velour
+}  // namespace velour::denoiser_test

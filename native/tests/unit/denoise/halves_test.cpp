@@ -9,7 +9,7 @@
 
 #include "math/sphere/random.h"
 
-namespace velour {
+namespace velour::halves_test {
 namespace {
 
 constexpr int kSide = 48;
@@ -147,4 +147,4 @@ TEST(DenoisedHalves, OfOneColorHaveNoError) {
 }
 
 }  // namespace
-}  // namespace velour
+}  // namespace velour::halves_test

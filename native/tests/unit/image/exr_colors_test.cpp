@@ -7,7 +7,7 @@
 #include "base/error.h"
 #include "support/inputs.h"
 
-namespace velour {
+namespace velour::exr_colors_test {
 namespace {
 
 using Kind = ExrColors::Kind;
@@ -92,4 +92,4 @@ TEST(ChosenColors, RefuseWhatIsNotClear) {
 }
 
 }  // namespace
-}  // namespace velour
+}  // namespace velour::exr_colors_test

@@ -12,7 +12,7 @@
 #include "image/formats/exr_header_check.h"
 #include "support/test_data.h"
 
-namespace velour {
+namespace velour::exr_part_test {
 namespace {
 
 Picture numbered(int width, int height, int channels) {
@@ -102,4 +102,4 @@ TEST(ExrPart, RefusesOtherFormatsAndReservedNames) {
 }
 
 }  // namespace
-}  // namespace velour
+}  // namespace velour::exr_part_test

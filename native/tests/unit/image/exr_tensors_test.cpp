@@ -18,7 +18,7 @@
 #include "image/formats/exr_scan.h"
 #include "image/tensors/tensor_pack.h"
 
-namespace velour {
+namespace velour::exr_tensors_test {
 namespace {
 
 Tensor ramp(std::vector<uint64_t> shape) {
@@ -433,4 +433,4 @@ TEST(ExrTensors, WhatNobodyAsksForIsSkippedAndTheRestIsBounded) {
 }
 
 }  // namespace
-}  // namespace velour
+}  // namespace velour::exr_tensors_test

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <functional>
 
-namespace velour {
+namespace velour::flip_test {
 namespace {
 
 constexpr int kFlipWidth = 48, kFlipHeight = 32;
@@ -73,4 +73,4 @@ TEST(Flip, GreenAndBlueDifferMost) {
 }
 
 }  // namespace
-}  // namespace velour
+}  // namespace velour::flip_test

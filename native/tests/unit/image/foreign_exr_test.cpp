@@ -29,7 +29,7 @@
 #include "support/test_data.h"
 #include "support/warnings.h"
 
-namespace velour {
+namespace velour::foreign_exr_test {
 namespace {
 
 constexpr int kWidth = 6, kHeight = 4;
@@ -359,4 +359,4 @@ TEST_F(ForeignExr, HeadersWithoutASizeOrACompressionAreRefused) {
 }
 
 }  // namespace
-}  // namespace velour
+}  // namespace velour::foreign_exr_test

@@ -4,7 +4,7 @@
 
 #include <numeric>
 
-namespace velour {
+namespace velour::half_image_test {
 namespace {
 
 TEST(HalfImage, KeepsTheMeanOfAnySize) {
@@ -28,4 +28,4 @@ TEST(HalfImage, IsTheMeanOfFourWhereSizesAreEven) {
 }
 
 }  // namespace
-}  // namespace velour
+}  // namespace velour::half_image_test

@@ -10,7 +10,7 @@
 #include "support/inputs.h"
 #include "support/test_data.h"
 
-namespace velour {
+namespace velour::orientation_test {
 namespace {
 
 using Bytes = std::vector<uint8_t>;
@@ -137,4 +137,4 @@ TEST(PictureFormats, OthersAreRefusedByName) {
 }
 
 }  // namespace
-}  // namespace velour
+}  // namespace velour::orientation_test

@@ -11,7 +11,7 @@
 #include "base/file.h"
 #include "support/test_data.h"
 
-namespace velour {
+namespace velour::picture_test {
 namespace {
 
 Picture gradient(int width, int height, int channels) {
@@ -243,4 +243,4 @@ TEST(Picture, APngThatPromisesMoreThanItHasIsRefused) {
 }
 
 }  // namespace
-}  // namespace velour
+}  // namespace velour::picture_test

@@ -22,7 +22,7 @@
 #include "support/inputs.h"
 #include "support/test_data.h"
 
-namespace velour {
+namespace velour::portable_picture_test {
 namespace {
 
 constexpr int kStripRows = 8;
@@ -416,4 +416,4 @@ TEST(PortablePicture, DamagedTiffIsRefused) {
 }
 
 }  // namespace
-}  // namespace velour
+}  // namespace velour::portable_picture_test

@@ -10,7 +10,7 @@
 #include "support/inputs.h"
 #include "support/test_data.h"
 
-namespace velour {
+namespace velour::radiance_picture_test {
 namespace {
 
 constexpr int kHdrWidth = 12, kHdrHeight = 9;
@@ -186,4 +186,4 @@ TEST_F(RadiancePicture, RefusesDamage) {
 }
 
 }  // namespace
-}  // namespace velour
+}  // namespace velour::radiance_picture_test

@@ -11,7 +11,7 @@
 #include "base/error.h"
 #include "math/sphere/random.h"
 
-namespace velour {
+namespace velour::tensor_pack_test {
 namespace {
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
@@ -169,4 +169,4 @@ TEST(MapRest, SmoothMapsLeaveNothing) {
 }
 
 }  // namespace
-}  // namespace velour
+}  // namespace velour::tensor_pack_test

@@ -7,7 +7,7 @@
 #include "math/sphere/random.h"
 #include "support/simd_targets.h"
 
-namespace velour {
+namespace velour::environment_kernels_test {
 namespace {
 
 /// More than two blocks, the last one not full: energies over eight decades.
@@ -121,4 +121,4 @@ TEST(EnvironmentKernels, SmoothingMatchesTheScalarReferenceOnEveryTarget) {
 }
 
 }  // namespace
-}  // namespace velour
+}  // namespace velour::environment_kernels_test

@@ -13,7 +13,7 @@
 #include "math/srbf/kernel.h"
 #include "support/test_data.h"
 
-namespace velour {
+namespace velour::environment_mixture_test {
 namespace {
 
 constexpr int kWidth = 512, kHeight = 256;
@@ -237,4 +237,4 @@ TEST(EnvironmentCache, AFolderThatCannotBeIsNoError) {
 }
 
 }  // namespace
-}  // namespace velour
+}  // namespace velour::environment_mixture_test

@@ -7,7 +7,7 @@
 #include "light/environment.h"
 #include "math/sphere/random.h"
 
-namespace velour {
+namespace velour::environment_sampling_test {
 namespace {
 
 /// Where between two nodes the linear density reaches the share `u` of its mass, by bisection.
@@ -115,4 +115,4 @@ TEST(EnvironmentSampling, FollowsTheScalarReferenceOnEveryTarget) {
 }
 
 }  // namespace
-}  // namespace velour
+}  // namespace velour::environment_sampling_test

@@ -10,7 +10,7 @@
 #include "math/sphere/random.h"
 #include "math/sphere/warp.h"
 
-namespace velour {
+namespace velour::environment_test {
 namespace {
 
 struct TestImage {
@@ -223,4 +223,4 @@ TEST(Environment, BlackConstantAndHostileImages) {
 }
 
 }  // namespace
-}  // namespace velour
+}  // namespace velour::environment_test

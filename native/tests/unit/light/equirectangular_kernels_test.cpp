@@ -6,7 +6,7 @@
 #include "math/sphere/warp.h"
 #include "support/simd_targets.h"
 
-namespace velour {
+namespace velour::equirectangular_kernels_test {
 namespace {
 
 constexpr int kWidth = 37, kHeight = 18;
@@ -165,4 +165,4 @@ TEST(EquirectangularKernels, DirectionsMatchTheScalarReferenceOnEveryTarget) {
 }
 
 }  // namespace
-}  // namespace velour
+}  // namespace velour::equirectangular_kernels_test

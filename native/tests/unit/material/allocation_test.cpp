@@ -41,7 +41,7 @@ void operator delete(void* memory, size_t) noexcept { std::free(memory); }
 void operator delete(void* memory, std::align_val_t) noexcept { std::free(memory); }
 void operator delete(void* memory, size_t, std::align_val_t) noexcept { std::free(memory); }
 
-namespace velour {
+namespace velour::allocation_test {
 namespace {
 
 /// Prepares points in batches, as the renderer does, and calls everything that they offer.
@@ -166,4 +166,4 @@ class Allocating final : public Material {
 TEST(AllocationControl, AMaterialThatAllocatesIsSeen) { EXPECT_GT(allocations_at_hits(Allocating()), 0u); }
 
 }  // namespace
-}  // namespace velour
+}  // namespace velour::allocation_test

@@ -10,7 +10,7 @@
 #include "support/example_btf.h"
 #include "support/simd_targets.h"
 
-namespace velour {
+namespace velour::factored_material_test {
 namespace {
 
 struct Evaluator {
@@ -149,4 +149,4 @@ TEST(FactoredMaterial, IsBlackBelowTheHorizonAndNeverNegative) {
 }
 
 }  // namespace
-}  // namespace velour
+}  // namespace velour::factored_material_test

@@ -4,7 +4,7 @@
 
 #include "material/microfacet/ggx_sampler.h"
 
-namespace velour {
+namespace velour::ggx_albedo_test {
 namespace {
 
 /// At entries of the tables: cosines n / 31 and n / 15, roughnesses the same.
@@ -52,4 +52,4 @@ TEST(GgxAlbedo, RoughFacetsRiseLess) {
 }
 
 }  // namespace
-}  // namespace velour
+}  // namespace velour::ggx_albedo_test

@@ -8,7 +8,7 @@
 #include "support/materials.h"
 #include "support/simd_targets.h"
 
-namespace velour {
+namespace velour::ggx_sampler_test {
 namespace {
 
 std::vector<GgxParameters> lobes() {
@@ -135,4 +135,4 @@ TEST(GgxMaterial, ReflectsWhatItsParametersSay) {
 }
 
 }  // namespace
-}  // namespace velour
+}  // namespace velour::ggx_sampler_test

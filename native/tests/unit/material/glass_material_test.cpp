@@ -11,7 +11,7 @@
 #include "math/sphere/warp.h"
 #include "support/materials.h"
 
-namespace velour {
+namespace velour::glass_material_test {
 namespace {
 
 constexpr PrepareOptions kOfPath{.of_path = true};
@@ -219,4 +219,4 @@ TEST(SheenLobe, MatchesItsAlbedo) {
 }
 
 }  // namespace
-}  // namespace velour
+}  // namespace velour::glass_material_test

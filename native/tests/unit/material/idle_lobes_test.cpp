@@ -6,7 +6,7 @@
 
 #include "math/srbf/warped_lobe.h"
 
-namespace velour {
+namespace velour::idle_lobes_test {
 namespace {
 
 const Vec3d kView(std::sin(0.7), 0, std::cos(0.7));
@@ -76,4 +76,4 @@ TEST(IdleLobes, WithoutLightAllStay) {
 }
 
 }  // namespace
-}  // namespace velour
+}  // namespace velour::idle_lobes_test

@@ -10,7 +10,7 @@
 #include "math/sphere/random.h"
 #include "support/materials.h"
 
-namespace velour {
+namespace velour::lobe_filter_test {
 namespace {
 
 const Vec3 kView = direction(0.6f, 1);
@@ -113,4 +113,4 @@ TEST(LobeFilter, DiffuseShareIsThatOfTheDiffuseLobesSamples) {
 }
 
 }  // namespace
-}  // namespace velour
+}  // namespace velour::lobe_filter_test

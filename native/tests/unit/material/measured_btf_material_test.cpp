@@ -6,7 +6,7 @@
 #include "math/sphere/warp.h"
 #include "support/striped_btf.h"
 
-namespace velour {
+namespace velour::measured_btf_material_test {
 namespace {
 
 constexpr uint32_t kWidth = 6, kHeight = 4;
@@ -135,4 +135,4 @@ TEST(MeasuredBtfMaterial, SamplesAreThoseOfTheCosine) {
 }
 
 }  // namespace
-}  // namespace velour
+}  // namespace velour::measured_btf_material_test

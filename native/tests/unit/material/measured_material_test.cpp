@@ -5,7 +5,7 @@
 #include "support/materials.h"
 #include "support/parametric_models.h"
 
-namespace velour {
+namespace velour::measured_material_test {
 namespace {
 
 /// f = (1, -0.5, 2) where wl.x >= 0, not covered elsewhere.
@@ -59,4 +59,4 @@ TEST_P(MeasuredMaterial, SamplesLikeItsProposal) {
 }
 
 }  // namespace
-}  // namespace velour
+}  // namespace velour::measured_material_test

@@ -10,7 +10,7 @@
 #include "support/materials.h"
 #include "support/textured_materials.h"
 
-namespace velour {
+namespace velour::normal_map_test {
 namespace {
 
 std::shared_ptr<const Material> white() { return make_principled_material({.base_color = Rgb(1), .specular = 0}); }
@@ -173,4 +173,4 @@ TEST(NormalMap, MirrorImagesStayAboveTheGround) {
 }
 
 }  // namespace
-}  // namespace velour
+}  // namespace velour::normal_map_test

@@ -8,7 +8,7 @@
 #include "support/parametric_models.h"
 #include "support/simd_targets.h"
 
-namespace velour {
+namespace velour::parametric_material_test {
 namespace {
 
 using test::eval_one;
@@ -239,4 +239,4 @@ TEST(ParametricMaterial, SymmetricOnesAreReciprocalAndTheMeanOfBothOrders) {
 }
 
 }  // namespace
-}  // namespace velour
+}  // namespace velour::parametric_material_test

@@ -10,7 +10,7 @@
 #include "support/parametric_models.h"
 #include "support/simd_targets.h"
 
-namespace velour {
+namespace velour::parametric_table_test {
 namespace {
 
 using test::LobeRecipe;
@@ -183,4 +183,4 @@ TEST(ParametricMaterial, OneDirectionIsABatchOfOne) {
 }
 
 }  // namespace
-}  // namespace velour
+}  // namespace velour::parametric_table_test

@@ -8,7 +8,7 @@
 #include "support/materials.h"
 #include "support/mixtures.h"
 
-namespace velour {
+namespace velour::per_view_material_test {
 namespace {
 
 using test::eval_one;
@@ -280,4 +280,4 @@ TEST(PerViewMaterial, WithoutLobesSamplesTheCosine) {
 }
 
 }  // namespace
-}  // namespace velour
+}  // namespace velour::per_view_material_test

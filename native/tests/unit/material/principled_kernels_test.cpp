@@ -10,7 +10,7 @@
 #include "math/sphere/directions.h"
 #include "support/simd_targets.h"
 
-namespace velour {
+namespace velour::principled_kernels_test {
 namespace {
 
 constexpr PrincipledFormula kDisney = PrincipledFormula::disney;
@@ -145,4 +145,4 @@ TEST(PrincipledKernels, AreTheFormulaOnEveryTarget) {
 }
 
 }  // namespace
-}  // namespace velour
+}  // namespace velour::principled_kernels_test

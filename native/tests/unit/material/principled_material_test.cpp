@@ -7,7 +7,7 @@
 #include "math/sphere/quadrature.h"
 #include "support/materials.h"
 
-namespace velour {
+namespace velour::principled_material_test {
 namespace {
 
 using test::eval_one;
@@ -194,4 +194,4 @@ TEST(PrincipledMaterial, IsFiniteInEveryCorner) {
 }
 
 }  // namespace
-}  // namespace velour
+}  // namespace velour::principled_material_test

@@ -11,7 +11,7 @@
 #include "material/principled/principled_material.h"
 #include "support/programs.h"
 
-namespace velour {
+namespace velour::program_test {
 namespace {
 
 using test::description_of;
@@ -237,4 +237,4 @@ TEST(MeshSets, TakeOneProgram) {
 }
 
 }  // namespace
-}  // namespace velour
+}  // namespace velour::program_test

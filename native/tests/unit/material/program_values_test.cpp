@@ -9,7 +9,7 @@
 
 #include "support/programs.h"
 
-namespace velour {
+namespace velour::program_values_test {
 namespace {
 
 struct BlenderValue {
@@ -71,4 +71,4 @@ TEST(ProgramValues, DependOnTheChoices) {
 }
 
 }  // namespace
-}  // namespace velour
+}  // namespace velour::program_values_test

@@ -12,7 +12,7 @@
 #include "support/textured_materials.h"
 #include "support/through_btfs.h"
 
-namespace velour {
+namespace velour::shader_layers_test {
 namespace {
 
 using Kind = LayerFactor::Kind;
@@ -297,4 +297,4 @@ TEST(PlacedMaterial, MovesAndTurnsTheTexture) {
 }
 
 }  // namespace
-}  // namespace velour
+}  // namespace velour::shader_layers_test

@@ -8,7 +8,7 @@
 #include "support/sided_btfs.h"
 #include "support/simd_targets.h"
 
-namespace velour {
+namespace velour::sided_btf_material_test {
 namespace {
 
 struct Evaluator {
@@ -132,4 +132,4 @@ TYPED_TEST(SidedBtfMaterial, DensitiesIntegrateToTheShareDrawnAbove) {
 }
 
 }  // namespace
-}  // namespace velour
+}  // namespace velour::sided_btf_material_test

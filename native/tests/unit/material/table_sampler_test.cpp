@@ -6,7 +6,7 @@
 #include "material/principled/principled_material.h"
 #include "support/materials.h"
 
-namespace velour {
+namespace velour::table_sampler_test {
 namespace {
 
 TEST(TableSampler, IsPositiveAboveTheHorizonAndFinite) {
@@ -55,4 +55,4 @@ TEST(TableSampler, AnisotropicTablesFollowTheView) {
 }
 
 }  // namespace
-}  // namespace velour
+}  // namespace velour::table_sampler_test

@@ -8,7 +8,7 @@
 #include "image/picture.h"
 #include "math/sphere/random.h"
 
-namespace velour {
+namespace velour::texture_test {
 namespace {
 
 const Mat2 kPoint(0.0f);
@@ -204,4 +204,4 @@ TEST(Texture, NeedsAsManyTexelsAsItsSizeSays) {
 }
 
 }  // namespace
-}  // namespace velour
+}  // namespace velour::texture_test

@@ -4,7 +4,7 @@
 #include "support/materials.h"
 #include "support/textured_materials.h"
 
-namespace velour {
+namespace velour::textured_material_test {
 namespace {
 
 using test::eval_one;
@@ -58,4 +58,4 @@ TEST(TexturedMaterial, IsItsMeanWithoutASite) {
 }
 
 }  // namespace
-}  // namespace velour
+}  // namespace velour::textured_material_test

@@ -8,7 +8,7 @@
 #include "support/striped_btf.h"
 #include "support/through_btfs.h"
 
-namespace velour {
+namespace velour::through_material_test {
 namespace {
 
 constexpr uint32_t kWidth = 5, kHeight = 3;
@@ -96,4 +96,4 @@ TEST(ThroughMaterial, ModelsTransmitWhereTheyHaveSuchSides) {
 }
 
 }  // namespace
-}  // namespace velour
+}  // namespace velour::through_material_test

@@ -6,7 +6,7 @@
 
 #include "math/sphere/directions.h"
 
-namespace velour {
+namespace velour::view_neighbors_test {
 namespace {
 
 std::map<int, float> weights(const ViewNeighbors& set) {
@@ -103,4 +103,4 @@ TEST(ViewSearch, FindsWhatReadingAllViewsFinds) {
 }
 
 }  // namespace
-}  // namespace velour
+}  // namespace velour::view_neighbors_test

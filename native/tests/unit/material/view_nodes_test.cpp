@@ -5,7 +5,7 @@
 #include "math/sphere/directions.h"
 #include "math/sphere/view_spline.h"
 
-namespace velour {
+namespace velour::view_nodes_test {
 namespace {
 
 TEST(ViewPlace, HasTheAnglesOfTheView) {
@@ -83,4 +83,4 @@ TEST(ViewSpline, IsTheSameInFloat) {
 }
 
 }  // namespace
-}  // namespace velour
+}  // namespace velour::view_nodes_test

@@ -9,7 +9,7 @@
 #include "unit/model/example_model.h"
 #include "unit/model/refusals.h"
 
-namespace velour {
+namespace velour::factored_model_test {
 namespace {
 
 using test::after_a_round_trip;
@@ -106,4 +106,4 @@ TEST(FactoredModel, RefusesADamagedFileByItsField) {
 }
 
 }  // namespace
-}  // namespace velour
+}  // namespace velour::factored_model_test

@@ -7,7 +7,7 @@
 #include "model/model.h"
 #include "unit/model/refusals.h"
 
-namespace velour {
+namespace velour::hostile_model_test {
 namespace {
 
 using test::expect_named;
@@ -303,4 +303,4 @@ TEST(HostileModel, DamagedFilesAreRefusedOrSound) {
 }
 
 }  // namespace
-}  // namespace velour
+}  // namespace velour::hostile_model_test

@@ -12,7 +12,7 @@
 #include "support/test_data.h"
 #include "support/warnings.h"
 
-namespace velour {
+namespace velour::model_file_test {
 namespace {
 
 using test::example_model;
@@ -188,4 +188,4 @@ TEST(ModelFile, EveryKindHasItsNameAndItsMaterial) {
 }
 
 }  // namespace
-}  // namespace velour
+}  // namespace velour::model_file_test

@@ -14,7 +14,7 @@
 #include "support/warnings.h"
 #include "unit/model/example_model.h"
 
-namespace velour {
+namespace velour::roughened_model_test {
 namespace {
 
 using test::LobeRecipe;
@@ -144,4 +144,4 @@ TEST(RoughenedModel, IsWiderTheRougherItIs) {
 }
 
 }  // namespace
-}  // namespace velour
+}  // namespace velour::roughened_model_test

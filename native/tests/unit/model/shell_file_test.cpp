@@ -4,7 +4,7 @@
 #include "support/example_shell.h"
 #include "unit/model/refusals.h"
 
-namespace velour {
+namespace velour::shell_file_test {
 namespace {
 
 using test::expect_named;
@@ -84,4 +84,4 @@ TEST(ShellFile, WhatIsWrongIsNamed) {
 }
 
 }  // namespace
-}  // namespace velour
+}  // namespace velour::shell_file_test

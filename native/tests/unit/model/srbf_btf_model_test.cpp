@@ -5,7 +5,7 @@
 #include "unit/model/example_model.h"
 #include "unit/model/refusals.h"
 
-namespace velour {
+namespace velour::srbf_btf_model_test {
 namespace {
 
 using test::after_a_round_trip;
@@ -278,4 +278,4 @@ TEST(SrbfBtfModel, NothingOutsideTheTableMatters) {
 }
 
 }  // namespace
-}  // namespace velour
+}  // namespace velour::srbf_btf_model_test

@@ -6,7 +6,7 @@
 #include "unit/model/example_model.h"
 #include "unit/model/refusals.h"
 
-namespace velour {
+namespace velour::tensor_btf_model_test {
 namespace {
 
 using test::after_a_round_trip;
@@ -182,4 +182,4 @@ TEST(TensorBtfModel, NothingOutsideTheTableMatters) {
 }
 
 }  // namespace
-}  // namespace velour
+}  // namespace velour::tensor_btf_model_test

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-namespace velour {
+namespace velour::axes_test {
 namespace {
 
 std::vector<std::string> texts(const PlotAxis& axis, int most) {
@@ -68,4 +68,4 @@ TEST(Axes, PlacesAreLinearOrLogarithmic) {
 }
 
 }  // namespace
-}  // namespace velour
+}  // namespace velour::axes_test

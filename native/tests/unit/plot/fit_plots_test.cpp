@@ -5,7 +5,7 @@
 #include "base/error.h"
 #include "plot/plot.h"
 
-namespace velour {
+namespace velour::fit_plots_test {
 namespace {
 
 Model fitted_model() {
@@ -76,4 +76,4 @@ TEST(PlotCsv, HasEveryNumberWithAllItsDigits) {
 }
 
 }  // namespace
-}  // namespace velour
+}  // namespace velour::fit_plots_test

@@ -7,7 +7,7 @@
 #include "plot/output.h"
 #include "plot/plot.h"
 
-namespace velour {
+namespace velour::layout_test {
 namespace {
 
 struct Box {
@@ -125,4 +125,4 @@ TEST(PlotLayout, SidesOutOfRangeAreRefused) {
 }
 
 }  // namespace
-}  // namespace velour
+}  // namespace velour::layout_test

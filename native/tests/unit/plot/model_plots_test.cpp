@@ -14,7 +14,7 @@
 #include "support/materials.h"
 #include "support/parametric_models.h"
 
-namespace velour {
+namespace velour::model_plots_test {
 namespace {
 
 using namespace velour::test;
@@ -186,4 +186,4 @@ TEST(ModelPlots, AViewBelowTheHorizonIsRefused) {
 }
 
 }  // namespace
-}  // namespace velour
+}  // namespace velour::model_plots_test

@@ -7,7 +7,7 @@
 #include "base/error.h"
 #include "support/example_shell.h"
 
-namespace velour {
+namespace velour::outline_plot_test {
 namespace {
 
 Model with_shell(std::shared_ptr<VotfVolume> volume) {
@@ -56,4 +56,4 @@ TEST(OutlinePlot, IsRefusedWithoutAnOutlineAndCanBeCancelled) {
 }
 
 }  // namespace
-}  // namespace velour
+}  // namespace velour::outline_plot_test

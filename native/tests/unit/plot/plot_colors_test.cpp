@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace velour {
+namespace velour::plot_colors_test {
 namespace {
 
 TEST(PlotColors, ContrastIsThatOfTheGuidelines) {
@@ -37,4 +37,4 @@ TEST(PlotColors, WhatIsReadableStaysAsItIs) {
 }
 
 }  // namespace
-}  // namespace velour
+}  // namespace velour::plot_colors_test

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace velour {
+namespace velour::polyline_test {
 namespace {
 
 std::vector<Vec2> circle(int count) {
@@ -54,4 +54,4 @@ TEST(Polyline, DashesAndGapsHaveTheirLengths) {
 }
 
 }  // namespace
-}  // namespace velour
+}  // namespace velour::polyline_test

@@ -6,7 +6,7 @@
 
 #include "plot/font.h"
 
-namespace velour {
+namespace velour::raster_test {
 namespace {
 
 /// White marks on black: how much of the square they cover, in pixels.
@@ -90,4 +90,4 @@ TEST(Svg, HoldsTheSameMarks) {
 }
 
 }  // namespace
-}  // namespace velour
+}  // namespace velour::raster_test

@@ -6,7 +6,7 @@
 #include "btf/measure/relief.h"
 #include "support/example_srbf.h"
 
-namespace velour {
+namespace velour::btf_maps_test {
 namespace {
 
 /// f at the center of a texel, by what stands in the maps.
@@ -90,4 +90,4 @@ TEST(BtfMaps, OneThatIsSeenFromBelowAloneHasNone) {
 }
 
 }  // namespace
-}  // namespace velour
+}  // namespace velour::btf_maps_test

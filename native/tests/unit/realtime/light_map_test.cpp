@@ -7,7 +7,7 @@
 #include "support/sky_lobes.h"
 #include "support/table_shader.h"
 
-namespace velour {
+namespace velour::light_map_test {
 namespace {
 
 EnvironmentMixture sky_with_sun() {
@@ -112,4 +112,4 @@ TEST(LightLevelsOf, BandwidthsAreLogarithms) {
 }
 
 }  // namespace
-}  // namespace velour
+}  // namespace velour::light_map_test

@@ -14,7 +14,7 @@
 #include "support/sky_lobes.h"
 #include "support/table_shader.h"
 
-namespace velour {
+namespace velour::lobe_rows_test {
 namespace {
 
 EnvironmentMixture soft_sky() {
@@ -172,4 +172,4 @@ TEST(LobeRows, BtfsHaveNone) {
 }
 
 }  // namespace
-}  // namespace velour
+}  // namespace velour::lobe_rows_test

@@ -6,7 +6,7 @@
 #include "support/example_shell.h"
 #include "votf/eval/occlusion_volume.h"
 
-namespace velour {
+namespace velour::shell_maps_test {
 namespace {
 
 /// Pixel of a point of the volume, or of the border around it.
@@ -59,4 +59,4 @@ TEST(ShellMaps, OfTooManyPointsAreRefused) {
 }
 
 }  // namespace
-}  // namespace velour
+}  // namespace velour::shell_maps_test

@@ -10,7 +10,7 @@
 #include "render/path/vertex.h"
 #include "support/textured_scenes.h"
 
-namespace velour {
+namespace velour::brushed_test {
 namespace {
 
 constexpr int kPixels = 32;
@@ -165,4 +165,4 @@ TEST(Brushed, WithoutTextureCoordinatesItLiesSomehow) {
 }
 
 }  // namespace
-}  // namespace velour
+}  // namespace velour::brushed_test

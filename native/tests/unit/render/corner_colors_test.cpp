@@ -12,7 +12,7 @@
 #include "render/path/vertex.h"
 #include "support/textured_scenes.h"
 
-namespace velour {
+namespace velour::corner_colors_test {
 namespace {
 
 const std::vector<Vec3> kPositions = {{-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0}};
@@ -158,4 +158,4 @@ TEST(CornerColors, TellHowMuchTrianglesEmit) {
 }
 
 }  // namespace
-}  // namespace velour
+}  // namespace velour::corner_colors_test

@@ -12,7 +12,7 @@
 #include "render/render.h"
 #include "unit/render/busy_scene.h"
 
-namespace velour {
+namespace velour::film_sums_test {
 namespace {
 
 constexpr int kWidth = 37, kHeight = 21;
@@ -155,4 +155,4 @@ TEST(FilmSums, RefuseWhatIsNone) {
 }
 
 }  // namespace
-}  // namespace velour
+}  // namespace velour::film_sums_test

@@ -8,7 +8,7 @@
 #include "render/path/path_numbers.h"
 #include "render/path/vertex.h"
 
-namespace velour {
+namespace velour::film_test {
 namespace {
 
 TEST(Film, MeansOfWhatWasAdded) {
@@ -125,4 +125,4 @@ TEST(Lattice, StaysBelowOne) {
 }
 
 }  // namespace
-}  // namespace velour
+}  // namespace velour::film_test

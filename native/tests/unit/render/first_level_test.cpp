@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-namespace velour {
+namespace velour::first_level_test {
 namespace {
 
 int pixels(const FirstLevel& level, int width, int height) {
@@ -55,4 +55,4 @@ TEST(FirstLevel, WhatWasStoppedAtOnceTellsNothing) {
 }
 
 }  // namespace
-}  // namespace velour
+}  // namespace velour::first_level_test

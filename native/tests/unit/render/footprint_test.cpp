@@ -6,7 +6,7 @@
 
 #include "support/textured_scenes.h"
 
-namespace velour {
+namespace velour::footprint_test {
 namespace {
 
 constexpr int kSide = 4096;  // pixels: neighbors mostly meet one triangle
@@ -231,4 +231,4 @@ INSTANTIATE_TEST_SUITE_P(Mappings, LocalFrame,
                          [](const auto& chosen) { return std::string(chosen.param.name); });
 
 }  // namespace
-}  // namespace velour
+}  // namespace velour::footprint_test

@@ -7,7 +7,7 @@
 #include "material/shader_layers.h"
 #include "support/test_scene.h"
 
-namespace velour {
+namespace velour::glass_render_test {
 namespace {
 
 std::shared_ptr<const Material> glass(float roughness, GgxLobe lobe = GgxLobe::whole) {
@@ -131,4 +131,4 @@ TEST(GlassRender, IsOpaqueToShadowRays) {
 }
 
 }  // namespace
-}  // namespace velour
+}  // namespace velour::glass_render_test

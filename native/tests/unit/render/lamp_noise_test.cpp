@@ -3,7 +3,7 @@
 
 #include "support/test_scene.h"
 
-namespace velour {
+namespace velour::lamp_noise_test {
 namespace {
 
 /// A matte floor under one lamp without anything between, a direction a camera ray.
@@ -59,4 +59,4 @@ TEST(LampNoise, OfMixedStrategiesIsLittleInTheOpen) {
 }
 
 }  // namespace
-}  // namespace velour
+}  // namespace velour::lamp_noise_test

@@ -10,7 +10,7 @@
 #include "render/lights/lighting.h"
 #include "support/test_scene.h"
 
-namespace velour {
+namespace velour::lamp_test {
 namespace {
 
 constexpr Vec3 kUp(0, 0, 1);
@@ -336,4 +336,4 @@ TEST(Lighting, SkyAndLampAreChosenByWhatTheyBringToThePlane) {
 }
 
 }  // namespace
-}  // namespace velour
+}  // namespace velour::lamp_test

@@ -7,7 +7,7 @@
 #include "material/bsdf_materials.h"
 #include "support/test_scene.h"
 
-namespace velour {
+namespace velour::light_paths_test {
 namespace {
 
 constexpr size_t kPixels = 64;
@@ -138,4 +138,4 @@ TEST(LightPaths, RefuseWhatIsNoLimit) {
 }
 
 }  // namespace
-}  // namespace velour
+}  // namespace velour::light_paths_test

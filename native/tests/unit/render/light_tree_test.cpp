@@ -8,7 +8,7 @@
 
 #include "math/sphere/random.h"
 
-namespace velour {
+namespace velour::light_tree_test {
 namespace {
 
 std::vector<LightTree::Light> scattered(size_t count) {
@@ -165,4 +165,4 @@ TEST(LightTree, EndsSoonAfterACancel) {
 }
 
 }  // namespace
-}  // namespace velour
+}  // namespace velour::light_tree_test

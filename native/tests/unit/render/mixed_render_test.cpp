@@ -9,7 +9,7 @@
 #include "support/sided_btfs.h"
 #include "support/test_scene.h"
 
-namespace velour {
+namespace velour::mixed_render_test {
 namespace {
 
 using Kind = LayerFactor::Kind;
@@ -60,4 +60,4 @@ TEST(MixedRender, HalfEmissionGivesTheMeanOfBothPictures) {
 }
 
 }  // namespace
-}  // namespace velour
+}  // namespace velour::mixed_render_test

@@ -10,7 +10,7 @@
 #include "render/path/path_numbers.h"
 #include "support/test_scene.h"
 
-namespace velour {
+namespace velour::noise_target_test {
 namespace {
 
 using test::rendered;
@@ -250,4 +250,4 @@ TEST(RenderOptions, RefusesWhatIsOutOfRange) {
 }
 
 }  // namespace
-}  // namespace velour
+}  // namespace velour::noise_target_test

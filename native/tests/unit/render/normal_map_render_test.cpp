@@ -7,7 +7,7 @@
 #include "math/sphere/random.h"
 #include "support/textured_scenes.h"
 
-namespace velour {
+namespace velour::normal_map_render_test {
 namespace {
 
 SurfaceMaterial white(const std::vector<Vec3>& normals, int side) {
@@ -102,4 +102,4 @@ TEST(NormalMapRender, NoLightComesThroughACoarseSphere) {
 }
 
 }  // namespace
-}  // namespace velour
+}  // namespace velour::normal_map_render_test

@@ -9,7 +9,7 @@
 #include "render/render.h"
 #include "unit/render/busy_scene.h"
 
-namespace velour {
+namespace velour::parts_test {
 namespace {
 
 constexpr int kWidth = 37, kHeight = 21, kChannels = 4;
@@ -167,4 +167,4 @@ TEST(Parts, AreRefusedWithTheOptionWhereThereIsNoSuchPart) {
 }
 
 }  // namespace
-}  // namespace velour
+}  // namespace velour::parts_test

@@ -11,7 +11,7 @@
 #include "support/textured_scenes.h"
 #include "unit/render/busy_scene.h"
 
-namespace velour {
+namespace velour::passes_test {
 namespace {
 
 constexpr size_t kSide = 8;
@@ -275,4 +275,4 @@ TEST(Cryptomatte, WhatIsThereInPartCoversThatPart) {
 }
 
 }  // namespace
-}  // namespace velour
+}  // namespace velour::passes_test

@@ -6,7 +6,7 @@
 #include "support/proof_materials.h"
 #include "support/test_scene.h"
 
-namespace velour {
+namespace velour::pilot_test {
 namespace {
 
 constexpr int kSide = 64;
@@ -103,4 +103,4 @@ TEST(Pilot, SmallImagesAreLitAsByMis) {
 }
 
 }  // namespace
-}  // namespace velour
+}  // namespace velour::pilot_test

@@ -12,7 +12,7 @@
 #include "support/example_btf.h"
 #include "support/textured_scenes.h"
 
-namespace velour {
+namespace velour::placement_test {
 namespace {
 
 constexpr int kPlacedPixels = 24;
@@ -268,4 +268,4 @@ TEST(Placement, MeshesWithoutCoordinatesAreCounted) {
 }
 
 }  // namespace
-}  // namespace velour
+}  // namespace velour::placement_test

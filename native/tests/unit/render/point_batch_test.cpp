@@ -6,7 +6,7 @@
 
 #include "base/simd.h"
 
-namespace velour {
+namespace velour::point_batch_test {
 namespace {
 
 TEST(PointBatch, GivesTheBitsOfSobolPointsOnEveryTarget) {
@@ -45,4 +45,4 @@ TEST(PointBatch, LeavesPointsOfNoSequenceAlone) {
 }
 
 }  // namespace
-}  // namespace velour
+}  // namespace velour::point_batch_test

@@ -8,7 +8,7 @@
 
 #include "support/test_scene.h"
 
-namespace velour {
+namespace velour::progressive_test {
 namespace {
 
 std::shared_ptr<Scene> lit_scene() {
@@ -215,4 +215,4 @@ TEST(Progressive, RefusesASmallBufferAndABadOption) {
 }
 
 }  // namespace
-}  // namespace velour
+}  // namespace velour::progressive_test

@@ -10,7 +10,7 @@
 #include "support/test_scene.h"
 #include "unit/render/busy_scene.h"
 
-namespace velour {
+namespace velour::render_test {
 namespace {
 
 using test::busy_scene;
@@ -253,4 +253,4 @@ TEST(Render, RefusesWrongOptionsByName) {
 }
 
 }  // namespace
-}  // namespace velour
+}  // namespace velour::render_test

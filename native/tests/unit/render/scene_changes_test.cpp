@@ -9,7 +9,7 @@
 #include "support/example_shell.h"
 #include "support/test_scene.h"
 
-namespace velour {
+namespace velour::scene_changes_test {
 namespace {
 
 using test::rendered;
@@ -320,4 +320,4 @@ TEST(SceneChanges, SamplersOfAnEarlierRenderAreNotUsedAgain) {
 }
 
 }  // namespace
-}  // namespace velour
+}  // namespace velour::scene_changes_test

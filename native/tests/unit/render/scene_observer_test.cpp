@@ -10,7 +10,7 @@
 #include "support/observed_scenes.h"
 #include "usage/observation.h"
 
-namespace velour {
+namespace velour::scene_observer_test {
 namespace {
 
 using test::ObservedLight;
@@ -222,4 +222,4 @@ TEST(DrawByWeight, OrderAndPartsDoNotMatter) {
 }
 
 }  // namespace
-}  // namespace velour
+}  // namespace velour::scene_observer_test

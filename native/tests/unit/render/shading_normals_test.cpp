@@ -5,7 +5,7 @@
 #include "render/path/vertex.h"
 #include "support/test_scene.h"
 
-namespace velour {
+namespace velour::shading_normals_test {
 namespace {
 
 constexpr float kAngle = 0.04f;  // diameter of the sun that has an extent
@@ -111,4 +111,4 @@ TEST(ShadingNormals, AreNotWhatKeepsLightOut) {
 }
 
 }  // namespace
-}  // namespace velour
+}  // namespace velour::shading_normals_test

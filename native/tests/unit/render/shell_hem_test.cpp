@@ -11,7 +11,7 @@
 #include "support/example_shell.h"
 #include "support/test_scene.h"
 
-namespace velour {
+namespace velour::shell_hem_test {
 namespace {
 
 constexpr float kRadius = 0.2f;  // of wires a tile apart, tiles
@@ -201,4 +201,4 @@ TEST(ShellHem, APictureOfTheCutEndOfAWireIsADiskThatIsLit) {
 }
 
 }  // namespace
-}  // namespace velour
+}  // namespace velour::shell_hem_test

@@ -9,7 +9,7 @@
 #include "support/example_shell.h"
 #include "support/test_scene.h"
 
-namespace velour {
+namespace velour::shell_motion_test {
 namespace {
 
 const Vec3 kWay(0.6f, -0.2f, 0.4f);  // from the opening of the shutter to its close
@@ -91,4 +91,4 @@ TEST(ShellMotion, RaysMeetTheStructureWhereItIs) {
 }
 
 }  // namespace
-}  // namespace velour
+}  // namespace velour::shell_motion_test

@@ -13,7 +13,7 @@
 #include "support/test_scene.h"
 #include "support/warnings.h"
 
-namespace velour {
+namespace velour::shell_render_test {
 namespace {
 
 constexpr float kRadius = 0.2f;  // of wires a tile apart
@@ -460,4 +460,4 @@ TEST(ShellRender, ItsHeightIsTheSameInTheWorldWhateverTheScaleOfTheObject) {
 }
 
 }  // namespace
-}  // namespace velour
+}  // namespace velour::shell_render_test

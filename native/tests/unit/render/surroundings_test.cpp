@@ -5,7 +5,7 @@
 
 #include "support/test_scene.h"
 
-namespace velour {
+namespace velour::surroundings_test {
 namespace {
 
 class Veil : public test::ThinLambert {
@@ -76,4 +76,4 @@ TEST(Surroundings, WhatLetsLightThroughDoesNotCount) {
 }
 
 }  // namespace
-}  // namespace velour
+}  // namespace velour::surroundings_test

@@ -5,7 +5,7 @@
 #include "math/sphere/random.h"
 #include "support/textured_scenes.h"
 
-namespace velour {
+namespace velour::textured_render_test {
 namespace {
 
 constexpr int kPixels = 8;
@@ -215,4 +215,4 @@ TEST(TexturedRender, BouncesSeeTheTexture) {
 }
 
 }  // namespace
-}  // namespace velour
+}  // namespace velour::textured_render_test

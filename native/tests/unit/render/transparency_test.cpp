@@ -5,7 +5,7 @@
 #include "material/shader_layers.h"
 #include "support/textured_scenes.h"
 
-namespace velour {
+namespace velour::transparency_test {
 namespace {
 
 constexpr float kAlbedo = 0.8f;
@@ -287,4 +287,4 @@ TEST(Transparency, ATriangleIsCrossedOnce) {
 }
 
 }  // namespace
-}  // namespace velour
+}  // namespace velour::transparency_test

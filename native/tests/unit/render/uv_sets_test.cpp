@@ -9,7 +9,7 @@
 #include "material/principled/principled_material.h"
 #include "support/textured_scenes.h"
 
-namespace velour {
+namespace velour::uv_sets_test {
 namespace {
 
 const Mat2 kFirst(0.3f, 0.1f, -0.2f, 0.5f), kSecond(1.7f, 0.4f, 0.6f, -2.1f);
@@ -130,4 +130,4 @@ TEST(UvSets, MustBeWhole) {
 }
 
 }  // namespace
-}  // namespace velour
+}  // namespace velour::uv_sets_test

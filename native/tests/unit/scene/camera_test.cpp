@@ -5,7 +5,7 @@
 
 #include "math/sphere/random.h"
 
-namespace velour {
+namespace velour::camera_test {
 namespace {
 
 Camera with_lens(Camera::Type type) {
@@ -85,4 +85,4 @@ TEST(Aperture, CornersOfThePolygonFollowItsRotation) {
 }
 
 }  // namespace
-}  // namespace velour
+}  // namespace velour::camera_test

@@ -4,7 +4,7 @@
 
 #include "support/textured_scenes.h"
 
-namespace velour {
+namespace velour::corner_tangents_test {
 namespace {
 
 struct Corners {
@@ -106,4 +106,4 @@ TEST(CornerTangents, NeedTextureCoordinates) {
 }
 
 }  // namespace
-}  // namespace velour
+}  // namespace velour::corner_tangents_test

@@ -12,7 +12,7 @@
 #include "math/sphere/random.h"
 #include "math/sphere/warp.h"
 
-namespace velour {
+namespace velour::embree_scene_test {
 namespace {
 
 const std::vector<Vec3> kCorners = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
@@ -260,4 +260,4 @@ TEST(EmbreeScene, ASceneMayGoWhileItIsBuilt) {
 }
 
 }  // namespace
-}  // namespace velour
+}  // namespace velour::embree_scene_test

@@ -11,7 +11,7 @@
 #include "support/test_data.h"
 #include "support/test_scene.h"
 
-namespace velour {
+namespace velour::mesh_test {
 namespace {
 
 const std::vector<Vec3> kQuad = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}};
@@ -203,4 +203,4 @@ TEST(Scene, CountsWhatItHoldsAndWarns) {
 }
 
 }  // namespace
-}  // namespace velour
+}  // namespace velour::mesh_test

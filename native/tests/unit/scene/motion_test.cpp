@@ -13,7 +13,7 @@
 #include "scene/mesh.h"
 #include "support/significance.h"
 
-namespace velour {
+namespace velour::motion_test {
 namespace {
 
 const std::vector<Vec3> kCorners = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
@@ -284,4 +284,4 @@ TEST(MovingCamera, ShowsPointsWhereItsRaysGo) {
 }
 
 }  // namespace
-}  // namespace velour
+}  // namespace velour::motion_test

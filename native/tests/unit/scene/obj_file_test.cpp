@@ -11,7 +11,7 @@
 #include "support/test_data.h"
 #include "support/warnings.h"
 
-namespace velour {
+namespace velour::obj_file_test {
 namespace {
 
 std::string write_text(const std::string& text) {
@@ -223,4 +223,4 @@ TEST(ObjFile, NamesTheLineOfAFault) {
 }
 
 }  // namespace
-}  // namespace velour
+}  // namespace velour::obj_file_test

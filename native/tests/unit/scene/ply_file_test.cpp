@@ -12,7 +12,7 @@
 #include "support/inputs.h"
 #include "support/test_data.h"
 
-namespace velour {
+namespace velour::ply_file_test {
 namespace {
 
 std::string written(const std::string& bytes, const std::string& name = "mesh.ply") {
@@ -145,4 +145,4 @@ TEST(PlyFile, RefusesTwoElementsOfOneName) {
 }
 
 }  // namespace
-}  // namespace velour
+}  // namespace velour::ply_file_test

@@ -5,7 +5,7 @@
 
 #include "scene/embree_scene.h"
 
-namespace velour {
+namespace velour::symbol_clash_test {
 namespace {
 
 TEST(SymbolClash, OwnEmbreeIsUsedWithAForeignOneLoadedGlobally) {
@@ -20,4 +20,4 @@ TEST(SymbolClash, OwnEmbreeIsUsedWithAForeignOneLoadedGlobally) {
 }
 
 }  // namespace
-}  // namespace velour
+}  // namespace velour::symbol_clash_test

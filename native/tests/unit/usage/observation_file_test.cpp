@@ -13,7 +13,7 @@
 #include "support/example_observation.h"
 #include "support/test_data.h"
 
-namespace velour {
+namespace velour::observation_file_test {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -245,4 +245,4 @@ TEST(ObservationFile, WeightWithoutHitsIsRefused) {
 }
 
 }  // namespace
-}  // namespace velour
+}  // namespace velour::observation_file_test

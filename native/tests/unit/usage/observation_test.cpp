@@ -5,7 +5,7 @@
 
 #include "support/example_observation.h"
 
-namespace velour {
+namespace velour::observation_test {
 namespace {
 
 SceneObservation merged(SceneObservation into, const SceneObservation& other) {
@@ -84,4 +84,4 @@ TEST(Observation, HashesSurviveTheirText) {
 }
 
 }  // namespace
-}  // namespace velour
+}  // namespace velour::observation_test

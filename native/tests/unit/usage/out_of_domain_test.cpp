@@ -7,7 +7,7 @@
 
 #include "support/example_observation.h"
 
-namespace velour {
+namespace velour::out_of_domain_test {
 namespace {
 
 const ViewRange kAllViews;
@@ -68,4 +68,4 @@ TEST(OutOfDomain, LightWithoutExtentIsOutsideUnlessItWasSeen) {
 }
 
 }  // namespace
-}  // namespace velour
+}  // namespace velour::out_of_domain_test

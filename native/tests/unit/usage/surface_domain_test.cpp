@@ -8,7 +8,7 @@
 
 #include "usage/observation.h"
 
-namespace velour {
+namespace velour::surface_domain_test {
 namespace {
 
 /// Weight 1 at each of these widths of a look-up, as shares of the tile's side.
@@ -97,4 +97,4 @@ TEST(OutOfViews, IsTheShareSeenFromElsewhere) {
 }
 
 }  // namespace
-}  // namespace velour
+}  // namespace velour::surface_domain_test

@@ -8,7 +8,7 @@
 #include "math/sphere/directions.h"
 #include "usage/observation.h"
 
-namespace velour {
+namespace velour::view_weights_test {
 namespace {
 
 Vec3 at(float theta, float phi) { return direction(radians_from(theta), radians_from(phi)); }
@@ -71,4 +71,4 @@ TEST(ViewWeights, PolarAnglesAloneStandForAllAzimuthsOnBothSides) {
 }
 
 }  // namespace
-}  // namespace velour
+}  // namespace velour::view_weights_test

@@ -9,7 +9,7 @@
 #include "math/sphere/random.h"
 #include "support/example_shell.h"
 
-namespace velour {
+namespace velour::shell_depth_test {
 namespace {
 
 /// Signed distance from the nearest wire's axis to the line along `w` through x = `place` of the plane z = 0.
@@ -91,4 +91,4 @@ TEST(ShellOutline, LiesToTheSideThatIsNearer) {
 }
 
 }  // namespace
-}  // namespace velour
+}  // namespace velour::shell_depth_test

@@ -10,7 +10,7 @@
 #include "math/sphere/random.h"
 #include "support/example_shell.h"
 
-namespace velour {
+namespace velour::shell_trace_test {
 namespace {
 
 /// Where a straight ray is over a circle of `radius` (0: a line), from the top of it down at `cosine`: how far along
@@ -220,4 +220,4 @@ TEST(ShellField, HasTheOutwardNormalAsItsGradient) {
 }
 
 }  // namespace
-}  // namespace velour
+}  // namespace velour::shell_trace_test

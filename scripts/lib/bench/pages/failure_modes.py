@@ -12,7 +12,7 @@ from ..run import Run
 CSV = "failure_modes.csv"
 SETTINGS = {}
 PAGES = {"failure_modes.md": "failure_modes"}
-_PROGRAM = BUILT / "tests/unit/brdf/fit/test_failure_modes"
+_PROGRAM = BUILT / "tests/unit/brdf/fit/test_brdf_fit_optimized"
 _KINDS = ("scattered", "parametric")
 _SHARE = 0.1  # of the true error, by which a claim may be off without being shown
 _VIEWS = ("5", "30", "60", "75", "85")

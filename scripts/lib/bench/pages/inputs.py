@@ -11,8 +11,8 @@ from ..project import BUILT, ROOT
 from ..run import Run
 
 SETTINGS = {}
-_PROGRAMS = ("image/test_image", "image/test_portable_picture", "scene/test_mesh")
-_PROGRAMS += ("brdf/measure/test_brdf", "btf/measure/test_btf")
+_PROGRAMS = ("image/test_image", "image/test_portable_picture", "scene/test_scene")
+_PROGRAMS += ("brdf/measure/test_brdf_measure", "btf/measure/test_btf_measure")
 _MARK = "input|"
 
 

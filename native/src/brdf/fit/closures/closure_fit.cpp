@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <memory>
+#include <iterator>
 #include <string>
 #include <utility>
 #include <vector>
@@ -26,11 +26,13 @@ double relative_root(double error_sq, double reference_sq) {
   return reference_sq > 0 ? std::sqrt(error_sq / reference_sq) : (error_sq > 0 ? 1.0 : 0.0);
 }
 
-/// Error of `values` (rows per channel, times root_weight) against all azimuths.
-ClosureViewError error_of(const std::vector<ClosureTarget>& azimuths, int degrees, const AlignedArray<float>& values) {
-  const size_t row = azimuths[0].lights.padded();
+/// Error of the network at all azimuths.
+ClosureViewError error_of(const std::vector<ClosureTarget>& azimuths, int degrees, const ClosureNetwork& network,
+                          LobeMasking masking) {
   double error_sq = 0, reference_sq = 0, luminance_error_sq = 0, luminance_sq = 0, root_error_sq = 0, root_sq = 0;
   for (const ClosureTarget& target : azimuths) {
+    const AlignedArray<float> values = closure_values(network, masking, target.lights);
+    const size_t row = target.lights.padded();
     const float* root_weight = target.lights.root_weight();
     for (size_t i = 0; i < row; ++i) {
       const Rgb difference(values.data()[i] - target.channel(0)[i], values.data()[row + i] - target.channel(1)[i],
@@ -51,15 +53,6 @@ ClosureViewError error_of(const std::vector<ClosureTarget>& azimuths, int degree
           relative_root(root_error_sq, root_sq)};
 }
 
-AlignedArray<float> mean_values(const std::vector<ClosureTarget>& azimuths) {
-  AlignedArray<float> mean = aligned_zeros(azimuths[0].values.size());
-  const float share = 1 / static_cast<float>(azimuths.size());
-  for (const ClosureTarget& target : azimuths) {
-    for (size_t i = 0; i < mean.size(); ++i) mean.data()[i] += share * target.values.data()[i];
-  }
-  return mean;
-}
-
 }  // namespace
 
 ClosureJudge::ClosureJudge(const ClosureSource& source, const HighlightWidths& widths, int threads,
@@ -67,8 +60,8 @@ ClosureJudge::ClosureJudge(const ClosureSource& source, const HighlightWidths& w
     : views_(kHeldOutViews.size()) {
   parallel_pieces(views_.size(), threads, progress, [&](size_t v) {
     const float theta_v = radians_from(static_cast<float>(kHeldOutViews[v]));
-    for (const ClosureSource& azimuth : closure_azimuths(source)) {
-      views_[v].push_back(closure_target(azimuth, widths, theta_v, kJudgedLights));
+    for (const float phi_v : closure_azimuths(source)) {
+      views_[v].push_back(closure_target(source, widths, theta_v, kJudgedLights, phi_v));
     }
   });
 }
@@ -76,15 +69,7 @@ ClosureJudge::ClosureJudge(const ClosureSource& source, const HighlightWidths& w
 std::vector<ClosureViewError> ClosureJudge::errors(const ClosureNetwork& network, LobeMasking masking) const {
   std::vector<ClosureViewError> errors;
   for (size_t v = 0; v < views_.size(); ++v) {
-    errors.push_back(error_of(views_[v], kHeldOutViews[v], closure_values(network, masking, views_[v][0].lights)));
-  }
-  return errors;
-}
-
-std::vector<ClosureViewError> ClosureJudge::errors_of_mean() const {
-  std::vector<ClosureViewError> errors;
-  for (size_t v = 0; v < views_.size(); ++v) {
-    errors.push_back(error_of(views_[v], kHeldOutViews[v], mean_values(views_[v])));
+    errors.push_back(error_of(views_[v], kHeldOutViews[v], network, masking));
   }
   return errors;
 }
@@ -114,36 +99,39 @@ double visible_closure_error(const std::vector<ClosureViewError>& errors) {
 }
 
 ClosureAlbedo::ClosureAlbedo(const ClosureSource& source, const HighlightWidths& widths, int threads,
-                             const Progress& progress) {
-  std::vector<std::unique_ptr<ClosureTarget>> views(2 * kClosureSamples - 1);
-  parallel_pieces(views.size(), threads, progress, [&](size_t i) {
+                             const Progress& progress)
+    : views_(2 * kClosureSamples - 1), albedo_(views_.size(), Vec3d(0)) {
+  const std::vector<float> azimuths = closure_azimuths(source);
+  parallel_pieces(views_.size(), threads, progress, [&](size_t i) {
     const float degrees = 90.0f * static_cast<float>(i) / (2 * kClosureSamples - 2);
-    views[i] = std::make_unique<ClosureTarget>(
-        closure_target(source, widths, radians_from(std::min(degrees, 89.5f)), kAlbedoLights));
+    const float theta_v = radians_from(std::min(degrees, 89.5f));
+    for (const float phi_v : azimuths) {
+      ClosureTarget target = closure_target(source, widths, theta_v, kAlbedoLights, phi_v);
+      albedo_[i] += target.albedo / static_cast<double>(azimuths.size());
+      views_[i].push_back(std::move(target.lights));
+    }
   });
-  for (auto& view : views) {
-    largest_ = std::max({largest_, view->albedo.r, view->albedo.g, view->albedo.b});
-    views_.push_back(std::move(*view));
-  }
+  for (const Vec3d& albedo : albedo_) largest_ = std::max({largest_, albedo.r, albedo.g, albedo.b});
 }
 
-Vec3d ClosureAlbedo::albedo_of(const ClosureNetwork& network, LobeMasking masking, const ClosureTarget& view) const {
-  const ClosureLights& lights = view.lights;
-  const AlignedArray<float> values = closure_values(network, masking, lights);
+Vec3d ClosureAlbedo::albedo_of(const ClosureNetwork& network, LobeMasking masking, size_t view) const {
   Vec3d sum(0);
-  for (int c = 0; c < 3; ++c) {
-    const float* row = values.data() + static_cast<size_t>(c) * lights.padded();
-    for (size_t i = 0; i < lights.padded(); ++i) sum[c] += static_cast<double>(row[i] * lights.root_weight()[i]);
+  for (const ClosureLights& lights : views_[view]) {
+    const AlignedArray<float> values = closure_values(network, masking, lights);
+    for (int c = 0; c < 3; ++c) {
+      const float* row = values.data() + static_cast<size_t>(c) * lights.padded();
+      for (size_t i = 0; i < lights.padded(); ++i) sum[c] += static_cast<double>(row[i] * lights.root_weight()[i]);
+    }
   }
-  return sum;
+  return sum / static_cast<double>(views_[view].size());
 }
 
 void ClosureAlbedo::correct(ClosureNetwork& network, LobeMasking masking) const {
   constexpr double kSlack = 0.008, kMinShare = 0.01, kLargestGain = 1.25;
   std::vector<Vec3d> ratio(views_.size());  // albedo of the source over that of the network
   for (size_t v = 0; v < views_.size(); ++v) {
-    const Vec3d model = albedo_of(network, masking, views_[v]);
-    for (int c = 0; c < 3; ++c) ratio[v][c] = model[c] > 0 ? views_[v].albedo[c] / model[c] : 1;
+    const Vec3d model = albedo_of(network, masking, v);
+    for (int c = 0; c < 3; ++c) ratio[v][c] = model[c] > 0 ? albedo_[v][c] / model[c] : 1;
   }
   for (size_t i = 0; i < kClosureSamples; ++i) {
     const size_t v = 2 * i;
@@ -153,7 +141,7 @@ void ClosureAlbedo::correct(ClosureNetwork& network, LobeMasking masking) const 
       const size_t first = v > 0 ? v - 1 : 0, last = i + 2 >= kClosureSamples ? views_.size() - 1 : v + 1;
       double most = ratio[v][c];
       for (size_t near = first; near <= last; ++near) most = std::min(most, ratio[near][c]);
-      const bool dark = views_[v].albedo[c] < kMinShare * largest_;
+      const bool dark = albedo_[v][c] < kMinShare * largest_;
       const double least = dark ? 0 : std::min(ratio[v][c] * (1 - kSlack), kLargestGain);
       factor[c] = static_cast<float>(std::min(std::max(1.0, least), most * (1 + kSlack)));
     }
@@ -164,10 +152,10 @@ void ClosureAlbedo::correct(ClosureNetwork& network, LobeMasking masking) const 
 
 double ClosureAlbedo::largest_excess(const ClosureNetwork& network, LobeMasking masking) const {
   double excess = 0;
-  for (const ClosureTarget& view : views_) {
-    const Vec3d model = albedo_of(network, masking, view);
+  for (size_t v = 0; v < views_.size(); ++v) {
+    const Vec3d model = albedo_of(network, masking, v);
     for (int c = 0; c < 3; ++c) {
-      if (view.albedo[c] > 1e-4 * largest_) excess = std::max(excess, model[c] / view.albedo[c] - 1);
+      if (albedo_[v][c] > 1e-4 * largest_) excess = std::max(excess, model[c] / albedo_[v][c] - 1);
     }
   }
   return excess;
@@ -190,17 +178,21 @@ void check_closure_options(const ClosureFitOptions& o) {
   }
 }
 
-/// Targets at 1.25 + 2.5 i degrees.
+/// Targets at 1.25 + 2.5 i degrees; of an anisotropic source two azimuths each, others at each polar angle.
 std::vector<ClosureTarget> fitted_targets(const ClosureSource& source, const HighlightWidths& widths, int threads,
                                           const Progress& progress) {
-  std::vector<std::vector<ClosureTarget>> one_each(kClosureViews);
-  parallel_pieces(one_each.size(), threads, progress, [&](size_t i) {
-    one_each[i].push_back(
-        closure_target(source, widths, radians_from(1.25f + 2.5f * static_cast<float>(i)), kFittedLights));
-    emphasize_dim(one_each[i].back(), kShareOfRoot);
+  const std::vector<float> azimuths = closure_azimuths(source, kClosureViews);
+  std::vector<std::vector<ClosureTarget>> at_angle(kClosureViews);
+  parallel_pieces(at_angle.size(), threads, progress, [&](size_t i) {
+    const float theta_v = radians_from(1.25f + 2.5f * static_cast<float>(i)), phi_v = azimuths[i % azimuths.size()];
+    at_angle[i].push_back(closure_target(source, widths, theta_v, kFittedLights, phi_v));
+    if (!source.isotropic) {
+      at_angle[i].push_back(closure_target(source, widths, theta_v, kFittedLights, phi_v + 0.5f * kPi));
+    }
+    for (ClosureTarget& target : at_angle[i]) emphasize_dim(target, kShareOfRoot);
   });
   std::vector<ClosureTarget> targets;
-  for (auto& one : one_each) targets.push_back(std::move(one[0]));
+  for (auto& views : at_angle) std::move(views.begin(), views.end(), std::back_inserter(targets));
   return targets;
 }
 
@@ -234,8 +226,10 @@ ClosureFit fit_closures(const ClosureSource& source, const ClosureFitOptions& op
 
   // A half vector turns by half the angle of the light about the viewer.
   const double narrowest = static_cast<double>(std::min(widths.mirror, 0.5f * widths.viewer));
-  const ClosureSearchOptions search{
-      .masking = options.masking, .bounds = {.min_alpha = 0.5 * narrowest}, .threads = options.threads};
+  const ClosureFrame frame = source.isotropic ? ClosureFrame::incidence : ClosureFrame::surface;
+  const ClosureSearchOptions search{.masking = options.masking,
+                                    .bounds = {.min_alpha = 0.5 * narrowest, .frame = frame},
+                                    .threads = options.threads};
   ClosureSolution solution;
   std::vector<ClosureFit> fits;
   while (static_cast<int>(fits.size()) < options.max_lobes) {
@@ -252,7 +246,6 @@ ClosureFit fit_closures(const ClosureSource& source, const ClosureFitOptions& op
     if (visible_closure_error(fits.back().errors) < options.tolerance) break;
   }
   ClosureFit chosen = std::move(chosen_of(fits, options.tolerance));
-  chosen.azimuth_error = mean_closure_error(judge.errors_of_mean());
   chosen.albedo_excess = albedo.largest_excess(chosen.network, options.masking);
   return chosen;
 }
@@ -265,10 +258,6 @@ std::string percent(double share) { return std::to_string(std::lround(100 * shar
 
 /// Why the error is large; empty if it is not.
 std::string reason_of(const ClosureFit& fit) {
-  if (fit.azimuth_error > kLargeClosureError) {
-    return "The material is anisotropic, and these closures show its mean over the azimuth, which differs from it by " +
-           percent(fit.azimuth_error) + ".";
-  }
   if (!(fit.mean_error > kLargeClosureError)) return {};
   const auto worst =
       std::max_element(fit.errors.begin(), fit.errors.end() - 1,  // without 85 degrees, as the mean

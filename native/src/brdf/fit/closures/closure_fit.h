@@ -13,7 +13,7 @@ namespace velour {
 
 // Accuracy and energy of closures.
 
-/// Relative L2 errors of f cos at a view; those of an anisotropic source are over all its azimuths.
+/// Relative L2 errors of f cos at views of one polar angle: one of an isotropic source, otherwise eight azimuths.
 struct ClosureViewError {
   int degrees;  // theta_v
   double luminance, rgb;
@@ -25,8 +25,6 @@ class ClosureJudge {
  public:
   ClosureJudge(const ClosureSource& source, const HighlightWidths& widths, int threads, const Progress& progress);
   std::vector<ClosureViewError> errors(const ClosureNetwork& network, LobeMasking masking) const;
-  /// Errors of the mean over the azimuths, which no closures of this kind can go below. 0 for an isotropic source.
-  std::vector<ClosureViewError> errors_of_mean() const;
 
  private:
   std::vector<std::vector<ClosureTarget>> views_;  // an element per azimuth of each view
@@ -38,7 +36,8 @@ double mean_closure_error(const std::vector<ClosureViewError>& errors);
 /// reflected by its surroundings.
 double visible_closure_error(const std::vector<ClosureViewError>& errors);
 
-/// Albedo of the source at the samples of ClosureCurve and halfway between them, at most 89.5 degrees.
+/// Albedo of the source, a mean over azimuths, at the samples of ClosureCurve and halfway between them, at most 89.5
+/// degrees.
 class ClosureAlbedo {
  public:
   ClosureAlbedo(const ClosureSource& source, const HighlightWidths& widths, int threads, const Progress& progress);
@@ -51,9 +50,10 @@ class ClosureAlbedo {
   double largest_excess(const ClosureNetwork& network, LobeMasking masking) const;
 
  private:
-  Vec3d albedo_of(const ClosureNetwork& network, LobeMasking masking, const ClosureTarget& view) const;
+  Vec3d albedo_of(const ClosureNetwork& network, LobeMasking masking, size_t view) const;
 
-  std::vector<ClosureTarget> views_;
+  std::vector<std::vector<ClosureLights>> views_;  // an element per azimuth of each view
+  std::vector<Vec3d> albedo_;                      // of the source at each view
   double largest_ = 0;
 };
 
@@ -70,14 +70,13 @@ struct ClosureFit {
   std::vector<ClosureViewError> errors{};  // at 5, 30, 60, 75 and 85 degrees
   double mean_error = 0;                   // mean of luminance errors up to 75 degrees
   double albedo_excess = 0;                // largest share by which an albedo exceeds the source's
-  double azimuth_error = 0;                // mean error of the source's mean over the azimuths
 };
 
 /// Least squares on f cos and albedo at 36 views, each relative to its own norms (ClosureProblem), with more weight on
 /// dim directions (emphasize_dim), by Levenberg-Marquardt. A network of K lobes starts from that of K - 1 lobes
 /// (one_more_lobe). The smallest K with a visible error below the tolerance or within 10 % of the best is returned. At
-/// last weights are scaled until albedos agree (ClosureAlbedo). Anisotropic sources are averaged over the azimuth of
-/// the view, and errors are against all azimuths. Throws Error(invalid_argument) if an option is out of range, and
+/// last weights are scaled until albedos agree (ClosureAlbedo). An anisotropic source is fitted in the frame of the
+/// surface, at two azimuths per polar angle. Throws Error(invalid_argument) if an option is out of range, and
 /// Error(cancelled) after a cancel. Black if the source is.
 ClosureFit fit_closures(const ClosureSource& source, const ClosureFitOptions& options, Progress& progress);
 

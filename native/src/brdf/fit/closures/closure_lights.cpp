@@ -11,8 +11,6 @@ namespace velour {
 
 namespace {
 
-constexpr int kClosureTurns = 8;
-
 Vec3 turned_about_z(const Vec3& w, float phi) {
   const float c = std::cos(phi), s = std::sin(phi);
   return {c * w.x - s * w.y, s * w.x + c * w.y, w.z};
@@ -20,30 +18,21 @@ Vec3 turned_about_z(const Vec3& w, float phi) {
 
 }  // namespace
 
-std::vector<ClosureSource> closure_azimuths(const ClosureSource& source) {
-  if (source.isotropic) return {source};
-  std::vector<ClosureSource> azimuths;
-  for (int t = 0; t < kClosureTurns; ++t) {
-    const float phi = 2 * kPi * (static_cast<float>(t) + 0.25f) / kClosureTurns;
-    azimuths.push_back({[f = source.f, phi](const Vec3& wv, std::span<const Vec3> wl, std::span<Rgb> out) {
-      std::vector<Vec3> turned(wl.size());
-      for (size_t i = 0; i < wl.size(); ++i) turned[i] = turned_about_z(wl[i], phi);
-      f(turned_about_z(wv, phi), turned, out);
-    }});
+std::vector<float> closure_azimuths(const ClosureSource& source, int count) {
+  if (source.isotropic) return {0};
+  std::vector<float> azimuths;
+  for (int i = 0; i < count; ++i) {
+    const double turns = 0.1 + kGoldenRatio * i;  // no two azimuths mirror each other, as steps of equal size do
+    azimuths.push_back(2 * kPi * static_cast<float>(turns - std::floor(turns)));
   }
   return azimuths;
 }
 
-std::vector<Rgb> source_values(const ClosureSource& source, float theta_v, std::span<const Vec3> wl) {
-  const std::vector<ClosureSource> azimuths = closure_azimuths(source);
-  std::vector<Rgb> mean(wl.size(), Rgb(0)), f(wl.size());
-  for (const ClosureSource& azimuth : azimuths) {
-    azimuth.f(direction(theta_v, 0), wl, f);
-    for (size_t i = 0; i < wl.size(); ++i) {
-      mean[i] += glm::max(f[i], Rgb(0)) * wl[i].z / static_cast<float>(azimuths.size());
-    }
-  }
-  return mean;
+std::vector<Rgb> source_values(const ClosureSource& source, const Vec3& wv, std::span<const Vec3> wl) {
+  std::vector<Rgb> f_cos(wl.size());
+  source.f(wv, wl, f_cos);
+  for (size_t i = 0; i < wl.size(); ++i) f_cos[i] = glm::max(f_cos[i], Rgb(0)) * wl[i].z;
+  return f_cos;
 }
 
 namespace {
@@ -52,14 +41,14 @@ constexpr HighlightWidths kWidest{0.04f, 0.25f};
 
 /// Smallest angle from `axis` in `angles` at which luminance falls to half, toward either side in the plane of
 /// incidence, divided by that at which a lobe of width 1 does.
-float half_width(const ClosureSource& source, float theta_v, std::span<const float> angles, float per_width,
+float half_width(const ClosureSource& source, const Vec3& wv, std::span<const float> angles, float per_width,
                  const auto& light_at) {
   std::vector<Vec3> wl{light_at(0.0f)};
   for (const float angle : angles) {
     wl.push_back(light_at(angle));
     wl.push_back(light_at(-angle));
   }
-  const std::vector<Rgb> f_cos = source_values(source, theta_v, wl);
+  const std::vector<Rgb> f_cos = source_values(source, wv, wl);
   const float half = 0.5f * luminance(f_cos[0]);
   for (size_t i = 0; i < angles.size(); ++i) {
     if (luminance(f_cos[2 * i + 1]) < half && luminance(f_cos[2 * i + 2]) < half) return angles[i] / per_width;
@@ -76,10 +65,13 @@ HighlightWidths highlight_widths(const ClosureSource& source) {
   HighlightWidths widths = kWidest;
   for (const float degrees : {12.0f, 32.0f, 52.0f}) {
     const float theta = radians_from(degrees);
-    const auto mirrored = [&](float angle) { return direction(theta + 2 * angle, kPi); };
-    const auto returned = [&](float angle) { return direction(theta + angle, 0); };
-    widths.mirror = std::min(widths.mirror, half_width(source, theta, angles, kGgxHalf, mirrored));
-    widths.viewer = std::min(widths.viewer, half_width(source, theta, angles, kGgxHalf, returned));
+    for (const float phi : closure_azimuths(source)) {
+      const Vec3 wv = direction(theta, phi);
+      const auto mirrored = [&](float angle) { return direction(theta + 2 * angle, phi + kPi); };
+      const auto returned = [&](float angle) { return direction(theta + angle, phi); };
+      widths.mirror = std::min(widths.mirror, half_width(source, wv, angles, kGgxHalf, mirrored));
+      widths.viewer = std::min(widths.viewer, half_width(source, wv, angles, kGgxHalf, returned));
+    }
   }
   return widths;
 }
@@ -114,7 +106,7 @@ struct LightMixture {
 
 }  // namespace
 
-WeightedLights closure_lights(const HighlightWidths& widths, float theta_v, int count) {
+WeightedLights closure_lights(const HighlightWidths& widths, float theta_v, int count, float phi_v) {
   constexpr float kWideAlpha = 0.35f;
   const LightMixture mixture{3 * count / 10,
                              count / 5,
@@ -146,14 +138,18 @@ WeightedLights closure_lights(const HighlightWidths& widths, float theta_v, int 
     return d.x * across + d.y * Vec3(0, 1, 0) + d.z * wv;
   });
   for (const Vec3& wl : lights.wl) lights.weight.push_back(1 / mixture.density(wl, wv));
+  if (phi_v != 0) {
+    for (Vec3& wl : lights.wl) wl = turned_about_z(wl, phi_v);
+  }
   return lights;
 }
 
-ClosureLights::ClosureLights(float theta_v, const WeightedLights& lights)
+ClosureLights::ClosureLights(float theta_v, const WeightedLights& lights, float phi_v)
     : theta_v_(theta_v),
+      phi_v_(phi_v),
       padded_((lights.wl.size() + kPadding - 1) / kPadding * kPadding),
       data_(aligned_zeros(7 * padded_)) {
-  const Vec3 wv = direction(theta_v, 0);
+  const Vec3 wv = direction(theta_v, phi_v);
   for (size_t i = 0; i < padded_; ++i) {
     const bool padding = i >= lights.wl.size();
     const Vec3 wl = padding ? Vec3(0, 0, 1) : lights.wl[i], h = glm::normalize(wl + wv);
@@ -180,11 +176,13 @@ void set_norms(ClosureTarget& target) {
 
 }  // namespace
 
-ClosureTarget closure_target(const ClosureSource& source, const HighlightWidths& widths, float theta_v, int count) {
-  const WeightedLights lights = closure_lights(widths, theta_v, count);
-  const std::vector<Rgb> f_cos = source_values(source, theta_v, lights.wl);
-  ClosureTarget target{
-      .lights = ClosureLights(theta_v, lights), .values = AlignedArray<float>(0), .integral = AlignedArray<float>(0)};
+ClosureTarget closure_target(const ClosureSource& source, const HighlightWidths& widths, float theta_v, int count,
+                             float phi_v) {
+  const WeightedLights lights = closure_lights(widths, theta_v, count, phi_v);
+  const std::vector<Rgb> f_cos = source_values(source, direction(theta_v, phi_v), lights.wl);
+  ClosureTarget target{.lights = ClosureLights(theta_v, lights, phi_v),
+                       .values = AlignedArray<float>(0),
+                       .integral = AlignedArray<float>(0)};
   const size_t padded = target.lights.padded();
   const float* root_weight = std::as_const(target.lights).root_weight();
   target.values = aligned_zeros(3 * padded);

@@ -16,7 +16,7 @@ namespace {
 /// A lobe to add.
 struct ScannedLobe {
   LobeDistribution distribution;
-  double alpha, tilt;  // tilt: relative to theta_v
+  double alpha, tilt, anisotropy;  // tilt: relative to theta_v
   double cost = 0;
 };
 
@@ -26,9 +26,13 @@ std::vector<ScannedLobe> scanned_lobes(const ClosureBounds& bounds) {
   for (const LobeDistribution distribution : {LobeDistribution::ggx, LobeDistribution::beckmann}) {
     for (int i = 0; i < kAlphas; ++i) {
       const double alpha = bounds.min_alpha * std::pow(0.8 / bounds.min_alpha, (i + 0.3) / (kAlphas - 0.7));
-      lobes.push_back({distribution, alpha, 0});
-      if (alpha > 0.1) lobes.push_back({distribution, alpha, 0.3});
-      lobes.push_back({distribution, alpha, alpha > 0.1 ? 0.85 : 0.98});  // retro-reflection
+      lobes.push_back({distribution, alpha, 0, 0});
+      if (bounds.frame == ClosureFrame::surface) {
+        for (const double anisotropy : {-1.0, 1.0}) lobes.push_back({distribution, alpha, 0, anisotropy});
+        continue;
+      }
+      if (alpha > 0.1) lobes.push_back({distribution, alpha, 0.3, 0});
+      lobes.push_back({distribution, alpha, alpha > 0.1 ? 0.85 : 0.98, 0});  // retro-reflection
     }
   }
   return lobes;
@@ -45,6 +49,7 @@ ClosureSolution with_lobe(const ClosureSolution& from, const ScannedLobe& lobe, 
   const auto knots = closure_knots();
   for (int k = 0; k < kClosureKnots; ++k) {
     s.unknowns(k, at + 3) = closure_alpha_unknown(lobe.alpha, bounds);
+    s.unknowns(k, at + 5) = closure_anisotropy_unknown(lobe.anisotropy, s.unknowns(k, at + 3), bounds);
     if (lobe.tilt != 0) {
       s.unknowns(k, at + 4) = closure_tilt_unknown(lobe.tilt, knots[static_cast<size_t>(k)]);
     }
@@ -106,7 +111,8 @@ Vec3d albedo_at(const std::vector<ClosureView>& views, double theta_v) {
   const auto theta_of = [&](size_t i) { return static_cast<double>(views[i].target.lights.theta_v()); };
   size_t i = 0;
   while (i + 2 < views.size() && theta_of(i + 1) < theta_v) ++i;
-  const double t = std::clamp((theta_v - theta_of(i)) / (theta_of(i + 1) - theta_of(i)), 0.0, 1.0);
+  const double step = std::max(theta_of(i + 1) - theta_of(i), 1e-9);  // views may differ in azimuth alone
+  const double t = std::clamp((theta_v - theta_of(i)) / step, 0.0, 1.0);
   return glm::mix(views[i].target.albedo, views[i + 1].target.albedo, t);
 }
 

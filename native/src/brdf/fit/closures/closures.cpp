@@ -117,15 +117,27 @@ Eigen::Matrix<double, kClosureKnots, 1> closure_taps(double theta_v) {
 
 namespace {
 
-constexpr double kMaxAnisotropy = 1.2;
-
-/// Polar angle of the view (radians) below which anisotropy fades to 0: the tangent has no direction at the normal.
+/// Polar angle of the view (radians) below which anisotropy fades to 0: the plane of incidence has no direction at the
+/// normal.
 constexpr double kAnisotropyFade = radians_from(4.0);
 
-double anisotropy_share(double theta_v) {
+double anisotropy_share(double theta_v, ClosureFrame frame) {
+  if (frame == ClosureFrame::surface) return 1;
   const double t = std::min(theta_v / kAnisotropyFade, 1.0);
   return t * t * (3 - 2 * t);
 }
+
+/// |anisotropy| is below the lesser of a maximum and of depth = -log(alpha), made smooth.
+struct AnisotropyBound {
+  AnisotropyBound(double depth, ClosureFrame frame) {
+    const double most = frame == ClosureFrame::surface ? 2.0 : 1.2;
+    const double norm = std::pow(most, 4) + std::pow(depth, 4), root = std::pow(norm, -0.25);
+    value = most * depth * root;
+    by_depth = root * most * (1 - std::pow(depth, 4) / norm);
+  }
+
+  double value, by_depth;
+};
 
 /// Largest tilt away from the viewer, relative to theta_v, in (0, 1].
 double largest_lean(double theta_v) {
@@ -139,32 +151,36 @@ double largest_lean(double theta_v) {
 
 ClosureShape closure_shape(double alpha_unknown, double tilt_unknown, double anisotropy_unknown, double theta_v,
                            const ClosureBounds& bounds) {
-  ClosureShape s;
+  ClosureShape s{};
   const double lowest = std::log(bounds.min_alpha), share = 1 / (1 + std::exp(-alpha_unknown));
   const double depth = -lowest * (1 - share);  // -log(alpha)
   s.alpha = std::exp(-depth);
   s.log_alpha_by_alpha = -lowest * share * (1 - share);
 
-  // From -lean to 1, through 0 at 0; tanh if lean is 1.
-  const double lean = largest_lean(theta_v), e = std::exp(std::clamp(2 * tilt_unknown, -60.0, 60.0));
-  const double below = lean * e + 1;
-  s.tilt = lean * (e - 1) / below;
-  s.tilt_by_tilt = 2 * e * lean * (1 + lean) / (below * below);
+  if (bounds.frame == ClosureFrame::incidence) {
+    // From -lean to 1, through 0 at 0; tanh if lean is 1.
+    const double lean = largest_lean(theta_v), e = std::exp(std::clamp(2 * tilt_unknown, -60.0, 60.0));
+    const double below = lean * e + 1;
+    s.tilt = lean * (e - 1) / below;
+    s.tilt_by_tilt = 2 * e * lean * (1 + lean) / (below * below);
+  }
 
-  // |anisotropy| < min(kMaxAnisotropy, depth), made smooth.
-  const double norm = std::pow(kMaxAnisotropy, 4) + std::pow(depth, 4), root = std::pow(norm, -0.25);
-  const double share_of_view = anisotropy_share(theta_v), turn = std::tanh(anisotropy_unknown);
-  const double bound = share_of_view * kMaxAnisotropy * depth * root;
-  const double bound_by_depth = share_of_view * root * kMaxAnisotropy * (1 - std::pow(depth, 4) / norm);
-  s.anisotropy = bound * turn;
-  s.anisotropy_by_alpha = -bound_by_depth * turn * s.log_alpha_by_alpha;
-  s.anisotropy_by_anisotropy = bound * (1 - turn * turn);
+  const AnisotropyBound bound(depth, bounds.frame);
+  const double share_of_view = anisotropy_share(theta_v, bounds.frame), turn = std::tanh(anisotropy_unknown);
+  s.anisotropy = share_of_view * bound.value * turn;
+  s.anisotropy_by_alpha = -share_of_view * bound.by_depth * turn * s.log_alpha_by_alpha;
+  s.anisotropy_by_anisotropy = share_of_view * bound.value * (1 - turn * turn);
   return s;
 }
 
 double closure_alpha_unknown(double alpha, const ClosureBounds& bounds) {
   const double share = 1 - std::log(alpha) / std::log(bounds.min_alpha), inside = std::clamp(share, 0.02, 0.98);
   return std::log(inside / (1 - inside));
+}
+
+double closure_anisotropy_unknown(double anisotropy, double alpha_unknown, const ClosureBounds& bounds) {
+  const double depth = -std::log(closure_shape(alpha_unknown, 0, 0, 0, bounds).alpha);
+  return std::atanh(std::clamp(anisotropy / AnisotropyBound(depth, bounds.frame).value, -0.95, 0.95));
 }
 
 double closure_tilt_unknown(double tilt, double theta_v) {
@@ -175,6 +191,7 @@ double closure_tilt_unknown(double tilt, double theta_v) {
 ClosureNetwork closure_network(const ClosureUnknowns& unknowns, const std::vector<LobeDistribution>& distributions,
                                const ClosureBounds& bounds) {
   ClosureNetwork network;
+  network.frame = bounds.frame;
   for (const LobeDistribution d : distributions) network.lobes.push_back({.distribution = d});
   for (size_t i = 0; i < kClosureSamples; ++i) {
     const double theta = 0.5 * kPiD * static_cast<double>(i) / (kClosureSamples - 1);

@@ -17,18 +17,24 @@ namespace velour {
 
 enum class LobeDistribution { ggx, beckmann };
 
+/// Where x lies that lobes stretch along.
+enum class ClosureFrame {
+  incidence,  // in the plane of incidence: isotropic materials
+  surface,    // along the tangent: anisotropic materials, whose lobes are not tilted
+};
+
 /// Masking and shadowing of microfacets by Smith's function.
 enum class LobeMasking {
   separable,          // G1(wv) G1(wl): Blender before 3.5
   height_correlated,  // 1 / (1 + Lambda(wv) + Lambda(wl)): later versions
 };
 
-/// A lobe at a view in the x-z plane.
+/// A lobe at a view.
 struct ClosureLobeShape {
   LobeDistribution distribution = LobeDistribution::ggx;
   LobeMasking masking = LobeMasking::separable;
-  float alpha_x = 1, alpha_y = 1;  // along and across the plane of incidence
-  float tilt = 0;                  // radians; N' = (sin(tilt), 0, cos(tilt)); the viewer is in front of N'
+  float alpha_x = 1, alpha_y = 1;
+  float tilt = 0;  // radians; N' = (sin(tilt), 0, cos(tilt)); the viewer is in front of N'
 };
 
 // Arrays of floats are aligned to cache lines (AlignedArray).
@@ -57,8 +63,8 @@ template <class T>
 using ClosureCurve = std::array<T, kClosureSamples>;
 
 /// One Glossy BSDF. Its normal N' is turned by tilt * theta_v in the plane of incidence: 1 points it at the viewer,
-/// negative values away from it. Its alpha is roughness^2 e^anisotropy along the plane of incidence, and
-/// roughness^2 e^-anisotropy across it; both are at most 1.
+/// negative values away from it. Its alpha is roughness^2 e^anisotropy along x (ClosureFrame), and
+/// roughness^2 e^-anisotropy along y; both are at most 1.
 struct ClosureLobe {
   LobeDistribution distribution = LobeDistribution::ggx;
   ClosureCurve<Rgb> weight{};       // not negative; may exceed 1
@@ -68,6 +74,7 @@ struct ClosureLobe {
 };
 
 struct ClosureNetwork {
+  ClosureFrame frame = ClosureFrame::incidence;
   ClosureCurve<Rgb> diffuse{};  // albedo of the Diffuse BSDF, not negative
   std::vector<ClosureLobe> lobes;
 };
@@ -83,7 +90,7 @@ AlignedArray<float> closure_values(const ClosureNetwork& network, LobeMasking ma
 
 /// Factor s of N' = normalize(N + s (Incoming - N)) for the relative `tilt` of a lobe, at theta_v < pi / 2.
 float incoming_factor(float tilt, float theta_v);
-/// Anisotropy of a Glossy (or Anisotropic) BSDF whose tangent lies in the plane of incidence.
+/// Anisotropy of a Glossy (or Anisotropic) BSDF whose tangent is x.
 float anisotropy_input(float anisotropy);
 
 // Unknowns of a fit of closures: values at knots in theta_v of a cubic spline, mapped smoothly to bounded parameters.
@@ -103,6 +110,7 @@ Eigen::Matrix<double, kClosureKnots, 1> closure_taps(double theta_v);
 /// Range of the parameters of lobes; that of tilts is given by lowest_closure_tilt().
 struct ClosureBounds {
   double min_alpha = 0.02;
+  ClosureFrame frame = ClosureFrame::incidence;
 };
 
 /// Parameters of a lobe at a view and their derivatives by the unknowns. alpha e^|anisotropy| stays below 1.
@@ -115,6 +123,8 @@ ClosureShape closure_shape(double alpha_unknown, double tilt_unknown, double ani
                            const ClosureBounds& bounds);
 /// The unknown that closure_shape() maps to `alpha`, moved inside the bounds.
 double closure_alpha_unknown(double alpha, const ClosureBounds& bounds);
+/// The unknown that closure_shape() maps to `anisotropy` at an unknown of alpha, far from the normal; moved inside.
+double closure_anisotropy_unknown(double anisotropy, double alpha_unknown, const ClosureBounds& bounds);
 /// The unknown that closure_shape() maps to the relative tilt `tilt` at `theta_v`, in (-1, 1) and moved inside.
 double closure_tilt_unknown(double tilt, double theta_v);
 

@@ -50,14 +50,18 @@ SmithLambda smith_lambda(LobeLanes t) {
 /// What does not depend on the light.
 struct LobeAtView {
   LobeLanes sin_tilt, cos_tilt, x_sq, y_sq, per_x_sq, per_y_sq, scale, lambda;
-  LobeLanes lambda_by_x, lambda_by_tilt, log_by_tilt;  // derivatives by log(alpha_x) and tilt; of 1 / wv.N'
+  LobeLanes lambda_by_x, lambda_by_y, lambda_by_tilt;  // derivatives by log(alpha_x), log(alpha_y) and tilt
+  LobeLanes log_by_tilt;                               // that of log(wv.N')
 };
 
 template <LobeDistribution distribution, LobeMasking masking>
-LobeAtView lobe_at_view(const ClosureLobeShape& s, float theta_v) {
+LobeAtView lobe_at_view(const ClosureLobeShape& s, const ClosureLights& lights) {
   const float x_sq = s.alpha_x * s.alpha_x, y_sq = s.alpha_y * s.alpha_y;
-  const float view_x = std::sin(theta_v - s.tilt), view_z = std::max(std::cos(theta_v - s.tilt), 1e-6f);
-  const float tangent = view_x / view_z, t = x_sq * tangent * tangent;
+  const float across = std::sin(lights.theta_v()), along_z = std::cos(lights.theta_v());
+  const float along_x = across * std::cos(lights.phi_v()), along_y = across * std::sin(lights.phi_v());
+  const float view_z = std::max(along_x * std::sin(s.tilt) + along_z * std::cos(s.tilt), 1e-6f);
+  const float tx = (along_x * std::cos(s.tilt) - along_z * std::sin(s.tilt)) / view_z, ty = along_y / view_z;
+  const float t_x = x_sq * tx * tx, t_y = y_sq * ty * ty, t = t_x + t_y;
   const SmithLambda lambda = smith_lambda<distribution, masking>(lanes_of(t));
   return {lanes_of(std::sin(s.tilt)),
           lanes_of(std::cos(s.tilt)),
@@ -67,9 +71,10 @@ LobeAtView lobe_at_view(const ClosureLobeShape& s, float theta_v) {
           lanes_of(1 / y_sq),
           lanes_of(1 / (4 * kPi * s.alpha_x * s.alpha_y * view_z)),
           lambda.value,
-          hn::Mul(lambda.slope, lanes_of(2 * t)),
-          hn::Mul(lambda.slope, lanes_of(-2 * tangent * (x_sq + t))),
-          lanes_of(tangent)};
+          hn::Mul(lambda.slope, lanes_of(2 * t_x)),
+          hn::Mul(lambda.slope, lanes_of(2 * t_y)),
+          hn::Mul(lambda.slope, lanes_of(-2 * tx * (x_sq + t))),
+          lanes_of(tx)};
 }
 
 /// Value of a lobe at a vector of lights, and derivatives of its logarithm by log(alpha_x), log(alpha_y) and the tilt.
@@ -132,7 +137,7 @@ LobeSample lobe_sample(const LobeAtView& lobe, const ClosureLights& lights, size
   if constexpr (slopes) {
     const LobeLanes light_slope = hn::Mul(by_light, hn::Mul(two, of_light.slope));
     s.by_x = hn::NegMulAdd(by_view, lobe.lambda_by_x, hn::NegMulAdd(light_slope, t_x, s.by_x));
-    s.by_y = hn::NegMulAdd(light_slope, t_y, s.by_y);
+    s.by_y = hn::NegMulAdd(by_view, lobe.lambda_by_y, hn::NegMulAdd(light_slope, t_y, s.by_y));
     const LobeLanes turn = hn::MulAdd(tx, hn::Add(lobe.x_sq, hn::Add(t_x, t_y)), hn::Zero(tag));
     s.by_tilt = hn::MulAdd(light_slope, turn, hn::NegMulAdd(by_view, lobe.lambda_by_tilt, s.by_tilt));
     s.by_tilt = hn::Sub(s.by_tilt, lobe.log_by_tilt);
@@ -143,7 +148,7 @@ LobeSample lobe_sample(const LobeAtView& lobe, const ClosureLights& lights, size
 template <LobeDistribution distribution, LobeMasking masking>
 void FillLobeOf(const ClosureLights& lights, const ClosureLobeShape& shape, float* HWY_RESTRICT value) {
   const LobeTag tag;
-  const LobeAtView lobe = lobe_at_view<distribution, masking>(shape, lights.theta_v());
+  const LobeAtView lobe = lobe_at_view<distribution, masking>(shape, lights);
   for (size_t i = 0; i < lights.padded(); i += hn::Lanes(tag)) {
     hn::Store(lobe_sample<distribution, masking, false>(lobe, lights, i).value, tag, value + i);
   }
@@ -153,7 +158,7 @@ template <LobeDistribution distribution, LobeMasking masking>
 void FillLobeSlopesOf(const ClosureLights& lights, const ClosureLobeShape& shape, const LobeChain& chain,
                       float* HWY_RESTRICT out) {
   const LobeTag tag;
-  const LobeAtView lobe = lobe_at_view<distribution, masking>(shape, lights.theta_v());
+  const LobeAtView lobe = lobe_at_view<distribution, masking>(shape, lights);
   const LobeLanes alpha_x = lanes_of(chain.alpha_x), alpha_y = lanes_of(chain.alpha_y), tilt = lanes_of(chain.tilt),
                   stretch_x = lanes_of(chain.stretch_x), stretch_y = lanes_of(chain.stretch_y);
   const size_t row = lights.padded();

@@ -1,7 +1,7 @@
 #include "math/sphere/warp.h"
 #include "support/sampler_proof.h"
 
-namespace velour {
+namespace velour::warp_sampling_test {
 namespace {
 
 struct Warp {
@@ -31,4 +31,4 @@ TEST(WarpControl, TheCosineIsNotUniform) {
 }
 
 }  // namespace
-}  // namespace velour
+}  // namespace velour::warp_sampling_test

@@ -4,7 +4,7 @@
 
 #include "support/lobe_cells.h"
 
-namespace velour {
+namespace velour::lobe_sampling_test {
 namespace {
 
 using test::Sampler;
@@ -129,4 +129,4 @@ TEST(MixtureSamplingControl, ADensityWithoutTheCosineIsSeen) {
 }
 
 }  // namespace
-}  // namespace velour
+}  // namespace velour::lobe_sampling_test

@@ -9,7 +9,7 @@
 #include "math/srbf/kernel.h"
 #include "support/chi_square.h"
 
-namespace velour {
+namespace velour::metropolis_test {
 namespace {
 
 /// Every `kThinning`th state of a random walk in log d whose density in d is the kernel.
@@ -65,4 +65,4 @@ TEST(Metropolis, AgreesWithTheInversion) {
 }
 
 }  // namespace
-}  // namespace velour
+}  // namespace velour::metropolis_test

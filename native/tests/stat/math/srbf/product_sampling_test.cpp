@@ -2,7 +2,7 @@
 #include "math/srbf/lobe_products.h"
 #include "support/lobe_cells.h"
 
-namespace velour {
+namespace velour::product_sampling_test {
 namespace {
 
 constexpr float kBandwidths[] = {1e-4f, 1e-2f, 1, 100, 1e4f, 1e6f};
@@ -44,4 +44,4 @@ TEST(ProductSamplingControl, ABandwidthOffByFivePercentIsSeen) {
 }
 
 }  // namespace
-}  // namespace velour
+}  // namespace velour::product_sampling_test

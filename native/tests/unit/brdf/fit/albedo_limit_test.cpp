@@ -10,7 +10,7 @@
 #include "support/analytic_measurement.h"
 #include "support/parametric_models.h"
 
-namespace velour {
+namespace velour::albedo_limit_test {
 namespace {
 
 double largest_albedo(const ParametricBrdf& brdf) {
@@ -86,4 +86,4 @@ TEST(AlbedoLimit, HoldsForSymmetricModelsToo) {
 }
 
 }  // namespace
-}  // namespace velour
+}  // namespace velour::albedo_limit_test

@@ -4,12 +4,13 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <utility>
 
 #include "closure_examples.h"
 #include "math/sphere/directions.h"
 #include "math/sphere/quadrature.h"
 
-namespace velour {
+namespace velour::closures_test {
 namespace {
 
 using test::kBeckmann, test::kCorrelated, test::kGgx, test::kSeparable;
@@ -25,10 +26,11 @@ double plain_lambda(LobeDistribution distribution, double t) {
   return a > 1.6 ? 0 : (1 - 1.259 * a + 0.396 * a * a) / (3.535 * a + 2.181 * a * a);
 }
 
-/// Cycles' lobe as its source writes it: angles of the frame of the normal N'.
+/// Cycles' lobe as its source writes it: angles of the frame of the normal N' and of `along`, which it projects.
 double plain_lobe(LobeDistribution distribution, LobeMasking masking, double ax, double ay, const Vec3d& normal,
-                  const Vec3d& wv, const Vec3d& wl) {
-  const Vec3d tangent = glm::normalize(wv - glm::dot(wv, normal) * normal), bitangent = glm::cross(normal, tangent);
+                  const Vec3d& along, const Vec3d& wv, const Vec3d& wl) {
+  const Vec3d tangent = glm::normalize(along - glm::dot(along, normal) * normal),
+              bitangent = glm::cross(normal, tangent);
   const auto local = [&](const Vec3d& w) {
     return Vec3d(glm::dot(w, tangent), glm::dot(w, bitangent), glm::dot(w, normal));
   };
@@ -45,22 +47,24 @@ double plain_lobe(LobeDistribution distribution, LobeMasking masking, double ax,
 }
 
 TEST(Closures, ValuesAreThoseOfAPlainImplementation) {
-  const double alpha = 0.2, tilt = 0.3, rho = 0.35;
+  const double alpha = 0.2, rho = 0.35;
   const std::vector<Vec3> wl = hemisphere_fibonacci(200);
-  for (const LobeDistribution distribution : {kGgx, kBeckmann}) {
-    for (const LobeMasking masking : {kSeparable, kCorrelated}) {
-      const ClosureNetwork network =
-          network_of(Rgb(0.3f), {lobe_of(distribution, {0.5f, 1, 2}, static_cast<float>(alpha),
-                                         static_cast<float>(tilt), static_cast<float>(rho))});
-      for (const float theta_v : {0.1f, 0.7f, 1.4f}) {
-        const std::vector<Rgb> values = test::values_of(network, masking, theta_v, wl);
-        const Vec3d normal(std::sin(tilt * theta_v), 0, std::cos(tilt * theta_v));
-        for (size_t i = 0; i < wl.size(); ++i) {
-          const double lobe = plain_lobe(distribution, masking, alpha * std::exp(rho), alpha * std::exp(-rho), normal,
-                                         Vec3d(direction(theta_v, 0)), Vec3d(wl[i]));
-          const double diffuse = 0.3 * static_cast<double>(wl[i].z) / kPiD;
-          EXPECT_NEAR(values[i].r, diffuse + 0.5 * lobe, 1e-3 * (diffuse + lobe));
-          EXPECT_NEAR(values[i].b, diffuse + 2 * lobe, 2e-3 * (diffuse + lobe));
+  for (const auto& [tilt, phi_v] : {std::pair(0.3, 0.0f), {0.0, 0.8f}}) {  // in the frames of incidence and surface
+    for (const LobeDistribution distribution : {kGgx, kBeckmann}) {
+      for (const LobeMasking masking : {kSeparable, kCorrelated}) {
+        const ClosureNetwork network =
+            network_of(Rgb(0.3f), {lobe_of(distribution, {0.5f, 1, 2}, static_cast<float>(alpha),
+                                           static_cast<float>(tilt), static_cast<float>(rho))});
+        for (const float theta_v : {0.1f, 0.7f, 1.4f}) {
+          const std::vector<Rgb> values = test::values_of(network, masking, theta_v, wl, phi_v);
+          const Vec3d normal(std::sin(tilt * theta_v), 0, std::cos(tilt * theta_v));
+          for (size_t i = 0; i < wl.size(); ++i) {
+            const double lobe = plain_lobe(distribution, masking, alpha * std::exp(rho), alpha * std::exp(-rho), normal,
+                                           Vec3d(1, 0, 0), Vec3d(direction(theta_v, phi_v)), Vec3d(wl[i]));
+            const double diffuse = 0.3 * static_cast<double>(wl[i].z) / kPiD;
+            EXPECT_NEAR(values[i].r, diffuse + 0.5 * lobe, 1e-3 * (diffuse + lobe));
+            EXPECT_NEAR(values[i].b, diffuse + 2 * lobe, 2e-3 * (diffuse + lobe));
+          }
         }
       }
     }
@@ -104,8 +108,8 @@ TEST(Closures, AnUntiltedLobeGainsNoEnergy) {
 }
 
 TEST(Closures, SlopesOfALobeAreThoseOfDifferences) {
-  const float theta_v = 1.1f, step = 0.003f;
-  const ClosureLights lights = test::plain_lights(theta_v, hemisphere_fibonacci(64));
+  const float theta_v = 1.1f, phi_v = 0.6f, step = 0.003f;
+  const ClosureLights lights = test::plain_lights(theta_v, hemisphere_fibonacci(64), phi_v);
   const LobeChain chain{.alpha_x = 1, .alpha_y = 1, .tilt = 1, .stretch_x = 1, .stretch_y = -1};
   for (const LobeDistribution distribution : {kGgx, kBeckmann}) {
     for (const LobeMasking masking : {kSeparable, kCorrelated}) {
@@ -192,4 +196,4 @@ TEST(Closures, TheAnisotropyInputGivesBothAlphas) {
 }
 
 }  // namespace
-}  // namespace velour
+}  // namespace velour::closures_test

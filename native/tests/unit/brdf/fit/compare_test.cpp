@@ -7,7 +7,7 @@
 #include "brdf/measure/held_out.h"
 #include "support/hostile_measurements.h"
 
-namespace velour {
+namespace velour::compare_test {
 namespace {
 
 using test::AnalyticMeasurement;
@@ -187,4 +187,4 @@ TEST(Compare, TheErrorIsKnownToFivePercentOfItself) {
 }
 
 }  // namespace
-}  // namespace velour
+}  // namespace velour::compare_test

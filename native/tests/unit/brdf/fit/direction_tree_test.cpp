@@ -13,7 +13,7 @@
 #include "support/hostile_measurements.h"
 #include "support/materials.h"
 
-namespace velour {
+namespace velour::direction_tree_test {
 namespace {
 
 using Value = std::function<double(const Vec3& wl)>;
@@ -202,4 +202,4 @@ TEST(ErrorEstimate, ItsStandardErrorIsTheSpreadOfItsErrors) {
 }
 
 }  // namespace
-}  // namespace velour
+}  // namespace velour::direction_tree_test

@@ -21,7 +21,7 @@
 #include "support/materials.h"
 #include "support/true_error.h"
 
-namespace velour {
+namespace velour::failure_modes_test {
 namespace {
 
 using test::HostileCase;
@@ -158,4 +158,4 @@ INSTANTIATE_TEST_SUITE_P(All, FailureModes,
                          test_name);
 
 }  // namespace
-}  // namespace velour
+}  // namespace velour::failure_modes_test

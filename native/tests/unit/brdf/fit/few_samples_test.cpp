@@ -11,7 +11,7 @@
 #include "support/analytic_measurement.h"
 #include "support/warnings.h"
 
-namespace velour {
+namespace velour::few_samples_test {
 namespace {
 
 /// A Cornell file of `count` random samples of a glossy material, at three wavelengths.
@@ -72,4 +72,4 @@ TEST(FewSamples, AFewDozenAreTold) {
 }
 
 }  // namespace
-}  // namespace velour
+}  // namespace velour::few_samples_test

@@ -7,7 +7,7 @@
 #include "base/error.h"
 #include "support/analytic_measurement.h"
 
-namespace velour {
+namespace velour::fit_model_test {
 namespace {
 
 using test::AnalyticMeasurement;
@@ -81,4 +81,4 @@ TEST(FitModel, TheBoundInBytesHoldsForParametricModels) {
 }
 
 }  // namespace
-}  // namespace velour
+}  // namespace velour::fit_model_test

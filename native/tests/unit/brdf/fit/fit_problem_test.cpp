@@ -5,7 +5,7 @@
 #include <cmath>
 #include <Eigen/Cholesky>
 
-namespace velour {
+namespace velour::fit_problem_test {
 namespace {
 
 using P = ParametricBrdf;
@@ -243,4 +243,4 @@ TEST(SplineThrough, PassesNearSmoothValues) {
 }
 
 }  // namespace
-}  // namespace velour
+}  // namespace velour::fit_problem_test

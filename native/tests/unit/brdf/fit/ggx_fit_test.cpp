@@ -9,7 +9,7 @@
 #include "support/analytic_measurement.h"
 #include "support/test_data.h"
 
-namespace velour {
+namespace velour::ggx_fit_test {
 namespace {
 
 using test::AnalyticMeasurement;
@@ -134,4 +134,4 @@ TEST(GgxProblem, EndsAtAMinimumOfItsCost) {
 }
 
 }  // namespace
-}  // namespace velour
+}  // namespace velour::ggx_fit_test

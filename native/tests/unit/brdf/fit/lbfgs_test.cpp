@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-namespace velour {
+namespace velour::lbfgs_test {
 namespace {
 
 using Vector = Eigen::VectorXd;
@@ -69,4 +69,4 @@ TEST(Lbfgs, CountsItsSteps) {
 }
 
 }  // namespace
-}  // namespace velour
+}  // namespace velour::lbfgs_test

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace velour {
+namespace velour::lobe_budget_test {
 namespace {
 
 ViewPath path_of(std::vector<double> errors, double importance) {
@@ -36,4 +36,4 @@ TEST(LobeBudget, ThinsEvenly) {
 }
 
 }  // namespace
-}  // namespace velour
+}  // namespace velour::lobe_budget_test

@@ -4,7 +4,7 @@
 
 #include "math/sphere/random.h"
 
-namespace velour {
+namespace velour::nnls_test {
 namespace {
 
 Eigen::MatrixXd random_matrix(Eigen::Index rows, Eigen::Index columns, uint64_t seed) {
@@ -64,4 +64,4 @@ TEST(Nnls, NothingToGainGivesZero) {
 }
 
 }  // namespace
-}  // namespace velour
+}  // namespace velour::nnls_test

@@ -9,7 +9,7 @@
 #include "brdf/measure/held_out.h"
 #include "support/analytic_measurement.h"
 
-namespace velour {
+namespace velour::parametric_fit_test {
 namespace {
 
 using test::AnalyticMeasurement;
@@ -189,4 +189,4 @@ TEST(SliceSampling, LeavesOutTheLightsThatJudge) {
 }
 
 }  // namespace
-}  // namespace velour
+}  // namespace velour::parametric_fit_test

@@ -13,7 +13,7 @@
 #include "support/analytic_measurement.h"
 #include "support/warnings.h"
 
-namespace velour {
+namespace velour::per_view_fit_test {
 namespace {
 
 using test::AnalyticMeasurement;
@@ -297,4 +297,4 @@ TEST(PerViewFitRules, OptionsOutOfRangeAreRefused) {
 }
 
 }  // namespace
-}  // namespace velour
+}  // namespace velour::per_view_fit_test

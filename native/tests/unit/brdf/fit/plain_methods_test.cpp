@@ -21,7 +21,7 @@
 #include "support/hostile_measurements.h"
 #include "support/materials.h"
 
-namespace velour {
+namespace velour::plain_methods_test {
 namespace {
 
 using test::AnalyticMeasurement;
@@ -299,4 +299,4 @@ TEST(PlainMethod, SquaresOfHugeAndDenormalFloatsAreInfiniteOrNothing) {
 }
 
 }  // namespace
-}  // namespace velour
+}  // namespace velour::plain_methods_test

@@ -13,7 +13,7 @@
 #include "support/hostile_measurements.h"
 #include "support/true_error.h"
 
-namespace velour {
+namespace velour::population_test {
 namespace {
 
 using test::AnalyticMeasurement;
@@ -142,4 +142,4 @@ std::string test_name(const testing::TestParamInfo<Member>& info) {
 INSTANTIATE_TEST_SUITE_P(Small, Population, testing::ValuesIn(members()), test_name);
 
 }  // namespace
-}  // namespace velour
+}  // namespace velour::population_test

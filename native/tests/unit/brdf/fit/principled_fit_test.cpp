@@ -7,7 +7,7 @@
 #include "support/analytic_measurement.h"
 #include "support/test_data.h"
 
-namespace velour {
+namespace velour::principled_fit_test {
 namespace {
 
 using test::AnalyticMeasurement;
@@ -128,4 +128,4 @@ TEST(PrincipledProblem, SlopeIsThatOfItsCost) {
 }
 
 }  // namespace
-}  // namespace velour
+}  // namespace velour::principled_fit_test

@@ -9,7 +9,7 @@
 #include "support/analytic_measurement.h"
 #include "support/materials.h"
 
-namespace velour {
+namespace velour::reciprocity_test {
 namespace {
 
 using test::AnalyticMeasurement;
@@ -55,4 +55,4 @@ TEST(Reciprocity, OfAModelIsThatOfItsValues) {
 }
 
 }  // namespace
-}  // namespace velour
+}  // namespace velour::reciprocity_test

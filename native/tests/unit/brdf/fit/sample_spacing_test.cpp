@@ -7,7 +7,7 @@
 
 #include "brdf/measure/held_out.h"
 
-namespace velour {
+namespace velour::sample_spacing_test {
 namespace {
 
 /// A view's own lights, with a highlight about the normal (of half vectors) over `base`.
@@ -137,4 +137,4 @@ TEST(PictureWeights, TakeEveryBrightnessByItsRatio) {
 TEST(PictureWeights, BlackHasNone) { EXPECT_TRUE(picture_weights(lights_of({0, 0, 1}, 0, 0).samples).empty()); }
 
 }  // namespace
-}  // namespace velour
+}  // namespace velour::sample_spacing_test

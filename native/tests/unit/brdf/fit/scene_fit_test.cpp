@@ -12,7 +12,7 @@
 #include "support/soft_light.h"
 #include "usage/picture_error.h"
 
-namespace velour {
+namespace velour::scene_fit_test {
 namespace {
 
 using test::AnalyticMeasurement;
@@ -215,4 +215,4 @@ TEST_F(SceneFit, RefusesWhatMakesNoSense) {
 }
 
 }  // namespace
-}  // namespace velour
+}  // namespace velour::scene_fit_test

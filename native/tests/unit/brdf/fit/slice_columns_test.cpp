@@ -9,7 +9,7 @@
 #include "math/sphere/directions.h"
 #include "unit/brdf/fit/shape_value.h"
 
-namespace velour {
+namespace velour::slice_columns_test {
 namespace {
 
 using test::shape_value;
@@ -133,4 +133,4 @@ TEST(SliceColumnProducts, InstructionSetsAgree) {
 }
 
 }  // namespace
-}  // namespace velour
+}  // namespace velour::slice_columns_test

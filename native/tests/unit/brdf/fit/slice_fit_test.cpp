@@ -7,7 +7,7 @@
 #include "brdf/fit/slice_sampling.h"
 #include "math/sphere/directions.h"
 
-namespace velour {
+namespace velour::slice_fit_test {
 namespace {
 
 std::vector<SliceSample> lattice(int n, const Rgb& value) {
@@ -128,4 +128,4 @@ TEST(SliceFit, ACancelledFitStops) {
 }
 
 }  // namespace
-}  // namespace velour
+}  // namespace velour::slice_fit_test

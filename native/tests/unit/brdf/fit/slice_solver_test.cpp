@@ -8,7 +8,7 @@
 #include "math/sphere/random.h"
 #include "unit/brdf/fit/shape_value.h"
 
-namespace velour {
+namespace velour::slice_solver_test {
 namespace {
 
 using test::shape_value;
@@ -185,4 +185,4 @@ TEST(SliceSolver, TheCosineTermTakesWhatIsDiffuse) {
 }
 
 }  // namespace
-}  // namespace velour
+}  // namespace velour::slice_solver_test

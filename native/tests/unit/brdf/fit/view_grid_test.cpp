@@ -8,7 +8,7 @@
 #include "brdf/fit/error/evaluate.h"
 #include "brdf/measure/held_out.h"
 
-namespace velour {
+namespace velour::view_grid_test {
 namespace {
 
 double polar_degrees(const Vec3& w) { return std::acos(std::min(1.0, static_cast<double>(w.z))) * 180 / kPiD; }
@@ -87,4 +87,4 @@ TEST(ReportedViews, SamplesCountForTheNearest) {
 }
 
 }  // namespace
-}  // namespace velour
+}  // namespace velour::view_grid_test

@@ -6,7 +6,7 @@
 
 #include "brdf/fit/slice_sampling.h"
 
-namespace velour {
+namespace velour::warped_columns_test {
 namespace {
 
 const Vec3d kView(std::sin(1.1), 0, std::cos(1.1));
@@ -88,4 +88,4 @@ INSTANTIATE_TEST_SUITE_P(Shapes, WarpedColumns,
                                           testing::Values(0.05, 3.0, 200.0, 5000.0)));
 
 }  // namespace
-}  // namespace velour
+}  // namespace velour::warped_columns_test

@@ -11,7 +11,7 @@
 #include "support/inputs.h"
 #include "support/test_data.h"
 
-namespace velour {
+namespace velour::azimuth_spread_test {
 namespace {
 
 using Brdf = std::function<float(const Vec3&, const Vec3&)>;
@@ -63,4 +63,4 @@ TEST(AzimuthSpread, TheDatabasesPaintsAreIsotropic) {
 }
 
 }  // namespace
-}  // namespace velour
+}  // namespace velour::azimuth_spread_test

@@ -9,7 +9,7 @@
 #include "measurement_support.h"
 #include "support/test_data.h"
 
-namespace velour {
+namespace velour::brdf_table_test {
 namespace {
 
 /// A stretched highlight, the same after half a turn.
@@ -125,4 +125,4 @@ TEST(BrdfTable, WriterRefusesAWrongSize) {
 }
 
 }  // namespace
-}  // namespace velour
+}  // namespace velour::brdf_table_test

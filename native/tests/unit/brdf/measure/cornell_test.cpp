@@ -10,7 +10,7 @@
 #include "measurement_support.h"
 #include "support/test_data.h"
 
-namespace velour {
+namespace velour::cornell_test {
 namespace {
 
 using test::small_cornell;
@@ -206,4 +206,4 @@ TEST_F(Krylon, CoversWhatWasMeasured) {
 }
 
 }  // namespace
-}  // namespace velour
+}  // namespace velour::cornell_test

@@ -6,7 +6,7 @@
 
 #include "measurement_support.h"
 
-namespace velour {
+namespace velour::half_diff_test {
 namespace {
 
 TEST(FastAtan2, WithinItsStatedError) {
@@ -99,4 +99,4 @@ TEST(HalfDiffTable, InvalidNodesDoNotDarken) {
 }
 
 }  // namespace
-}  // namespace velour
+}  // namespace velour::half_diff_test

@@ -13,7 +13,7 @@
 #include "support/mutation.h"
 #include "support/test_data.h"
 
-namespace velour {
+namespace velour::hostile_test {
 namespace {
 
 using Bytes = std::vector<uint8_t>;
@@ -83,4 +83,4 @@ TEST(Hostile, MerlHeader) {
 }
 
 }  // namespace
-}  // namespace velour
+}  // namespace velour::hostile_test

@@ -7,7 +7,7 @@
 
 #include "math/sphere/directions.h"
 
-namespace velour {
+namespace velour::irregular_samples_test {
 namespace {
 
 constexpr float kWidest = radians_from(75.0f);
@@ -45,4 +45,4 @@ TEST(UnresolvedHighlights, MatteSurfacesHaveNone) {
 }
 
 }  // namespace
-}  // namespace velour
+}  // namespace velour::irregular_samples_test

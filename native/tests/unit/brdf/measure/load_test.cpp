@@ -6,7 +6,7 @@
 #include "support/inputs.h"
 #include "support/test_data.h"
 
-namespace velour {
+namespace velour::load_test {
 namespace {
 
 std::vector<uint8_t> bytes_of(const std::string& text) { return {text.begin(), text.end()}; }
@@ -106,4 +106,4 @@ TEST(Load, NamesOtherFormatsAndWhatToDo) {
 }
 
 }  // namespace
-}  // namespace velour
+}  // namespace velour::load_test

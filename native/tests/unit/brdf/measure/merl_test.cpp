@@ -14,7 +14,7 @@
 #include "support/inputs.h"
 #include "support/test_data.h"
 
-namespace velour {
+namespace velour::merl_test {
 namespace {
 
 /// f at every node; below the horizon something that must never be seen.
@@ -220,4 +220,4 @@ TEST_F(Merl, WriterRefusesAWrongSize) {
 }
 
 }  // namespace
-}  // namespace velour
+}  // namespace velour::merl_test

@@ -9,7 +9,7 @@
 #include "material/microfacet/ggx_sampler.h"
 #include "measurement_support.h"
 
-namespace velour {
+namespace velour::microfacet_trend_test {
 namespace {
 
 using Brdf = std::function<Rgb(const Vec3& wl, const Vec3& wv)>;
@@ -111,4 +111,4 @@ TEST(IrregularInterpolant, DoesNotFollowALobeThatIsNotThere) {
 }
 
 }  // namespace
-}  // namespace velour
+}  // namespace velour::microfacet_trend_test

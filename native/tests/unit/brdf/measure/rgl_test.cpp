@@ -7,7 +7,7 @@
 #include "measurement_support.h"
 #include "support/test_data.h"
 
-namespace velour {
+namespace velour::rgl_test {
 namespace {
 
 using test::eval_one;
@@ -227,4 +227,4 @@ TEST(Rgl, RealFilesHaveSaneAlbedo) {
 }
 
 }  // namespace
-}  // namespace velour
+}  // namespace velour::rgl_test

@@ -6,7 +6,7 @@
 
 #include "measurement_support.h"
 
-namespace velour {
+namespace velour::spectrum_test {
 namespace {
 
 Rgb color_of(const std::vector<double>& wavelengths, const std::function<double(double)>& spectrum) {
@@ -74,4 +74,4 @@ TEST(Spectrum, RefusesBadWavelengths) {
 }
 
 }  // namespace
-}  // namespace velour
+}  // namespace velour::spectrum_test

@@ -4,7 +4,7 @@
 
 #include "measurement_support.h"
 
-namespace velour {
+namespace velour::tensor_file_test {
 namespace {
 
 using test::TensorFileBuilder;
@@ -81,4 +81,4 @@ TEST(TensorFile, SameNameTwice) {
 }
 
 }  // namespace
-}  // namespace velour
+}  // namespace velour::tensor_file_test

@@ -15,7 +15,7 @@
 #include "support/inputs.h"
 #include "support/test_data.h"
 
-namespace velour {
+namespace velour::window_bsdf_test {
 namespace {
 
 using Value = std::function<double(uint32_t light, uint32_t view)>;
@@ -340,4 +340,4 @@ TEST(WindowBsdf, WhatCannotBeReadIsNamed) {
 }
 
 }  // namespace
-}  // namespace velour
+}  // namespace velour::window_bsdf_test

@@ -15,7 +15,7 @@
 #include "support/parametric_models.h"
 #include "support/test_data.h"
 
-namespace velour {
+namespace velour::verdict_test {
 namespace {
 
 using test::AnalyticMeasurement;
@@ -200,4 +200,4 @@ TEST(Verdict, SharedMaterials) {
 }
 
 }  // namespace
-}  // namespace velour
+}  // namespace velour::verdict_test

@@ -7,7 +7,7 @@
 
 #include "support/memory_btf.h"
 
-namespace velour {
+namespace velour::btf_compare_test {
 namespace {
 
 const TexelGrid kComparedGrid{4, 2};
@@ -51,4 +51,4 @@ TEST(BtfCompare, FindsThePercentile) {
 }
 
 }  // namespace
-}  // namespace velour
+}  // namespace velour::btf_compare_test

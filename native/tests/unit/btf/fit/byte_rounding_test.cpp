@@ -4,7 +4,7 @@
 
 #include "math/sphere/random.h"
 
-namespace velour {
+namespace velour::byte_rounding_test {
 namespace {
 
 constexpr size_t kLobes = 6, kTexels = 200;
@@ -55,4 +55,4 @@ TEST(ByteRounding, MakesUpForWhatItDoes) {
 }
 
 }  // namespace
-}  // namespace velour
+}  // namespace velour::byte_rounding_test

@@ -7,7 +7,7 @@
 #include "math/sphere/random.h"
 #include "support/striped_btf.h"
 
-namespace velour {
+namespace velour::equal_sides_test {
 namespace {
 
 const TexelGrid kSidesGrid{8, 6};
@@ -99,4 +99,4 @@ TEST(EqualSides, TakeNoBytes) {
 }
 
 }  // namespace
-}  // namespace velour
+}  // namespace velour::equal_sides_test

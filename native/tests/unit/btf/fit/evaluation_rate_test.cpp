@@ -5,7 +5,7 @@
 #include <chrono>
 #include <thread>
 
-namespace velour {
+namespace velour::evaluation_rate_test {
 namespace {
 
 using namespace std::chrono_literals;
@@ -50,4 +50,4 @@ TEST(EvaluationRate, AsksForPlacesOfTheTileAndDirectionsAbove) {
 }
 
 }  // namespace
-}  // namespace velour
+}  // namespace velour::evaluation_rate_test

@@ -5,7 +5,7 @@
 #include "base/error.h"
 #include "unit/btf/fit/factored_fits.h"
 
-namespace velour {
+namespace velour::factored_fit_test {
 namespace {
 
 using test::fit;
@@ -54,4 +54,4 @@ TYPED_TEST(FactoredFit, NeedsEveryPair) {
 }
 
 }  // namespace
-}  // namespace velour
+}  // namespace velour::factored_fit_test

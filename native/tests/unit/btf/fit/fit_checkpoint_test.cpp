@@ -11,7 +11,7 @@
 #include "support/striped_btf.h"
 #include "support/warnings.h"
 
-namespace velour {
+namespace velour::fit_checkpoint_test {
 namespace {
 
 class Checkpoint : public testing::Test {
@@ -214,4 +214,4 @@ INSTANTIATE_TEST_SUITE_P(Methods, Resumed,
                                          CompressMethod::tucker, CompressMethod::kcta));
 
 }  // namespace
-}  // namespace velour
+}  // namespace velour::fit_checkpoint_test

@@ -4,7 +4,7 @@
 
 #include "base/error.h"
 
-namespace velour {
+namespace velour::fit_memory_test {
 namespace {
 
 FitExtent usual_extent() {
@@ -107,4 +107,4 @@ TEST(FitMemory, LeastIsEnoughAndNoLessIs) {
 }
 
 }  // namespace
-}  // namespace velour
+}  // namespace velour::fit_memory_test

@@ -6,7 +6,7 @@
 
 #include "math/tensor/decompositions.h"
 
-namespace velour {
+namespace velour::function_refit_test {
 namespace {
 
 constexpr Index kViews = 9, kLights = 11, kRefitTexels = 60, kClusters = 3, kRank = 4, kViewRank = 3, kLightRank = 5,
@@ -121,4 +121,4 @@ TEST(FunctionRefit, LeavesWhatNobodySeesFinite) {
 }
 
 }  // namespace
-}  // namespace velour
+}  // namespace velour::function_refit_test

@@ -9,7 +9,7 @@
 
 #include "math/sphere/random.h"
 
-namespace velour {
+namespace velour::least_size_test {
 namespace {
 
 TEST(LeastSize, IsFoundToAFifthByFewTrials) {
@@ -54,4 +54,4 @@ TEST(LeastSize, NeverRisesWithTheErrorThatIsAllowed) {
 }
 
 }  // namespace
-}  // namespace velour
+}  // namespace velour::least_size_test

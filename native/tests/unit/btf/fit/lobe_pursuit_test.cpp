@@ -7,7 +7,7 @@
 
 #include "math/sphere/random.h"
 
-namespace velour {
+namespace velour::lobe_pursuit_test {
 namespace {
 
 struct PursuitPoint {
@@ -108,4 +108,4 @@ TEST(LobePursuit, IsTheSameForAnyNumberOfThreads) {
 }
 
 }  // namespace
-}  // namespace velour
+}  // namespace velour::lobe_pursuit_test

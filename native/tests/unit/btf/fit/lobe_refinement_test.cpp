@@ -6,7 +6,7 @@
 #include "math/sphere/random.h"
 #include "math/sphere/warp.h"
 
-namespace velour {
+namespace velour::lobe_refinement_test {
 namespace {
 
 constexpr uint32_t kTileLobes = 3;
@@ -130,4 +130,4 @@ TEST(LobeRefinement, IsTheSameForAnyNumberOfThreads) {
 }
 
 }  // namespace
-}  // namespace velour
+}  // namespace velour::lobe_refinement_test

@@ -5,7 +5,7 @@
 #include "support/relief_btf.h"
 #include "support/striped_btf.h"
 
-namespace velour {
+namespace velour::relief_gap_test {
 namespace {
 
 TexelGrid grid() { return {12, 8, Vec2(0.003f, 0.002f)}; }
@@ -50,4 +50,4 @@ TEST(ReliefGap, GrowsWithWhatTheReliefHides) {
 }
 
 }  // namespace
-}  // namespace velour
+}  // namespace velour::relief_gap_test

@@ -12,7 +12,7 @@
 #include "support/striped_btf.h"
 #include "usage/btf/scene_reduction.h"
 
-namespace velour {
+namespace velour::scene_levels_test {
 namespace {
 
 /// Look-ups of this share of the tile's side, all over the tile.
@@ -210,4 +210,4 @@ TEST_F(SceneReduction, WhatMakesNoSenseIsRefused) {
 }
 
 }  // namespace
-}  // namespace velour
+}  // namespace velour::scene_levels_test

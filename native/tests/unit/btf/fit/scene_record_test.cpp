@@ -10,7 +10,7 @@
 #include "model/file/model_file.h"
 #include "support/example_btf.h"
 
-namespace velour {
+namespace velour::scene_record_test {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -88,4 +88,4 @@ TEST(SceneRecordOfABtf, WeightsThatCannotBeAreNamed) {
 }
 
 }  // namespace
-}  // namespace velour
+}  // namespace velour::scene_record_test

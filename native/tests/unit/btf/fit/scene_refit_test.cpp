@@ -15,7 +15,7 @@
 #include "usage/btf/scene_btf.h"
 #include "usage/observation.h"
 
-namespace velour {
+namespace velour::scene_refit_test {
 namespace {
 
 /// Hits seen from `degrees`, each under 40 lights from all over the hemisphere, twice, in look-ups of `width` tiles.
@@ -302,4 +302,4 @@ TEST_F(Refit, WithoutLightLevelsAreLeftOut) {
 }
 
 }  // namespace
-}  // namespace velour
+}  // namespace velour::scene_refit_test

@@ -4,7 +4,7 @@
 
 #include "support/random_tensor.h"
 
-namespace velour {
+namespace velour::shape_search_test {
 namespace {
 
 /// 3 functions of 12 views and 12 lights, none of which is simpler than that.
@@ -30,4 +30,4 @@ TEST(ShapeSearch, GoesOnWhereSharesMakeTheSameShape) {
 }
 
 }  // namespace
-}  // namespace velour
+}  // namespace velour::shape_search_test

@@ -5,7 +5,7 @@
 #include "btf/fit/tensor/tensor_texels.h"
 #include "support/example_tensor.h"
 
-namespace velour {
+namespace velour::shown_views_test {
 namespace {
 
 constexpr uint32_t kWidth = 12, kShownTexels = kWidth * kWidth;
@@ -97,4 +97,4 @@ TEST(ShownViews, WhatIsHiddenStaysWithinReason) {
 }
 
 }  // namespace
-}  // namespace velour
+}  // namespace velour::shown_views_test

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numeric>
 
-namespace velour {
+namespace velour::side_shares_test {
 namespace {
 
 /// Each coefficient leaves `factor` of what was left before.
@@ -48,4 +48,4 @@ TEST(SideShares, OfBlackHaveNoError) {
 }
 
 }  // namespace
-}  // namespace velour
+}  // namespace velour::side_shares_test

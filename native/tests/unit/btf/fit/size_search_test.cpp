@@ -6,7 +6,7 @@
 #include <functional>
 #include "support/warnings.h"
 
-namespace velour {
+namespace velour::size_search_test {
 namespace {
 
 constexpr size_t kPoints = 200;
@@ -98,4 +98,4 @@ TEST(SizeSearch, KeepsTheCurveAtTheHeightsThatWereMeasured) {
 }
 
 }  // namespace
-}  // namespace velour
+}  // namespace velour::size_search_test

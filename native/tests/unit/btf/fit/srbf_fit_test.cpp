@@ -16,7 +16,7 @@
 #include "support/fitted_btfs.h"
 #include "support/striped_btf.h"
 
-namespace velour {
+namespace velour::srbf_fit_test {
 namespace {
 
 constexpr uint64_t kSrbfBytes = 3000;
@@ -308,4 +308,4 @@ TEST(SrbfFit, ReportsRisingProgressAndEndsAtACancel) {
 }
 
 }  // namespace
-}  // namespace velour
+}  // namespace velour::srbf_fit_test

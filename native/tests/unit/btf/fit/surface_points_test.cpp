@@ -6,7 +6,7 @@
 #include "support/example_srbf.h"
 #include "support/striped_btf.h"
 
-namespace velour {
+namespace velour::surface_points_test {
 namespace {
 
 const TexelGrid kStripedGrid{8, 6};
@@ -136,4 +136,4 @@ TEST(SharedLobes, OfBlackPointsAreTheConstant) {
 }
 
 }  // namespace
-}  // namespace velour
+}  // namespace velour::surface_points_test

@@ -9,7 +9,7 @@
 #include "support/warnings.h"
 #include "unit/btf/fit/factored_fits.h"
 
-namespace velour {
+namespace velour::svd_fit_test {
 namespace {
 
 using test::errors_of;
@@ -87,4 +87,4 @@ TEST(SvdFit, DirectionsThatAreThereTwiceAreTold) {
 }
 
 }  // namespace
-}  // namespace velour
+}  // namespace velour::svd_fit_test

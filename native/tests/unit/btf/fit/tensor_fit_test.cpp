@@ -12,7 +12,7 @@
 #include "support/fitted_btfs.h"
 #include "support/striped_btf.h"
 
-namespace velour {
+namespace velour::tensor_fit_test {
 namespace {
 
 constexpr uint64_t kTensorBytes = 5000;
@@ -298,4 +298,4 @@ TEST(TensorFit, ReportsRisingProgressAndEndsAtACancel) {
 }
 
 }  // namespace
-}  // namespace velour
+}  // namespace velour::tensor_fit_test

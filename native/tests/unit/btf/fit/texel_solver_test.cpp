@@ -9,7 +9,7 @@
 #include "support/example_srbf.h"
 #include "support/simd_targets.h"
 
-namespace velour {
+namespace velour::texel_solver_test {
 namespace {
 
 void nothing(int) {}
@@ -164,4 +164,4 @@ TEST(RowProducts, AreThoseOfMatrices) {
 }
 
 }  // namespace
-}  // namespace velour
+}  // namespace velour::texel_solver_test

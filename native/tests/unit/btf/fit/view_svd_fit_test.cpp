@@ -7,7 +7,7 @@
 
 #include "unit/btf/fit/factored_fits.h"
 
-namespace velour {
+namespace velour::view_svd_fit_test {
 namespace {
 
 using test::errors_of;
@@ -96,4 +96,4 @@ TEST(ViewSvdFit, OfABlackBtfIsBlack) {
 }
 
 }  // namespace
-}  // namespace velour
+}  // namespace velour::view_svd_fit_test

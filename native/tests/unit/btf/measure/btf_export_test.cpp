@@ -11,7 +11,7 @@
 #include "support/test_data.h"
 #include "support/warnings.h"
 
-namespace velour {
+namespace velour::btf_export_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -109,4 +109,4 @@ TEST(BtfExport, AFolderThatHoldsSomethingIsLeftAlone) {
 }
 
 }  // namespace
-}  // namespace velour
+}  // namespace velour::btf_export_test

@@ -10,7 +10,7 @@
 #include "image/picture.h"
 #include "support/test_data.h"
 
-namespace velour {
+namespace velour::btf_folder_test {
 namespace {
 
 using test::message_of;
@@ -207,4 +207,4 @@ TEST(BtfFolder, AMissingOrForeignViewIsNamed) {
 }
 
 }  // namespace
-}  // namespace velour
+}  // namespace velour::btf_folder_test

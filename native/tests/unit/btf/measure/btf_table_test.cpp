@@ -8,7 +8,7 @@
 #include "base/error.h"
 #include "support/striped_btf.h"
 
-namespace velour {
+namespace velour::btf_table_test {
 namespace {
 
 const TexelGrid kGrid{6, 5};
@@ -101,4 +101,4 @@ TEST(BtfTable, MissingPairsAreRefused) {
 }
 
 }  // namespace
-}  // namespace velour
+}  // namespace velour::btf_table_test

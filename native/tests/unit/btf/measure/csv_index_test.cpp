@@ -8,7 +8,7 @@
 #include "support/inputs.h"
 #include "support/test_data.h"
 
-namespace velour {
+namespace velour::csv_index_test {
 namespace {
 
 using test::message_of;
@@ -81,4 +81,4 @@ TEST_F(CsvIndexTest, WhatIsWrongIsOneSentenceWithItsLine) {
 }
 
 }  // namespace
-}  // namespace velour
+}  // namespace velour::csv_index_test

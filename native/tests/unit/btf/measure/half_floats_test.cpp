@@ -9,7 +9,7 @@
 #include "image/tensors/exr_tensors.h"
 #include "support/simd_targets.h"
 
-namespace velour {
+namespace velour::half_floats_test {
 namespace {
 
 TEST(HalfFloats, EveryHalfSurvivesTheWayThereAndBack) {
@@ -58,4 +58,4 @@ TEST(HalfFloats, RoundAsTheFilesDo) {
 }
 
 }  // namespace
-}  // namespace velour
+}  // namespace velour::half_floats_test

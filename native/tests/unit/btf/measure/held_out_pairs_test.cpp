@@ -6,7 +6,7 @@
 
 #include "base/error.h"
 
-namespace velour {
+namespace velour::held_out_pairs_test {
 namespace {
 
 TEST(HeldOutPairs, AreAlwaysTheSameAndFewerAreTheFirstOfMore) {
@@ -57,4 +57,4 @@ TEST(HeldOutPairs, RefuseNoneAndTooMany) {
 }
 
 }  // namespace
-}  // namespace velour
+}  // namespace velour::held_out_pairs_test

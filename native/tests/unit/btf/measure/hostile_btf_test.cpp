@@ -14,7 +14,7 @@
 #include "support/test_data.h"
 #include "ubo_support.h"
 
-namespace velour {
+namespace velour::hostile_btf_test {
 namespace {
 
 using Bytes = std::vector<uint8_t>;
@@ -93,4 +93,4 @@ TEST(HostileBtf, CsvIndex) {
 }
 
 }  // namespace
-}  // namespace velour
+}  // namespace velour::hostile_btf_test

@@ -8,7 +8,7 @@
 #include "btf_support.h"
 #include "support/test_data.h"
 
-namespace velour {
+namespace velour::image_names_test {
 namespace {
 
 using test::message_of;
@@ -99,4 +99,4 @@ TEST(ImageNames, WhatIsWrongIsOneSentence) {
 }
 
 }  // namespace
-}  // namespace velour
+}  // namespace velour::image_names_test

@@ -14,7 +14,7 @@
 #include "support/test_data.h"
 #include "ubo_support.h"
 
-namespace velour {
+namespace velour::load_btf_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -218,4 +218,4 @@ TEST(LoadBtf, OurOwnFolderIsFoundByItsIndexToo) {
 }
 
 }  // namespace
-}  // namespace velour
+}  // namespace velour::load_btf_test

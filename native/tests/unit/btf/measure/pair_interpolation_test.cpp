@@ -5,7 +5,7 @@
 #include "base/error.h"
 #include "math/sphere/directions.h"
 
-namespace velour {
+namespace velour::pair_interpolation_test {
 namespace {
 
 TEST(PairInterpolation, GivesTheDirectionsOfTheSetBack) {
@@ -65,4 +65,4 @@ TEST(PairInterpolation, NeedsEveryPair) {
 }
 
 }  // namespace
-}  // namespace velour
+}  // namespace velour::pair_interpolation_test

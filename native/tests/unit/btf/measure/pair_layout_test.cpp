@@ -11,7 +11,7 @@
 #include "support/test_data.h"
 #include "support/warnings.h"
 
-namespace velour {
+namespace velour::pair_layout_test {
 namespace {
 
 TEST(PolarAngles, GiveUnitVectorsThatAreExactOnTheAxes) {
@@ -95,4 +95,4 @@ TEST(PairLayout, RefusesWhatIsNoLayout) {
 }
 
 }  // namespace
-}  // namespace velour
+}  // namespace velour::pair_layout_test

@@ -8,7 +8,7 @@
 #include "math/sphere/random.h"
 #include "support/simd_targets.h"
 
-namespace velour {
+namespace velour::relief_test {
 namespace {
 
 Vec3 towards(float theta_degrees, float phi_degrees) {
@@ -218,4 +218,4 @@ TEST(Relief, IsFiniteAtTheHorizon) {
 }
 
 }  // namespace
-}  // namespace velour
+}  // namespace velour::relief_test

@@ -9,7 +9,7 @@
 #include "support/simd_targets.h"
 #include "unit/btf/measure/random_pair.h"
 
-namespace velour {
+namespace velour::srbf_evaluator_test {
 namespace {
 
 using test::random_pair;
@@ -145,4 +145,4 @@ TEST(SrbfEvaluator, IsFiniteAtTheHorizonAndForOppositeDirections) {
 }
 
 }  // namespace
-}  // namespace velour
+}  // namespace velour::srbf_evaluator_test

@@ -9,7 +9,7 @@
 #include "support/simd_targets.h"
 #include "unit/btf/measure/random_pair.h"
 
-namespace velour {
+namespace velour::tensor_evaluator_test {
 namespace {
 
 using test::random_pair;
@@ -125,4 +125,4 @@ TEST(TensorImages, OfASharedSideAreThoseOfTheOneThatServesIt) {
 }
 
 }  // namespace
-}  // namespace velour
+}  // namespace velour::tensor_evaluator_test

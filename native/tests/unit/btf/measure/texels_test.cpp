@@ -10,7 +10,7 @@
 #include "math/sphere/random.h"
 #include "support/simd_targets.h"
 
-namespace velour {
+namespace velour::texels_test {
 namespace {
 
 TEST(BilinearTexels, OfACenterIsThatTexel) {
@@ -90,4 +90,4 @@ TEST(ByteTexels, AddWhatTheyWeighInSteps) {
 }
 
 }  // namespace
-}  // namespace velour
+}  // namespace velour::texels_test

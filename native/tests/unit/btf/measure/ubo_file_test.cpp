@@ -10,7 +10,7 @@
 #include "support/test_data.h"
 #include "ubo_support.h"
 
-namespace velour {
+namespace velour::ubo_file_test {
 namespace {
 
 using test::message_of;
@@ -171,4 +171,4 @@ TEST_F(UboFileTest, WhatIsWrongIsOneSentence) {
 }
 
 }  // namespace
-}  // namespace velour
+}  // namespace velour::ubo_file_test

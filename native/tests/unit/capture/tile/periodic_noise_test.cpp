@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-namespace velour {
+namespace velour::periodic_noise_test {
 namespace {
 
 const PeriodicNoise kNoise{.seed = 5, .stream = 1, .cells = {7, 3}};
@@ -38,4 +38,4 @@ TEST(PeriodicNoise, AnotherSeedOrStreamIsAnotherNoise) {
 }
 
 }  // namespace
-}  // namespace velour
+}  // namespace velour::periodic_noise_test

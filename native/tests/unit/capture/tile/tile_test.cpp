@@ -7,7 +7,7 @@
 
 #include "base/error.h"
 
-namespace velour {
+namespace velour::tile_test {
 namespace {
 
 void expect_refused(const TileOptions& options, const std::string& word) {
@@ -58,4 +58,4 @@ TEST(Tile, RefusesWhatAKindDoesNotHave) {
 }
 
 }  // namespace
-}  // namespace velour
+}  // namespace velour::tile_test

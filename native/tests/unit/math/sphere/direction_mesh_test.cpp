@@ -9,7 +9,7 @@
 
 #include "math/sphere/directions.h"
 
-namespace velour {
+namespace velour::direction_mesh_test {
 namespace {
 
 std::vector<Vec3> rings() {
@@ -186,4 +186,4 @@ TEST(DirectionMesh, OfOneOrTwoDirectionsIsTheNearestPointBetween) {
 }
 
 }  // namespace
-}  // namespace velour
+}  // namespace velour::direction_mesh_test

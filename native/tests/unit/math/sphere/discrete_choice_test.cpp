@@ -5,7 +5,7 @@
 #include <numeric>
 #include <vector>
 
-namespace velour {
+namespace velour::discrete_choice_test {
 namespace {
 
 TEST(DiscreteChoice, AgreesWithLinearSearch) {
@@ -42,4 +42,4 @@ TEST(DiscreteChoice, TheMiddleOfAStepStaysInside) {
 }
 
 }  // namespace
-}  // namespace velour
+}  // namespace velour::discrete_choice_test

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <vector>
 
-namespace velour {
+namespace velour::sobol_test {
 namespace {
 
 /// Whether every elementary interval of area 1 / n holds one of the n = 2^m points.
@@ -147,4 +147,4 @@ TEST(OwenScramble, VarianceFallsFasterThanWithIndependentNumbers) {
 }
 
 }  // namespace
-}  // namespace velour
+}  // namespace velour::sobol_test

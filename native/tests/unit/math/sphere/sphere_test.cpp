@@ -7,7 +7,7 @@
 #include "math/sphere/warp.h"
 #include "support/statistics.h"
 
-namespace velour {
+namespace velour::sphere_test {
 namespace {
 
 void expect_near(const Vec3& a, const Vec3& b, float tolerance) {
@@ -99,4 +99,4 @@ TEST(Warp, CornersOfTheUnitSquareStayOnTheSphere) {
 }
 
 }  // namespace
-}  // namespace velour
+}  // namespace velour::sphere_test

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <vector>
 
-namespace velour {
+namespace velour::view_spline_test {
 namespace {
 
 Vec3d view(double degrees, double azimuth = 0) {
@@ -167,4 +167,4 @@ TEST(PoleFade, GoesFromNothingToAll) {
 }
 
 }  // namespace
-}  // namespace velour
+}  // namespace velour::view_spline_test

@@ -4,7 +4,7 @@
 
 #include <vector>
 
-namespace velour {
+namespace velour::front_lanes_test {
 namespace {
 
 TEST(FrontLanes, AreThoseOfTheMaskInOrder) {
@@ -19,4 +19,4 @@ TEST(FrontLanes, AreThoseOfTheMaskInOrder) {
 }
 
 }  // namespace
-}  // namespace velour
+}  // namespace velour::front_lanes_test

@@ -5,7 +5,7 @@
 #include "math/sphere/directions.h"
 #include "math/sphere/quadrature.h"
 
-namespace velour {
+namespace velour::kernel_test {
 namespace {
 
 constexpr Kernel kGaussian = Kernel::gaussian;
@@ -191,4 +191,4 @@ TEST(Kernel, CenterAndAntipode) {
 }
 
 }  // namespace
-}  // namespace velour
+}  // namespace velour::kernel_test

@@ -6,7 +6,7 @@
 #include "support/mixtures.h"
 #include "support/simd_targets.h"
 
-namespace velour {
+namespace velour::lobe_mixture_test {
 namespace {
 
 using test::batch_of;
@@ -195,4 +195,4 @@ TEST(LobeMixture, AppendTurnsAndScalesLikeAdd) {
 }
 
 }  // namespace
-}  // namespace velour
+}  // namespace velour::lobe_mixture_test

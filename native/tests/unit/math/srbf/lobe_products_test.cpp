@@ -6,7 +6,7 @@
 #include "math/sphere/directions.h"
 #include "support/simd_targets.h"
 
-namespace velour {
+namespace velour::lobe_products_test {
 namespace {
 
 GaussianLobes sky() {
@@ -147,4 +147,4 @@ TEST(LobeProducts, KeepsTheBestAndRefusesTheBlack) {
 }
 
 }  // namespace
-}  // namespace velour
+}  // namespace velour::lobe_products_test

@@ -7,7 +7,7 @@
 #include "math/sphere/warp.h"
 #include "math/srbf/kernel.h"
 
-namespace velour {
+namespace velour::lobe_tree_test {
 namespace {
 
 constexpr GaussianLobe kEverywhere{{0, 0, 1}, 0, 1};
@@ -127,4 +127,4 @@ TEST(LobeTree, TakesWhatIsDegenerate) {
 }
 
 }  // namespace
-}  // namespace velour
+}  // namespace velour::lobe_tree_test

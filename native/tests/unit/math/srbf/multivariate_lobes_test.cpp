@@ -9,7 +9,7 @@
 #include "math/sphere/warp.h"
 #include "support/simd_targets.h"
 
-namespace velour {
+namespace velour::multivariate_lobes_test {
 namespace {
 
 Vec3 random_vector(RandomStream& random, float longest) {
@@ -131,4 +131,4 @@ TEST(MultivariateLobes, ArgumentsTurnTogether) {
 }
 
 }  // namespace
-}  // namespace velour
+}  // namespace velour::multivariate_lobes_test

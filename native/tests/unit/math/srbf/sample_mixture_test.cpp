@@ -5,7 +5,7 @@
 #include "math/sphere/random.h"
 #include "support/mixtures.h"
 
-namespace velour {
+namespace velour::sample_mixture_test {
 namespace {
 
 constexpr float kLast = 1 - 0x1p-24f;
@@ -139,4 +139,4 @@ TEST(SampleMixture, FollowsTheScalarReferenceOnEveryTarget) {
 }
 
 }  // namespace
-}  // namespace velour
+}  // namespace velour::sample_mixture_test

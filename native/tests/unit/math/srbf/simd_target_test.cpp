@@ -6,7 +6,7 @@
 
 #include "support/mixtures.h"
 
-namespace velour {
+namespace velour::simd_target_test {
 namespace {
 
 class SimdTarget : public ::testing::Test {
@@ -68,4 +68,4 @@ TEST_F(SimdTarget, AllTargetsAgreeWithinRounding) {
 }
 
 }  // namespace
-}  // namespace velour
+}  // namespace velour::simd_target_test

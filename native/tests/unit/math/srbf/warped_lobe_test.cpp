@@ -6,7 +6,7 @@
 
 #include "math/srbf/kernel.h"
 
-namespace velour {
+namespace velour::warped_lobe_test {
 namespace {
 
 constexpr double kStep = 1e-6;
@@ -116,4 +116,4 @@ TEST(Tilt, SlopesAreDerivatives) {
 }
 
 }  // namespace
-}  // namespace velour
+}  // namespace velour::warped_lobe_test

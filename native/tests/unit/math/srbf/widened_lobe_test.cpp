@@ -6,7 +6,7 @@
 #include <limits>
 #include <vector>
 
-namespace velour {
+namespace velour::widened_lobe_test {
 namespace {
 
 constexpr double kGolden = 0.6180339887498949;
@@ -195,4 +195,4 @@ TEST(LobeLight, OfALobeAtAView) {
 }
 
 }  // namespace
-}  // namespace velour
+}  // namespace velour::widened_lobe_test

@@ -9,7 +9,7 @@
 #include "math/tensor/decompositions.h"
 #include "support/random_tensor.h"
 
-namespace velour {
+namespace velour::cluster_fit_test {
 namespace {
 
 const std::vector<Index> kExtents{120, 9, 7, 3}, kRanks{2, 4, 3, 2};
@@ -161,4 +161,4 @@ TEST(ClusterChoice, BearsBlocksThatOverlap) {
 }
 
 }  // namespace
-}  // namespace velour
+}  // namespace velour::cluster_fit_test

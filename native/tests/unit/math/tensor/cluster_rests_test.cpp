@@ -4,7 +4,7 @@
 
 #include "support/random_tensor.h"
 
-namespace velour {
+namespace velour::cluster_rests_test {
 namespace {
 
 constexpr Index kSlices = 9, kEntries = 1300, kRank = 2;
@@ -57,4 +57,4 @@ TEST(ClusterRests, AreTheSlicesBeforeMembersAreChosen) {
 }
 
 }  // namespace
-}  // namespace velour
+}  // namespace velour::cluster_rests_test

@@ -10,7 +10,7 @@
 #include "support/random_tensor.h"
 #include "support/singular_values.h"
 
-namespace velour {
+namespace velour::hostile_slices_test {
 namespace {
 
 const std::vector<Index> kExtents{40, 6, 5, 3}, kRanks{2, 3, 3, 2};
@@ -159,4 +159,4 @@ TEST(HostileSlices, InFloatsAreAsGoodAsInDoubles) {
 }
 
 }  // namespace
-}  // namespace velour
+}  // namespace velour::hostile_slices_test

@@ -4,7 +4,7 @@
 
 #include "support/random_tensor.h"
 
-namespace velour {
+namespace velour::leading_eigenvectors_test {
 namespace {
 
 constexpr Index kSide = 400, kRank = 12;
@@ -64,4 +64,4 @@ TEST(LeadingEigenvectors, AreTheSameForAnyNumberOfThreads) {
 }
 
 }  // namespace
-}  // namespace velour
+}  // namespace velour::leading_eigenvectors_test

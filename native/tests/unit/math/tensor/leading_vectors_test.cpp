@@ -6,7 +6,7 @@
 #include "support/random_tensor.h"
 #include "support/singular_values.h"
 
-namespace velour {
+namespace velour::leading_vectors_test {
 namespace {
 
 /// How much of the square of a matrix lies in the span of orthonormal columns.
@@ -79,4 +79,4 @@ TEST(RandomRange, NeedsPowersWhereValuesFallSlowly) {
 }
 
 }  // namespace
-}  // namespace velour
+}  // namespace velour::leading_vectors_test

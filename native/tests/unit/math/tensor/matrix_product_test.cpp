@@ -4,7 +4,7 @@
 
 #include "support/random_tensor.h"
 
-namespace velour {
+namespace velour::matrix_product_test {
 namespace {
 
 /// Room around a matrix, whose rows or columns lie side by side, or neither.
@@ -94,4 +94,4 @@ TEST(MatrixProduct, WithItselfIsRightBelowTheDiagonal) {
 }
 
 }  // namespace
-}  // namespace velour
+}  // namespace velour::matrix_product_test

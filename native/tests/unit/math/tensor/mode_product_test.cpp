@@ -4,7 +4,7 @@
 
 #include "support/random_tensor.h"
 
-namespace velour {
+namespace velour::mode_product_test {
 namespace {
 
 const std::vector<Index> kExtents{5, 4, 3, 6};
@@ -99,4 +99,4 @@ TEST(TensorView, IsCopiedInItsOrder) {
 }
 
 }  // namespace
-}  // namespace velour
+}  // namespace velour::mode_product_test

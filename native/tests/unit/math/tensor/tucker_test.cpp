@@ -4,7 +4,7 @@
 
 #include "support/random_tensor.h"
 
-namespace velour {
+namespace velour::tucker_test {
 namespace {
 
 const std::vector<Index> kExtents{9, 8, 3, 10}, kRanks{3, 4, 2, 3};
@@ -61,4 +61,4 @@ TEST(Tucker, IsTheSameForAnyNumberOfThreads) {
 }
 
 }  // namespace
-}  // namespace velour
+}  // namespace velour::tucker_test
