@@ -222,6 +222,40 @@ class Controls(Network):
         self.assertLess(self.error(turned), _EXACT)
         self.assertGreater(self.error(curves), 10 * _EXACT)
 
+    def test_the_distributions_of_brushed_surfaces(self):
+        for distribution in ("GGX", *_other_distributions()):
+            lobe = {"roughness": 0.5, "anisotropy": 0.5, "distribution": distribution}
+            curves = {**closures.curves(lobes=[lobe]), "frame": "surface"}
+            self.build(curves)
+            self.assertLess(self.error(curves), _EXACT)
+
+    def _under_a_sky(self, distribution):
+        """How bright a brushed plane is from above under a white sky: in Cycles, and by its curves."""
+        lobe = {"roughness": 0.35, "anisotropy": -0.5, "distribution": distribution}
+        curves = {**closures.curves((0.01,) * 3, [lobe]), "frame": "surface"}
+        self.build(curves)
+        scenes.set_world(strength=1)
+        self.lamp.hide_render, self.camera.data.angle, self.scene.cycles.samples = True, 0.02, 64
+        z = (np.arange(50000) + 0.5) / 50000
+        phi, across = np.pi * (1 + 5**0.5) * np.arange(50000), np.sqrt(1 - z**2)
+        wl = np.stack([across * np.cos(phi), across * np.sin(phi), z], axis=-1)
+        expected = 2 * np.pi * closures.f_cos(curves, (0, 0, 1), wl).mean()
+        return scenes.render(self.folder)[..., :3].mean(), expected
+
+    def test_under_a_sky_they_are_seen_as_under_lamps(self):
+        """Directions are drawn by the density that Cycles divides by."""
+        for distribution in _other_distributions():
+            drawn, divided = self._under_a_sky(distribution)
+            self.assert_close(drawn, divided, 0.02 * divided)
+        if not closures.is_correlated():
+            drawn, divided = self._under_a_sky("BECKMANN")
+            self.assertGreater(abs(drawn - divided), 0.1 * divided)
+
+
+def _other_distributions():
+    """What fits take beside GGX for brushed surfaces."""
+    return ["BECKMANN"] if closures.is_correlated() else ["ASHIKHMIN_SHIRLEY"]
+
 
 def _dyed(curves, gain):
     lobes = [{**lobe, "color": (np.array(lobe["color"]) * gain).tolist()} for lobe in curves["lobes"]]

@@ -85,9 +85,10 @@ function(velour_layer folder layers)
   share_precompiled(velour_${name} velour_precompiled)
 endfunction()
 
-# velour_test(NAME FILES... [LINK ...] [LABEL unit|stat|capi] [OPTIMIZE]): one GoogleTest program and its ctest entry.
-# Test programs are compiled without optimization, which halves their compile time: a test should spend its time in the
-# library. OPTIMIZE: for test programs that do much computation themselves.
+# velour_test(NAME FILES... [LINK ...] [LABEL unit|stat|capi] [OPTIMIZE]): one GoogleTest program and its ctest entry,
+# for all tests of a folder, since most of the time is that of headers and templates. Each file has a namespace of its
+# own, named after the file. Test programs are compiled without optimization, which halves their compile time: a test
+# should spend its time in the library. OPTIMIZE: for test programs that do much computation themselves.
 function(velour_test name)
   cmake_parse_arguments(ARG "OPTIMIZE" "LABEL" "FILES;LINK" ${ARGN})
   add_executable(test_${name} ${ARG_FILES})

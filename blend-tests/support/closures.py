@@ -54,6 +54,8 @@ def _lobe(lobe, frame, x, wv, wl):
     squeeze = np.where(anisotropy < 0, 1 / (1 + anisotropy), 1 - anisotropy)
     alpha = np.clip(np.stack([roughness**2 * squeeze, roughness**2 / squeeze], axis=-1), 0, 1)
     v, light, h = (np.einsum("nij,nj->ni", axes, d) for d in (wv, wl, _unit(wv + wl)))
+    if lobe["distribution"] == "ASHIKHMIN_SHIRLEY":
+        return _ashikhmin_shirley(alpha, v, light, h)
     is_ggx = lobe["distribution"] == "GGX"
     slopes = ((h[:, :2] / alpha) ** 2).sum(-1) / h[:, 2] ** 2
     falloff = (1 + slopes) ** -2.0 if is_ggx else np.exp(-slopes)
@@ -63,6 +65,14 @@ def _lobe(lobe, frame, x, wv, wl):
         1 / (1 + sum(lambdas)) if is_correlated() else 1 / np.prod([1 + each for each in lambdas], axis=0)
     )
     return np.where((light[:, 2] > 0) & (wl[:, 2] > 0), d * masking / (4 * v[:, 2]), 0)
+
+
+def _ashikhmin_shirley(alpha, v, light, h):
+    n = 2 / alpha**2 - 2
+    exponent = (n * h[:, :2] ** 2).sum(-1) / np.maximum((h[:, :2] ** 2).sum(-1), 1e-12)
+    norm = np.sqrt((n + 1).prod(-1)) / (8 * np.pi)
+    falloff = (h * v).sum(-1) * np.maximum(v[:, 2], light[:, 2])
+    return np.where(light[:, 2] > 0, light[:, 2] * norm * h[:, 2] ** exponent / falloff, 0)
 
 
 def _smith_lambda(alpha, direction, is_ggx):

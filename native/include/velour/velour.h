@@ -148,11 +148,11 @@ VLR_API void vlr_closure_options_init(vlr_closure_options* options);
 /* Fits a Diffuse BSDF and the fewest Glossy BSDFs of Blender that will do to a model (docs/engine/closure_network.md).
  * Curves over the view angle have 65 samples at theta_v = 0 to pi/2, at equal distances. JSON: frame (lobes stretch in
  * the plane of "incidence" or, if the model is anisotropic, along the tangent of the "surface"), lobes [{distribution
- * "GGX" or "BECKMANN", color (65 x RGB), roughness, tilt (s of the normal N + s (Incoming - N)), anisotropy (65
- * each)}], diffuse (65 x RGB), views (degrees), relative_l2 (of the luminance of f cos against the model, a number per
- * view), relative_l2_mean (of the views up to 75 degrees), albedo_excess (largest share by which an albedo exceeds the
- * model's), seconds, reason (a sentence if the error is large, otherwise ""). VLR_UNSUPPORTED for models of BTFs.
- * Takes about half a second, three times as long for anisotropic models. */
+ * "GGX", "BECKMANN" or "ASHIKHMIN_SHIRLEY", color (65 x RGB), roughness, tilt (s of the normal N + s (Incoming - N)),
+ * anisotropy (65 each)}], diffuse (65 x RGB), views (degrees), relative_l2 (of the luminance of f cos against the
+ * model, a number per view), relative_l2_mean (of the views up to 75 degrees), albedo_excess (largest share by which an
+ * albedo exceeds the model's), seconds, reason (a sentence if the error is large, otherwise ""). VLR_UNSUPPORTED for
+ * models of BTFs. Takes about half a second, three times as long for anisotropic models. */
 VLR_API vlr_status vlr_model_closures_json(vlr_model* model, const vlr_closure_options* options, const char** json);
 
 /* JSON as from vlr_measurement_info_json, vlr_model_info_json, vlr_observation_info_json or vlr_btf_info_json,

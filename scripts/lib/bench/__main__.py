@@ -34,7 +34,9 @@ NEEDS = {
     "closures": Needs(tools="metrics"),
     "eevee": Needs(tools="metrics"),
     "failure_modes": Needs(("test_brdf_fit_optimized",)),
-    "inputs": Needs(("test_image", "test_portable_picture", "test_scene", "test_brdf_measure", "test_btf_measure")),
+    "inputs": Needs(
+        ("test_image", "test_portable_picture", "test_scene", "test_brdf_measure", "test_btf_measure")
+    ),
     "models": Needs(("evaluation_cost",)),
     "perceptual": Needs(tools="metrics"),
     "votf": Needs(tools="metrics"),

@@ -88,7 +88,8 @@ Json input_json(const ClosureCurve<float>& curve, const Input& input) {
 }
 
 Json lobe_json(const ClosureLobe& lobe) {
-  return {{"distribution", lobe.distribution == LobeDistribution::ggx ? "GGX" : "BECKMANN"},
+  constexpr const char* kNames[] = {"GGX", "BECKMANN", "ASHIKHMIN_SHIRLEY"};
+  return {{"distribution", kNames[static_cast<size_t>(lobe.distribution)]},
           {"color", curve_json(lobe.weight)},
           {"roughness", lobe.roughness},
           {"tilt", input_json(lobe.tilt, incoming_factor)},

@@ -226,10 +226,11 @@ ClosureFit fit_closures(const ClosureSource& source, const ClosureFitOptions& op
 
   // A half vector turns by half the angle of the light about the viewer.
   const double narrowest = static_cast<double>(std::min(widths.mirror, 0.5f * widths.viewer));
-  const ClosureFrame frame = source.isotropic ? ClosureFrame::incidence : ClosureFrame::surface;
-  const ClosureSearchOptions search{.masking = options.masking,
-                                    .bounds = {.min_alpha = 0.5 * narrowest, .frame = frame},
-                                    .threads = options.threads};
+  // Cycles before Blender 3.5 draws directions of stretched Beckmann lobes as if these were as wide along y as along x.
+  const ClosureBounds bounds{.min_alpha = 0.5 * narrowest,
+                             .frame = source.isotropic ? ClosureFrame::incidence : ClosureFrame::surface,
+                             .stretched_beckmann = options.masking != LobeMasking::separable};
+  const ClosureSearchOptions search{.masking = options.masking, .bounds = bounds, .threads = options.threads};
   ClosureSolution solution;
   std::vector<ClosureFit> fits;
   while (static_cast<int>(fits.size()) < options.max_lobes) {

@@ -25,16 +25,16 @@ std::vector<float> closure_azimuths(const ClosureSource& source, int count = 8);
 /// f cos at a view, not negative.
 std::vector<Rgb> source_values(const ClosureSource& source, const Vec3& wv, std::span<const Vec3> wl);
 
-/// Widths of the sharpest highlights of a BRDF in planes of incidence, as alpha of a GGX lobe about the mirror direction
-/// and about the viewer. At most 0.04 and 0.25.
+/// Widths of the sharpest highlights of a BRDF in planes of incidence, as alpha of a GGX lobe about the mirror
+/// direction and about the viewer. At most 0.04 and 0.25.
 struct HighlightWidths {
   float mirror, viewer;
 };
 HighlightWidths highlight_widths(const ClosureSource& source);
 
-/// About `count` light directions above the horizon for the view at `theta_v` and `phi_v` (radians), and the solid angles
-/// (sr) that they stand for: 30 % uniform over the hemisphere, 60 % about the mirror direction by GGX half vectors of three
-/// widths, 10 % about the viewer, with the balance heuristic [VG95]. The same on every call.
+/// About `count` light directions above the horizon for the view at `theta_v` and `phi_v` (radians), and the solid
+/// angles (sr) that they stand for: 30 % uniform over the hemisphere, 60 % about the mirror direction by GGX half
+/// vectors of three widths, 10 % about the viewer, with the balance heuristic [VG95]. The same on every call.
 WeightedLights closure_lights(const HighlightWidths& widths, float theta_v, int count, float phi_v = 0);
 
 /// Lights of one view, structure of arrays, padded with lights of no weight, so that loops have no tails. Unit

@@ -42,7 +42,7 @@ ViewProducts::ViewProducts(const ClosureTarget& target_at_view, const std::vecto
   for (size_t i = 0; i < padded; ++i) data.data()[i] = lights.wl_z()[i] * lights.root_weight()[i] * (1 / kPi);
   for (size_t k = 0; k < distributions.size(); ++k) {
     const int at = lobe_unknown(static_cast<int>(k));
-    const ClosureShape s = closure_shape(u[at + 3], u[at + 4], u[at + 5], theta_v, bounds);
+    const ClosureShape s = closure_shape(u[at + 3], u[at + 4], u[at + 5], theta_v, bounds, distributions[k]);
     const ClosureLobeShape shape = shape_of(s, distributions[k], masking, theta_v);
     float* out = data.data() + (1 + k * static_cast<size_t>(rows_per_lobe)) * padded;
     slopes ? fill_lobe_slopes(lights, shape, chain_of(s, theta_v), out) : fill_lobe(lights, shape, out);

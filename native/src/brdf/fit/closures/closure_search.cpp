@@ -23,7 +23,7 @@ struct ScannedLobe {
 std::vector<ScannedLobe> scanned_lobes(const ClosureBounds& bounds) {
   constexpr int kAlphas = 7;
   std::vector<ScannedLobe> lobes;
-  for (const LobeDistribution distribution : {LobeDistribution::ggx, LobeDistribution::beckmann}) {
+  for (const LobeDistribution distribution : closure_distributions(bounds)) {
     for (int i = 0; i < kAlphas; ++i) {
       const double alpha = bounds.min_alpha * std::pow(0.8 / bounds.min_alpha, (i + 0.3) / (kAlphas - 0.7));
       lobes.push_back({distribution, alpha, 0, 0});
@@ -163,15 +163,14 @@ constexpr DescentOptions kFull{.steps = 25, .settled = 1e-3, .damping = 1e-2, .b
 
 /// `s` with the other distribution for lobe `k`, and an alpha for about the same width.
 ClosureSolution flipped(ClosureSolution s, size_t k, const ClosureBounds& bounds) {
-  constexpr double kBeckmannAlpha = 1.4;  // of a lobe as wide as GGX
+  constexpr double kOtherAlpha = 1.4;  // of a lobe as wide as GGX
   LobeDistribution& distribution = s.distributions[k];
   const bool was_ggx = distribution == LobeDistribution::ggx;
-  distribution = was_ggx ? LobeDistribution::beckmann : LobeDistribution::ggx;
+  distribution = closure_distributions(bounds)[was_ggx ? 1 : 0];
   auto unknowns = s.unknowns.col(lobe_unknown(static_cast<int>(k)) + 3);
   for (int i = 0; i < kClosureKnots; ++i) {
     const double alpha = closure_shape(unknowns[i], 0, 0, 0, bounds).alpha;
-    unknowns[i] =
-        closure_alpha_unknown(std::min(was_ggx ? kBeckmannAlpha * alpha : alpha / kBeckmannAlpha, 1.0), bounds);
+    unknowns[i] = closure_alpha_unknown(std::min(was_ggx ? kOtherAlpha * alpha : alpha / kOtherAlpha, 1.0), bounds);
   }
   return s;
 }

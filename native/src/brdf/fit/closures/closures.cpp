@@ -150,7 +150,7 @@ double largest_lean(double theta_v) {
 }  // namespace
 
 ClosureShape closure_shape(double alpha_unknown, double tilt_unknown, double anisotropy_unknown, double theta_v,
-                           const ClosureBounds& bounds) {
+                           const ClosureBounds& bounds, LobeDistribution distribution) {
   ClosureShape s{};
   const double lowest = std::log(bounds.min_alpha), share = 1 / (1 + std::exp(-alpha_unknown));
   const double depth = -lowest * (1 - share);  // -log(alpha)
@@ -165,12 +165,18 @@ ClosureShape closure_shape(double alpha_unknown, double tilt_unknown, double ani
     s.tilt_by_tilt = 2 * e * lean * (1 + lean) / (below * below);
   }
 
+  if (distribution == LobeDistribution::beckmann && !bounds.stretched_beckmann) return s;
   const AnisotropyBound bound(depth, bounds.frame);
   const double share_of_view = anisotropy_share(theta_v, bounds.frame), turn = std::tanh(anisotropy_unknown);
   s.anisotropy = share_of_view * bound.value * turn;
   s.anisotropy_by_alpha = -share_of_view * bound.by_depth * turn * s.log_alpha_by_alpha;
   s.anisotropy_by_anisotropy = share_of_view * bound.value * (1 - turn * turn);
   return s;
+}
+
+std::array<LobeDistribution, 2> closure_distributions(const ClosureBounds& bounds) {
+  const bool stretches = bounds.stretched_beckmann || bounds.frame == ClosureFrame::incidence;
+  return {LobeDistribution::ggx, stretches ? LobeDistribution::beckmann : LobeDistribution::ashikhmin_shirley};
 }
 
 double closure_alpha_unknown(double alpha, const ClosureBounds& bounds) {
@@ -200,7 +206,7 @@ ClosureNetwork closure_network(const ClosureUnknowns& unknowns, const std::vecto
     network.diffuse[i] = squares(0);
     for (size_t k = 0; k < distributions.size(); ++k) {
       const int at = lobe_unknown(static_cast<int>(k));
-      const ClosureShape s = closure_shape(u[at + 3], u[at + 4], u[at + 5], theta, bounds);
+      const ClosureShape s = closure_shape(u[at + 3], u[at + 4], u[at + 5], theta, bounds, distributions[k]);
       ClosureLobe& lobe = network.lobes[k];
       lobe.weight[i] = squares(at);
       lobe.roughness[i] = static_cast<float>(std::sqrt(s.alpha));

@@ -13,9 +13,13 @@
 namespace velour {
 
 // A Glossy BSDF of Cycles with a tilted normal, and its derivatives, at all lights of a view. Formulas are those of
-// kernel/closure/bsdf_microfacet.h.
+// kernel/closure/bsdf_microfacet.h and bsdf_ashikhmin_shirley.h.
 
-enum class LobeDistribution { ggx, beckmann };
+enum class LobeDistribution {
+  ggx,
+  beckmann,
+  ashikhmin_shirley,  // [AS00] without a Fresnel term; not tilted, and its masking is its own
+};
 
 /// Where x lies that lobes stretch along.
 enum class ClosureFrame {
@@ -39,7 +43,7 @@ struct ClosureLobeShape {
 
 // Arrays of floats are aligned to cache lines (AlignedArray).
 
-/// D G / (4 wv.N') (1/sr, without the cosine of the light) times root_weight, for each light; 0 behind N'.
+/// D G / (4 wv.N') (1/sr, f cos where the lobe is not tilted) times root_weight, for each light; 0 behind N'.
 void fill_lobe(const ClosureLights& lights, const ClosureLobeShape& shape, float* value);
 
 /// Factors of the derivatives by log(alpha_x), log(alpha_y) and the tilt in those by three other parameters.
@@ -111,7 +115,11 @@ Eigen::Matrix<double, kClosureKnots, 1> closure_taps(double theta_v);
 struct ClosureBounds {
   double min_alpha = 0.02;
   ClosureFrame frame = ClosureFrame::incidence;
+  bool stretched_beckmann = true;  // false: lobes of Beckmann are round
 };
+
+/// The distributions of lobes: GGX, and one without long tails that may be stretched where the material needs it.
+std::array<LobeDistribution, 2> closure_distributions(const ClosureBounds& bounds);
 
 /// Parameters of a lobe at a view and their derivatives by the unknowns. alpha e^|anisotropy| stays below 1.
 struct ClosureShape {
@@ -120,7 +128,7 @@ struct ClosureShape {
   double anisotropy_by_alpha, anisotropy_by_anisotropy;
 };
 ClosureShape closure_shape(double alpha_unknown, double tilt_unknown, double anisotropy_unknown, double theta_v,
-                           const ClosureBounds& bounds);
+                           const ClosureBounds& bounds, LobeDistribution distribution = LobeDistribution::ggx);
 /// The unknown that closure_shape() maps to `alpha`, moved inside the bounds.
 double closure_alpha_unknown(double alpha, const ClosureBounds& bounds);
 /// The unknown that closure_shape() maps to `anisotropy` at an unknown of alpha, far from the normal; moved inside.

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "math/sphere/directions.h"
+
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "brdf/fit/closures/lobe_columns.cpp"
 #include "hwy/foreach_target.h"
@@ -19,6 +21,8 @@ using LobeTag = hn::CappedTag<float, ClosureLights::kPadding>;
 using LobeLanes = hn::Vec<LobeTag>;
 
 LobeLanes lanes_of(float value) { return hn::Set(LobeTag(), value); }
+
+// Microfacets with Smith's masking: GGX and Beckmann.
 
 /// Smith's Lambda at t = (alpha tan(theta))^2 [H14 Eq. 72], and its derivative by t.
 struct SmithLambda {
@@ -146,24 +150,80 @@ LobeSample lobe_sample(const LobeAtView& lobe, const ClosureLights& lights, size
 }
 
 template <LobeDistribution distribution, LobeMasking masking>
+class MicrofacetLobe {
+ public:
+  MicrofacetLobe(const ClosureLobeShape& shape, const ClosureLights& lights)
+      : at_view_(lobe_at_view<distribution, masking>(shape, lights)) {}
+
+  template <bool slopes>
+  LobeSample at(const ClosureLights& lights, size_t i) const {
+    return lobe_sample<distribution, masking, slopes>(at_view_, lights, i);
+  }
+
+ private:
+  LobeAtView at_view_;
+};
+
+/// A lobe of [AS00], as Cycles has it: n = 2 / alpha^2 - 2 along each axis.
+class AshikhminShirleyLobe {
+ public:
+  AshikhminShirleyLobe(const ClosureLobeShape& shape, const ClosureLights& lights)
+      : wv_(direction(lights.theta_v(), lights.phi_v())),
+        n_x_(2 / (shape.alpha_x * shape.alpha_x) - 2),
+        n_y_(2 / (shape.alpha_y * shape.alpha_y) - 2) {}
+
+  template <bool slopes>
+  LobeSample at(const ClosureLights& lights, size_t i) const {
+    const LobeTag tag;
+    const LobeLanes one = lanes_of(1), least = lanes_of(1e-6f);
+    const LobeLanes wl_z = hn::Load(tag, lights.wl_z() + i), h_x = hn::Load(tag, lights.h_x() + i),
+                    h_y = hn::Load(tag, lights.h_y() + i), h_z = hn::Load(tag, lights.h_z() + i);
+    const LobeLanes x_sq = hn::Mul(h_x, h_x), y_sq = hn::Mul(h_y, h_y);
+    const LobeLanes c = hn::Min(hn::Max(h_z, least), one), across = hn::Max(hn::Add(x_sq, y_sq), lanes_of(1e-12f));
+    // (n_x cos^2 phi + n_y sin^2 phi) log c, without a difference of nearly equal numbers at c = 1.
+    const LobeLanes per_sq = hn::Div(minus_log(tag, c, hn::Div(across, hn::Add(one, c))), across);
+    const LobeLanes x = hn::Mul(x_sq, per_sq), y = hn::Mul(y_sq, per_sq);
+    const LobeLanes lobe = exp_nonpositive(tag, hn::Neg(hn::MulAdd(lanes_of(n_x_), x, hn::Mul(lanes_of(n_y_), y))));
+    const LobeLanes h_view =
+        hn::MulAdd(h_x, lanes_of(wv_.x), hn::MulAdd(h_y, lanes_of(wv_.y), hn::Mul(h_z, lanes_of(wv_.z))));
+    const LobeLanes falloff = hn::Mul(hn::Max(h_view, least), hn::Max(wl_z, lanes_of(std::max(wv_.z, 1e-6f))));
+    const float norm = std::sqrt((n_x_ + 1) * (n_y_ + 1)) / (8 * kPi);
+    const LobeLanes scale = hn::Mul(hn::Mul(lanes_of(norm), wl_z), hn::Load(tag, lights.root_weight() + i));
+
+    LobeSample s{};
+    s.value = hn::IfThenElseZero(hn::Gt(wl_z, least), hn::Div(hn::Mul(lobe, scale), falloff));
+    if constexpr (slopes) {  // n + 1 = (2 - alpha^2) / alpha^2
+      s.by_x = hn::MulSub(lanes_of(2 * (n_x_ + 2)), x, lanes_of((n_x_ + 2) / (n_x_ + 1)));
+      s.by_y = hn::MulSub(lanes_of(2 * (n_y_ + 2)), y, lanes_of((n_y_ + 2) / (n_y_ + 1)));
+      s.by_tilt = hn::Zero(tag);
+    }
+    return s;
+  }
+
+ private:
+  Vec3 wv_;
+  float n_x_, n_y_;
+};
+
+template <class Lobe>
 void FillLobeOf(const ClosureLights& lights, const ClosureLobeShape& shape, float* HWY_RESTRICT value) {
   const LobeTag tag;
-  const LobeAtView lobe = lobe_at_view<distribution, masking>(shape, lights);
+  const Lobe lobe(shape, lights);
   for (size_t i = 0; i < lights.padded(); i += hn::Lanes(tag)) {
-    hn::Store(lobe_sample<distribution, masking, false>(lobe, lights, i).value, tag, value + i);
+    hn::Store(lobe.template at<false>(lights, i).value, tag, value + i);
   }
 }
 
-template <LobeDistribution distribution, LobeMasking masking>
+template <class Lobe>
 void FillLobeSlopesOf(const ClosureLights& lights, const ClosureLobeShape& shape, const LobeChain& chain,
                       float* HWY_RESTRICT out) {
   const LobeTag tag;
-  const LobeAtView lobe = lobe_at_view<distribution, masking>(shape, lights);
+  const Lobe lobe(shape, lights);
   const LobeLanes alpha_x = lanes_of(chain.alpha_x), alpha_y = lanes_of(chain.alpha_y), tilt = lanes_of(chain.tilt),
                   stretch_x = lanes_of(chain.stretch_x), stretch_y = lanes_of(chain.stretch_y);
   const size_t row = lights.padded();
   for (size_t i = 0; i < row; i += hn::Lanes(tag)) {
-    const LobeSample s = lobe_sample<distribution, masking, true>(lobe, lights, i);
+    const LobeSample s = lobe.template at<true>(lights, i);
     hn::Store(s.value, tag, out + i);
     hn::Store(hn::Mul(s.value, hn::MulAdd(s.by_x, alpha_x, hn::Mul(s.by_y, alpha_y))), tag, out + row + i);
     hn::Store(hn::Mul(s.value, hn::Mul(s.by_tilt, tilt)), tag, out + 2 * row + i);
@@ -171,26 +231,31 @@ void FillLobeSlopesOf(const ClosureLights& lights, const ClosureLobeShape& shape
   }
 }
 
-/// Calls `work` with the distribution and masking of `shape` as constants.
+/// Calls `work` with the type of the lobe.
 template <class Work>
-void with_lobe_kind(const ClosureLobeShape& shape, const Work& work) {
+void with_lobe_type(const ClosureLobeShape& shape, const Work& work) {
   using D = LobeDistribution;
   using M = LobeMasking;
   const auto with_masking = [&]<D d>() {
-    shape.masking == M::separable ? work.template operator()<d, M::separable>()
-                                  : work.template operator()<d, M::height_correlated>();
+    shape.masking == M::separable ? work.template operator()<MicrofacetLobe<d, M::separable>>()
+                                  : work.template operator()<MicrofacetLobe<d, M::height_correlated>>();
   };
-  shape.distribution == D::ggx ? with_masking.template operator()<D::ggx>()
-                               : with_masking.template operator()<D::beckmann>();
+  switch (shape.distribution) {
+    case D::ggx:
+      return with_masking.template operator()<D::ggx>();
+    case D::beckmann:
+      return with_masking.template operator()<D::beckmann>();
+    case D::ashikhmin_shirley:
+      return work.template operator()<AshikhminShirleyLobe>();
+  }
 }
 
 void FillLobe(const ClosureLights& lights, const ClosureLobeShape& shape, float* value) {
-  with_lobe_kind(shape, [&]<LobeDistribution d, LobeMasking m>() { FillLobeOf<d, m>(lights, shape, value); });
+  with_lobe_type(shape, [&]<class Lobe>() { FillLobeOf<Lobe>(lights, shape, value); });
 }
 
 void FillLobeSlopes(const ClosureLights& lights, const ClosureLobeShape& shape, const LobeChain& chain, float* out) {
-  with_lobe_kind(shape,
-                 [&]<LobeDistribution d, LobeMasking m>() { FillLobeSlopesOf<d, m>(lights, shape, chain, out); });
+  with_lobe_type(shape, [&]<class Lobe>() { FillLobeSlopesOf<Lobe>(lights, shape, chain, out); });
 }
 
 float dot_product(const float* HWY_RESTRICT a, const float* HWY_RESTRICT b, size_t count) {

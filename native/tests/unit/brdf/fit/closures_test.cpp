@@ -46,6 +46,30 @@ double plain_lobe(LobeDistribution distribution, LobeMasking masking, double ax,
   return d * g / (4 * v.z);
 }
 
+/// Cycles' lobe of Ashikhmin and Shirley, f cos about +z.
+double plain_ashikhmin_shirley(double ax, double ay, const Vec3d& wv, const Vec3d& wl) {
+  const Vec3d h = glm::normalize(wv + wl);
+  const double n_x = 2 / (ax * ax) - 2, n_y = 2 / (ay * ay) - 2;
+  const double exponent = (n_x * h.x * h.x + n_y * h.y * h.y) / (1 - h.z * h.z);
+  const double norm = std::sqrt((n_x + 1) * (n_y + 1)) / (8 * kPiD);
+  return wl.z * norm * std::pow(h.z, exponent) / (glm::dot(h, wv) * std::max(wv.z, wl.z));
+}
+
+TEST(Closures, LobesOfAshikhminAndShirleyAreThoseOfAPlainImplementation) {
+  const double alpha = 0.2, rho = 0.6;
+  const ClosureNetwork network = network_of(Rgb(0), {lobe_of(LobeDistribution::ashikhmin_shirley, Rgb(1),
+                                                             static_cast<float>(alpha), 0, static_cast<float>(rho))});
+  const std::vector<Vec3> wl = hemisphere_fibonacci(200);
+  for (const float theta_v : {0.1f, 0.7f, 1.4f}) {
+    const std::vector<Rgb> values = test::values_of(network, kSeparable, theta_v, wl, 0.8f);
+    for (size_t i = 0; i < wl.size(); ++i) {
+      const double lobe = plain_ashikhmin_shirley(alpha * std::exp(rho), alpha * std::exp(-rho),
+                                                  Vec3d(direction(theta_v, 0.8f)), Vec3d(wl[i]));
+      EXPECT_NEAR(values[i].g, lobe, 1e-3 * lobe + 1e-6);
+    }
+  }
+}
+
 TEST(Closures, ValuesAreThoseOfAPlainImplementation) {
   const double alpha = 0.2, rho = 0.35;
   const std::vector<Vec3> wl = hemisphere_fibonacci(200);
@@ -111,7 +135,7 @@ TEST(Closures, SlopesOfALobeAreThoseOfDifferences) {
   const float theta_v = 1.1f, phi_v = 0.6f, step = 0.003f;
   const ClosureLights lights = test::plain_lights(theta_v, hemisphere_fibonacci(64), phi_v);
   const LobeChain chain{.alpha_x = 1, .alpha_y = 1, .tilt = 1, .stretch_x = 1, .stretch_y = -1};
-  for (const LobeDistribution distribution : {kGgx, kBeckmann}) {
+  for (const LobeDistribution distribution : {kGgx, kBeckmann, LobeDistribution::ashikhmin_shirley}) {
     for (const LobeMasking masking : {kSeparable, kCorrelated}) {
       const auto shape = [&](float size, float tilt, float stretch) {
         return ClosureLobeShape{distribution, masking, 0.3f * std::exp(size + stretch), 0.5f * std::exp(size - stretch),
