@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 import os
 import random
 import signal
@@ -12,6 +13,7 @@ import inputs
 import numpy as np
 import pytest
 from command_line import command, environment, hear_ctrl_c, program, refused, velour
+from velour.core import files
 
 NOISE = random.Random(1).randbytes(4096)
 RENDER = ["render", "--mesh", "m.obj", "--material", "m", "--world", "w.hdr", "-o", "o.exr"]
@@ -166,6 +168,33 @@ def test_output_that_cannot_be_written_is_said_before_the_work(measurement_file,
     assert "does not exist" in refused("fit", measurement_file, "-o", tmp_path / "no/such/folder/m.velour")
     assert "is a folder" in refused("fit", measurement_file, "-o", tmp_path)
     assert time.monotonic() - start < 5
+
+
+def test_what_no_picture_can_be_written_as_is_said_before_the_work(
+    tmp_path, mesh_file, world_file, model_file
+):
+    options = "--mesh", mesh_file, "--material", model_file, "--world", world_file, "--spp", "1000000"
+    sentence = refused("render", *options, "-o", tmp_path / "night.tif")
+    assert "night.tif can only be written as .exr or .png" in sentence
+
+
+def test_devices_and_pipes_are_not_replaced(tmp_path, model_file):
+    pipe = tmp_path / "pipe"
+    os.mkfifo(pipe)
+    for option in ("--json-file", "-o"):
+        verb = ["info", model_file] if option == "--json-file" else ["export", model_file, "--to", "gltf"]
+        assert "pipe is not a regular file; choose another name" in refused(*verb, option, pipe)
+        assert pipe.is_fifo()
+
+
+def test_a_full_disk_is_named_with_the_file(tmp_path):
+    def full(_path):
+        raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+
+    with pytest.raises(OSError, match=r"report\.json") as caught:
+        files.write_atomic(tmp_path / "report.json", full)
+    assert caught.value.errno == errno.ENOSPC
+    assert list(tmp_path.iterdir()) == []
 
 
 def test_a_folder_that_lets_nobody_write_is_said_before_the_work(tmp_path, mesh_file, world_file, model_file):

@@ -1,5 +1,7 @@
 """Materials made of shader nodes, pictures for them, and a roof to show them."""
 
+import itertools
+
 import bpy
 import numpy as np
 
@@ -106,3 +108,19 @@ class ShaderTest(ParityTest):
         stage.camera((0, -5, 6), (0.7, 0, 0), 45)
         stage.sharp_sun()
         stage.world((0.6, 0.8, 1), 0.4)
+
+
+def geometry_nodes(obj, *kinds):
+    """A modifier of nodes in a row, each of which takes and gives geometry; its tree and those nodes."""
+    tree = bpy.data.node_groups.new("Nodes", "GeometryNodeTree")
+    if hasattr(tree, "interface"):  # 4.0 and newer
+        for direction in ("INPUT", "OUTPUT"):
+            tree.interface.new_socket("Geometry", in_out=direction, socket_type="NodeSocketGeometry")
+    else:
+        tree.inputs.new("NodeSocketGeometry", "Geometry")
+        tree.outputs.new("NodeSocketGeometry", "Geometry")
+    nodes = [tree.nodes.new(kind) for kind in ("NodeGroupInput", *kinds, "NodeGroupOutput")]
+    for node, following in itertools.pairwise(nodes):
+        tree.links.new(node.outputs[0], following.inputs[0])
+    obj.modifiers.new("Nodes", "NODES").node_group = tree
+    return tree, nodes[1:-1]

@@ -37,6 +37,14 @@ class AreaLights(BoxTest):
         stage.shear(lamp, (1, 1, 2))
         self.assert_parity("Area: sheared by an unevenly scaled parent")
 
+    def test_parallelograms(self):
+        """Cycles samples them as rectangles, about another center."""
+        for scale, rotation in (((1, 2, 1), (0, 0, math.radians(45))), ((1, 1, 2), (0.6, 0.5, 0))):
+            lamp = stage.lamp("AREA", 100, (0, 0, 3), rotation, shape="SQUARE", size=1.0)
+            stage.shear(lamp, scale)
+            self.assert_approximate(f"Area: square sheared to a parallelogram, {scale}", 100)
+            lamp.hide_render = True
+
     def test_sheared_ellipse(self):
         lamp = stage.lamp("AREA", 100, (0, 0, 3), (0.3, 0.2, 0.4), shape="ELLIPSE", size=1.0, size_y=0.6)
         stage.shear(lamp, (1, 2, 0.5), (0.3, 0.2, 0.5))

@@ -206,3 +206,49 @@ class Scenes(ParityTest):
         inputs = {"Base_Color": (0.9, 0.5, 0.3, 1), "Roughness": 0.0, weight: 0.8}
         self.tree.end(self.tree.node("ShaderNodeBsdfPrincipled", settings={"distribution": "GGX"}, **inputs))
         self.assert_parity("Principled BSDF: transmission 0.8, smooth")
+
+
+class Hidden(Scenes):
+    """What transmitted rays see is told apart from what reflected ones see."""
+
+    bounces = 4
+
+    def setUp(self):
+        super().setUp()
+        self._ball()
+        self.tree.end(self._glass())
+        self.wall = next(obj for obj in self.scene.objects if obj.name.startswith("Box"))
+
+    def test_object(self):
+        self.wall.visible_transmission = False
+        self.assert_parity("Object: hidden from transmission rays")
+
+    def test_object_hidden_from_others(self):
+        """It is seen in glass; without its shadow, as Cycles finds the sky through it."""
+        self.wall.visible_diffuse = self.wall.visible_glossy = self.wall.visible_shadow = False
+        self.assert_parity("Object: hidden from diffuse and glossy rays, behind glass")
+
+    def test_emissive(self):
+        glow = bpy.data.materials.new("Glow")
+        tree = Tree(glow)
+        tree.end(tree.emission((1, 0.7, 0.4), 4.0))
+        self.wall.data.materials[0] = glow
+        for names in (("transmission",), ("diffuse", "glossy")):
+            with self.subTest(names):
+                for name in ("transmission", "diffuse", "glossy"):
+                    setattr(self.wall, f"visible_{name}", name not in names)
+                self.wall.visible_shadow = False
+                self.assert_parity(f"Emissive object: hidden from {' and '.join(names)} rays", samples=2)
+
+    def test_world(self):
+        self.scene.world.cycles_visibility.transmission = False
+        self.assert_parity("World: hidden from transmission rays")
+
+    def test_lamps(self):
+        """A broad lamp and a sharp sun before rough glass."""
+        self.tree.end(self._glass(0.3))
+        stage.world((0, 0, 0))
+        broad = stage.lamp("AREA", 200, (0, 1.5, 3), (-0.7, 0, 0), size=1.5)
+        for lamp in (broad, stage.sharp_sun()):
+            lamp.visible_transmission = False
+        self.assert_parity("Lights: hidden from transmission rays", samples=2)

@@ -39,6 +39,12 @@ class Glow(ParityTest):
         self._square()
         self.assert_parity("Glowing surface: square")
 
+    def test_negative(self):
+        stage.world((0.5, 0.5, 0.5))
+        self._glow(strength=-2.0)
+        self._square()
+        self.assert_parity("Glowing surface: negative strength")
+
     def test_bounce(self):
         scene = bpy.context.scene
         scene.velour.bounces = scene.cycles.max_bounces = scene.cycles.diffuse_bounces = 1

@@ -1,11 +1,9 @@
 """Ways of instancing, and materials that geometry nodes set."""
 
-import itertools
-
 import bpy
 
 from parity.ground import KindTest
-from parity.shaders import Tree
+from parity.shaders import Tree, geometry_nodes
 
 
 class Instances(KindTest):
@@ -33,24 +31,9 @@ class Instances(KindTest):
         small.location.x = 30
         self.assert_parity("Instances of particles")
 
-    def _nodes(self, obj, *kinds):
-        """A modifier of nodes in a row, each of which takes and gives geometry; those nodes."""
-        tree = bpy.data.node_groups.new("Nodes", "GeometryNodeTree")
-        if hasattr(tree, "interface"):  # 4.0 and newer
-            for direction in ("INPUT", "OUTPUT"):
-                tree.interface.new_socket("Geometry", in_out=direction, socket_type="NodeSocketGeometry")
-        else:
-            tree.inputs.new("NodeSocketGeometry", "Geometry")
-            tree.outputs.new("NodeSocketGeometry", "Geometry")
-        nodes = [tree.nodes.new(kind) for kind in ("NodeGroupInput", *kinds, "NodeGroupOutput")]
-        for node, following in itertools.pairwise(nodes):
-            tree.links.new(node.outputs[0], following.inputs[0])
-        obj.modifiers.new("Nodes", "NODES").node_group = tree
-        return tree, nodes[1:-1]
-
     def test_geometry_nodes(self):
         carrier, small = self.carrier(), self.small()
-        tree, (points, *_) = self._nodes(carrier, "GeometryNodeInstanceOnPoints")
+        tree, (points, *_) = geometry_nodes(carrier, "GeometryNodeInstanceOnPoints")
         source = tree.nodes.new("GeometryNodeObjectInfo")
         source.inputs["Object"].default_value = small
         source.inputs["As Instance"].default_value = True
@@ -65,6 +48,69 @@ class Instances(KindTest):
         material = bpy.data.materials.new("Set")
         tree = Tree(material)
         tree.end(tree.diffuse((0.8, 0.2, 0.1)))
-        _, (node,) = self._nodes(carrier, "GeometryNodeSetMaterial")
+        _, (node,) = geometry_nodes(carrier, "GeometryNodeSetMaterial")
         node.inputs["Material"].default_value = material
         self.assert_parity("Materials set by geometry nodes")
+
+
+class Instancers(KindTest):
+    """Settings of what instances a collection, and of the collection itself."""
+
+    def setUp(self):
+        super().setUp()
+        self.kit = bpy.data.collections.new("Kit")
+        self.scene.collection.children.link(self.kit)
+        small = self.small()
+        self.scene.collection.objects.unlink(small)
+        self.kit.objects.link(small)
+        small.location, small.scale = (-1.2, 0, 0), (4, 4, 4)
+        self.instancer = bpy.data.objects.new("Instancer", None)
+        self.instancer.instance_type, self.instancer.instance_collection = "COLLECTION", self.kit
+        self.instancer.location = (2.4, 0, 0)
+        self.own = bpy.data.collections.new("Own")
+        self.scene.collection.children.link(self.own)
+        self.own.objects.link(self.instancer)
+
+    def _layer(self, collection):
+        return self.scene.view_layers[0].layer_collection.children[collection.name]
+
+    def test_camera(self):
+        self.instancer.visible_camera = False
+        self.assert_parity("Instancer: hidden from the camera")
+
+    def test_shadows(self):
+        """Without the sky, whose light Cycles finds behind what is hidden from shadow rays."""
+        self.scene.world = None
+        self.instancer.visible_shadow = False
+        self.assert_parity("Instancer: hidden from shadow rays")
+
+    def test_holdout(self):
+        self.instancer.is_holdout = True
+        self.assert_parity("Instancer: holdout")
+
+    def test_carrier(self):
+        carrier, small = self.carrier(), self.small()
+        small.parent, carrier.instance_type = carrier, "VERTS"
+        carrier.visible_camera = False
+        self.assert_parity("Instances on vertices, their carrier hidden from the camera")
+
+    def test_collection_of_instancer(self):
+        for name in ("holdout", "indirect_only"):
+            with self.subTest(name):
+                setattr(self._layer(self.own), name, True)
+                self.assert_parity(f"Instancer in a collection: {name.replace('_', ' ')}")
+                setattr(self._layer(self.own), name, False)
+
+    def test_instanced_collection(self):
+        """It is itself shown so, but its instances are not."""
+        for name in ("holdout", "indirect_only"):
+            with self.subTest(name):
+                setattr(self._layer(self.kit), name, True)
+                self.assert_parity(f"Instanced collection: {name.replace('_', ' ')}")
+                setattr(self._layer(self.kit), name, False)
+
+    def test_shadow_catcher(self):
+        self.instancer.is_shadow_catcher = True
+        self.assert_ignored(
+            "Instancer: shadow catcher", "Object 'Instancer': Shadow Catcher is not supported"
+        )

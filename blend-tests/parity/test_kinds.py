@@ -1,12 +1,17 @@
 """Everything that shows faces, and what scene, view layer and libraries say of it."""
 
+import contextlib
 import math
 
 import bpy
+from velour.export.camera import final_view
+from velour.export.notes import Notes
+from velour.export.scene import export_scene
 
 from parity import stage
 from parity.case import record
 from parity.ground import KindTest
+from parity.shaders import Tree, geometry_nodes
 from support.judge import judge_renders
 
 
@@ -41,6 +46,74 @@ class Kinds(KindTest):
         array.count, bend.deform_method, bend.angle = 5, "BEND", 0.9
         array.relative_offset_displace = (1.1, 0.2, 0.1)
         self.assert_parity("Modifiers")
+
+
+class Emissive(KindTest):
+    """Whatever has become a mesh shines once: Blender lists both the object and the mesh made of it."""
+
+    def setUp(self):
+        super().setUp()
+        for light in [obj for obj in self.scene.objects if obj.type == "LIGHT"]:
+            bpy.data.objects.remove(light)
+        stage.world((0, 0, 0))
+        self.glow = bpy.data.materials.new("Glow")
+        tree = Tree(self.glow)
+        tree.end(tree.emission((1, 0.7, 0.4), 3.0))
+
+    def _assert_once(self, feature, meshes, **settings):
+        """`meshes`: how many meshes beside the ground are expected."""
+        obj = stage.without_terminator(bpy.context.object)
+        obj.data.materials.append(self.glow)
+        for name, value in settings.items():
+            setattr(obj.data, name, value)
+        obj.visible_camera = False  # its light alone is judged
+        self.assertEqual(self._instances(), 1 + meshes)
+        self.assert_parity(f"Emissive {feature}", samples=2)
+
+    def _instances(self):
+        """Number of instances in the library's scene."""
+        depsgraph = bpy.context.evaluated_depsgraph_get()
+        export = export_scene(depsgraph, final_view(depsgraph), Notes(), strict=False)
+        with contextlib.closing(export.scene) as scene:
+            return scene.info()["instances"]
+
+    def test_text(self):
+        bpy.ops.object.text_add(location=(-1.5, 0.3, 0.6), rotation=(1.2, 0, 0))
+        self._assert_once("text", 1, body="NEON", extrude=0.1)
+
+    def test_metaballs(self):
+        """One mesh for the family."""
+        bpy.ops.object.metaball_add(type="BALL", radius=0.8, location=(0.6, 0, 1.2))
+        self.made().data.render_resolution = 0.15
+        bpy.ops.object.metaball_add(type="BALL", radius=1.0, location=(-0.4, 0, 1.2))
+        first = bpy.data.objects["Mball"]
+        first.data.materials.clear()
+        first.data.materials.append(self.glow)
+        first.visible_camera = False
+        self._assert_once("metaballs", 1, render_resolution=0.15)
+
+    def test_bevelled_curve(self):
+        bpy.ops.curve.primitive_bezier_circle_add(radius=1.2, location=(0, 0, 0.8))
+        self._assert_once("curve with a bevel", 1, bevel_depth=0.25)
+
+    def test_surface(self):
+        bpy.ops.surface.primitive_nurbs_surface_sphere_add(radius=0.9, location=(0, 0, 1.1))
+        self._assert_once("NURBS surface", 1)
+
+    def test_curve_to_mesh(self):
+        bpy.ops.curve.primitive_bezier_circle_add(radius=1.2, location=(0, 0, 0.8))
+        tree, nodes = geometry_nodes(bpy.context.object, "GeometryNodeCurveToMesh", "GeometryNodeSetMaterial")
+        profile = tree.nodes.new("GeometryNodeCurvePrimitiveCircle")
+        profile.inputs["Radius"].default_value = 0.2
+        tree.links.new(profile.outputs["Curve"], nodes[0].inputs["Profile Curve"])
+        nodes[1].inputs["Material"].default_value = self.glow
+        self._assert_once("mesh of a curve by geometry nodes", 1)
+
+    def test_bare_curve(self):
+        """It has no mesh: Cycles does not show it either."""
+        stage.sharp_sun()
+        bpy.ops.curve.primitive_bezier_circle_add(radius=1.2, location=(0, 0, 0.8))
+        self._assert_once("curve without a bevel", 0)
 
 
 class Shown(KindTest):

@@ -53,6 +53,16 @@ class Lights(BoxTest):
         lamp.data.use_nodes = True
         return lamp.data.node_tree
 
+    def test_negative(self):
+        """Lights of less than no power take away light of others."""
+        stage.world((0.5, 0.5, 0.5))
+        stage.lamp("SUN", 3.0, rotation=(0.6, 0.3, 0), angle=0.0)
+        stage.lamp("SUN", -0.5, rotation=(-0.4, 0.3, 0), angle=0.2)
+        stage.lamp("POINT", -30, (1, 0.5, 3), shadow_soft_size=0.0)
+        stage.lamp("SPOT", -60, (-1, 1, 3), shadow_soft_size=0.3, spot_size=1.5)
+        stage.lamp("AREA", -20, (-1, -1, 3), shape="SQUARE", size=1.0)
+        self.assert_parity("Light: negative power")
+
     def test_point(self):
         stage.lamp("POINT", 300, (1, 0.5, 3), shadow_soft_size=0.0)
         self.assert_parity("Point: sharp")

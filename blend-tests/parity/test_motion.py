@@ -37,6 +37,38 @@ class Motion(ParityTest):
         blur(self.scene)
         self.assert_parity("Motion blur: focal length")
 
+    def _assert_sharp(self, feature, block, name, values):
+        """What is animated is not blurred: the picture is that of the frame."""
+        move(block, name, values)
+        blur(self.scene)
+        self.assert_parity(f"Motion blur: {feature}, which stays sharp")
+        blurred = self.pictures("VELOUR")
+        self.scene.render.use_motion_blur = False
+        np.testing.assert_allclose(blurred, self.pictures("VELOUR"), atol=1e-5)
+
+    def test_shift(self):
+        self._assert_sharp("camera shift", self.camera.data, "shift_x", [-0.2, 0, 0.3])
+
+    def test_orthographic_scale(self):
+        self.camera.data.type = "ORTHO"
+        self._assert_sharp("orthographic scale", self.camera.data, "ortho_scale", [4, 6, 9])
+
+    def test_shifted_zoom(self):
+        self.camera.data.shift_x = 0.3
+        move(self.camera.data, "lens", [40, 50, 65])
+        blur(self.scene)
+        self.assert_parity("Motion blur: focal length of a shifted camera")
+
+    def test_curve(self):
+        """The mesh made of a curve deforms with its bevel."""
+        bpy.ops.curve.primitive_bezier_circle_add(radius=1.2, location=(0, 0, 1))
+        curve = stage.without_terminator(bpy.context.object)
+        curve.data.materials.append(stage.gray(0.7))
+        move(curve.data, "bevel_depth", [0.05, 0.25, 0.6])
+        self._slide(curve)
+        blur(self.scene)
+        self.assert_parity("Motion blur: moving curve with an animated bevel", samples=2)
+
     def test_object(self):
         """Turned by a third of a circle, stretched and moved on a path with a bend."""
         self._slide(self.box)

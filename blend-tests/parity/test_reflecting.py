@@ -136,6 +136,26 @@ class Reflecting(ShaderTest):
         self.tree.end(self.tree.glossy(self.tree.picture(image(4, low=0.1, high=0.6))))
         self.assert_parity("Glossy BSDF: roughness by an image")
 
+    def test_bright_images(self):
+        """Colors above 1, which only a metal clamps."""
+        bright = self.tree.picture(image(4, low=0.5, high=2.5))
+        for kind in ("diffuse", "glossy", "Principled"):
+            inputs = {"Base_Color": bright, "Roughness": 0.8}
+            principled = self.tree.node("ShaderNodeBsdfPrincipled", **inputs)
+            made = {
+                "diffuse": self.tree.diffuse(bright),
+                "glossy": self.tree.glossy(0.5, bright),
+                "Principled": principled,
+            }
+            self.tree.end(made[kind])
+            self.assert_parity(f"{kind} BSDF: image of colors above 1")
+
+    def test_bright_computed(self):
+        bright = self.tree.node("ShaderNodeHueSaturation", Color=(0.9, 0.5, 0.3, 1), Value=2.0)
+        inputs = {"Base_Color": bright, "Roughness": 0.6, "Metallic": 0.3}
+        self.tree.end(self.tree.node("ShaderNodeBsdfPrincipled", **inputs))
+        self.assert_parity("Principled BSDF: Hue/Saturation with a value of 2, metallic 0.3")
+
     def test_sharp(self):
         node = self.tree.glossy(0.0)
         if any(item.identifier == "SHARP" for item in node.node.bl_rna.properties["distribution"].enum_items):

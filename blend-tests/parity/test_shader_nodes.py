@@ -301,6 +301,75 @@ class Places(BoardTest):
         self.show([built])
         self.assert_parity("Image Texture: computed coordinates")
 
+    def test_units(self):
+        """Places are in Blender's units whatever their size in meters."""
+        empty = stage.link(bpy.data.objects.new("Empty", None))
+        empty.location = (1, 2, 0.3)
+
+        def of_empty(nodes):
+            node = nodes.add("TexCoord")
+            node.object = empty
+            return nodes.halved(node.outputs["Object"])
+
+        def position(nodes):
+            return nodes.halved(nodes.add("NewGeometry").outputs["Position"])
+
+        self.show([of_empty, position])
+        self.scene.unit_settings.system = "METRIC"
+        for length in (0.001, 10):
+            with self.subTest(length):
+                self.scene.unit_settings.scale_length = length
+                self.assert_parity(f"Geometry: Position, Object coordinates, unit scale {length:g}")
+
+
+class Conversions(BoardTest):
+    """Sockets of node groups and muted nodes."""
+
+    def _group(self, given, asked):
+        """A group that passes on a value of socket type `given` as one of type `asked`."""
+        tree = bpy.data.node_groups.new("Group", "ShaderNodeTree")
+        if hasattr(tree, "interface"):
+            tree.interface.new_socket("Value", in_out="INPUT", socket_type=f"NodeSocket{given}")
+            tree.interface.new_socket("Value", in_out="OUTPUT", socket_type=f"NodeSocket{asked}")
+        else:
+            tree.inputs.new(f"NodeSocket{given}", "Value")
+            tree.outputs.new(f"NodeSocket{asked}", "Value")
+        start, end = tree.nodes.new("NodeGroupInput"), tree.nodes.new("NodeGroupOutput")
+        tree.links.new(start.outputs[0], end.inputs[0])
+        return tree
+
+    def test_groups(self):
+        def through(given, asked, source):
+            def built(nodes):
+                return nodes.add("Group", {0: source(nodes)}, node_tree=self._group(given, asked)).outputs[0]
+
+            return built
+
+        def vector(nodes):
+            return nodes.add("CombineXYZ", {"X": nodes.ramp(), "Y": 0.7, "Z": 0.1}).outputs[0]
+
+        def constant(nodes):
+            color = nodes.add("RGB").outputs[0]
+            color.default_value = (0.9, 0.2, 0.4, 1)
+            return color
+
+        pairs = (("Float", "Color"), ("Color", "Float"), ("Vector", "Float"), ("Float", "Vector"))
+        self.show([through(*pair, source) for pair in pairs for source in (Nodes.color, vector, constant)])
+        self.assert_parity("Node groups: sockets of other types")
+
+    def test_muted(self):
+        """The unlinked input of a muted node is 0."""
+
+        def muted(nodes):
+            node = nodes.add("Gamma", {"Color": (0.3, 0.6, 0.9, 1)})
+            node.mute = True
+            return nodes.add(
+                "Mix", {"Factor_Float": 0.5, "A_Color": node, "B_Color": nodes.color()}, data_type="RGBA"
+            ).outputs[2]
+
+        self.show([muted])
+        self.assert_parity("Muted node without a link")
+
 
 class Inputs(BoardTest):
     """What the outputs are used for."""
@@ -375,6 +444,19 @@ class Views(BoardTest):
         for number, build in enumerate((bumped(), bumped(invert=True), chained)):
             self._sphere(number, build)
         self.assert_parity("Bump: strength, distance, invert, chained")
+
+    def test_bump_and_units(self):
+        def bumped(nodes, shader):
+            height = nodes.add("TexNoise", {"Vector": nodes.add("TexCoord").outputs["Object"], "Scale": 4.0})
+            bump = nodes.add("Bump", {"Height": height.outputs[0], "Distance": 0.2})
+            nodes.set(shader, "Normal", bump.outputs[0])
+
+        self._sphere(0, bumped)
+        self.scene.unit_settings.system = "METRIC"
+        for length in (0.001, 10):
+            with self.subTest(length):
+                self.scene.unit_settings.scale_length = length
+                self.assert_parity(f"Bump, unit scale {length:g}")
 
     def test_displacement(self):
         def displaced(nodes, _shader):

@@ -82,6 +82,11 @@ class World(ParityTest):
         sentence = "output 'Camera' of 'Texture Coordinate' is not supported"
         self.assert_ignored("World: camera coordinates", sentence)
 
+    def test_negative(self):
+        stage.sharp_sun()
+        stage.world((0.5, 0.5, 0.5), -0.5)
+        self.assert_ignored("World: negative strength", "its light is negative")
+
     def test_hidden_from_camera(self):
         self.scene.world.cycles_visibility.camera = False
         self.assert_parity("World: hidden from the camera")

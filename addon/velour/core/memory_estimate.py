@@ -9,7 +9,7 @@ from __future__ import annotations
 import os
 from dataclasses import dataclass
 
-from ..native import images, library
+from ..native import library
 from ..native.errors import Status, VelourError
 from .memory_limit import Limit
 from .mesh_memory import mesh_memory
@@ -73,14 +73,15 @@ def estimate(
     mesh: str,
     material: str,
     proposal: str | None,
-    world: str,
+    world: tuple[int, int, int],
     window: tuple[int, int],
     goes_on: bool,
     threads: int,
 ) -> Estimate:
-    """`window`: width and height of the rendered pixels; `goes_on`: they are merged with a side file."""
+    """`world`: width, height and channels of the environment image; `window`: width and height of the
+    rendered pixels; `goes_on`: they are merged with a side file."""
     of_material = _material(material)  # first, as it opens the library, which counts as program
-    width, height, channels = images.size(world)
+    width, height, channels = world
     parts = {
         "program": resident() + _STARTING + _THREAD * threads,
         "mesh": mesh_memory(mesh),

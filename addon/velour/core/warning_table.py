@@ -113,6 +113,19 @@ SENTENCES = {
         "{index}: {outside} of {images} images are outside the folder of the index; the first is {first}."
         " Check that these are the intended files."
     ),
+    "images_channels_ignored": (
+        "{images} of {all} images of the BTF have further channels, which are ignored. The first is {first}:"
+        " only the image{layer:layer} is used, not {channels:some}. If the colors are in another layer,"
+        " choose that layer."
+    ),
+    "images_parts_ignored": (
+        "{images} of {all} images of the BTF have several parts, of which one is used. The first is {first}:"
+        " part{part:name} of {parts} is used. If the colors are in another part, choose it as the layer."
+    ),
+    "images_channel_missing": (
+        "{images} of {all} images of the BTF lack one of the channels R, G and B, which is treated as 0. The"
+        " first is {first}. Save the images with all three channels, or choose another layer."
+    ),
     "values_not_finite": (
         "{values} values of the BTF are not finite and were replaced by the mean of their image. If spots are"
         " visible, capture it again."

@@ -12,7 +12,6 @@ from ..export import Notes
 from ..export.look import scene_key
 from ..export.nodes import model_names
 from ..export.scene import SceneExport
-from ..export.units import metres_per_unit
 from ..export.world import shown_world
 
 _all = weakref.WeakSet()
@@ -34,9 +33,7 @@ class KeptScene:
     def frame(self, depsgraph, strict, asked, moves):
         """The SceneExport of a frame, which is not kept after an error, a cancel, or a frame with motion, of
         which changes between frames say nothing."""
-        export = self._followed(depsgraph, strict and not moves, asked) or SceneExport(
-            Notes(), strict, asked, metres_per_unit(depsgraph.scene)
-        )
+        export = self._followed(depsgraph, strict and not moves, asked) or SceneExport(Notes(), strict, asked)
         try:
             yield export
         except BaseException:
@@ -68,7 +65,8 @@ def _is_persistent(depsgraph):
 def _key(depsgraph, asked):
     """State that a kept scene cannot update, or whose changes Blender does not always report."""
     world = shown_world(depsgraph)
-    images = tuple(map(_image_key, bpy.data.images))
+    # Render results have no color space; reading it prints a warning.
+    images = tuple(_image_key(image) for image in bpy.data.images if image.source != "VIEWER")
     materials = tuple(map(_material_key, bpy.data.materials))
     return scene_key(depsgraph), world and world.original.as_pointer(), frozenset(asked), images, materials
 

@@ -88,6 +88,14 @@ def has_attribute(mesh, asked):
 def missing_colors(obj, asked, material_name):
     """Note for an object without the attribute."""
     what = "color attribute" if asked.name is None else f"attribute '{asked.name}'"
+    attributes = getattr(obj.data, "attributes", None)
+    found = attributes.get(asked.name) if attributes and asked.name else None
+    if found is not None and found.domain not in _SPREAD:
+        return (
+            f"Object '{obj.name}': attribute '{asked.name}' for material '{material_name}' is stored on"
+            f" {found.domain.lower()}s, which is not supported; {asked.otherwise:g} is used instead. Convert"
+            " it to points, corners or faces."
+        )
     return (
         f"Object '{obj.name}': it has no {what} for material '{material_name}';"
         f" {asked.otherwise:g} is used instead."

@@ -12,6 +12,7 @@ from .plugs import fed_by
 _WRAPS = {"REPEAT": "repeat", "EXTEND": "extend", "CLIP": "clip", "MIRROR": "mirror"}
 _SOURCES = ("FILE", "GENERATED")
 _NODES = ("ShaderNodeTexImage", "ShaderNodeTexEnvironment")
+_CUBIC = ("Cubic", "Smart")
 _IDENTITY = np.eye(2, 3, dtype=np.float32)
 
 
@@ -54,6 +55,8 @@ def unplaced_picture(plug, owner, notes):
     _check(node)
     if node.image is None:
         notes.add(f"{owner}: node '{node.name}' has no image and is magenta, as in Cycles; choose an image.")
+    if node.interpolation in _CUBIC:
+        notes.add(f"{owner}: node '{node.name}': cubic interpolation is not supported; linear is used.")
     return Picture(
         node.image,
         plug.socket.name == "Alpha",

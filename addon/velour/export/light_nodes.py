@@ -8,7 +8,7 @@ from .nodes import active_output
 from .notes import Notes
 from .plugs import Plug, fed_by
 from .programs import finished
-from .shaders.emission import constants_of, radiance_of
+from .shaders.emission import radiance_of
 from .shaders.values import Reader
 
 _AS_IT_IS = (1.0, 1.0, 1.0)
@@ -32,13 +32,13 @@ def emission_factor(lamp):
     if len(reader.notes) or any(step.operation in _VARIES for step in draft.steps):
         return None
     if radiance.first < 0:
-        return tuple(constants_of(draft, radiance))
+        return draft.constants_of(radiance)
     program = finished(draft, None, (), None)
     return tuple(map(float, program.radiance(found.index, "others", np.array([[0, 0, 1]], np.float32))[0]))
 
 
 def _falloff(c, plug):
     smooth = c.input(plug.input("Smooth"))
-    if plug.socket.name != "Quadratic" or smooth.first >= 0 or constants_of(c.draft, smooth)[0] != 0.0:
+    if plug.socket.name != "Quadratic" or smooth.first >= 0 or c.draft.constants_of(smooth)[0] != 0.0:
         raise UnsupportedError(f"'{plug.node.name}' is not a quadratic falloff without smoothing")
     return c.input(plug.input("Strength"))

@@ -40,8 +40,10 @@ def add_light(scene, obj, matrix, notes):
     watts = power(lamp, matrix) * factor
     color = tuple(watts * c * e for c, e in zip(tinted(lamp), emission, strict=True))
     _note_shape(lamp, matrix, owner, notes)
+    hidden = () if obj.visible_transmission else ("transmission",)
+    values.update(casts_shadow=_casts_shadow(lamp), mirrored=_is_mirrored(lamp))
     try:
-        scene.add_light(kind, color, unscaled(matrix), casts_shadow=_casts_shadow(lamp), **values)
+        scene.add_light(kind, color, unscaled(matrix), hidden=hidden, **values)
     except VelourError as error:
         raise ExportError(f"{owner}: {error}") from error
     return any(c != 0.0 for c in color) and not _is_flat(lamp, matrix)
@@ -66,6 +68,17 @@ def _is_flat(lamp, matrix):
 def _note_shape(lamp, matrix, owner, notes):
     if _is_flat(lamp, matrix):
         notes.add(f"{owner}: its size or scale is zero along an axis; it emits nothing.")
+    elif lamp.type == "AREA" and lamp.shape in ("SQUARE", "RECTANGLE") and _is_skewed(matrix):
+        notes.add(
+            f"{owner}: the scale of its parent makes it a parallelogram, which Cycles samples as a rectangle:"
+            " its light is not that of Cycles. Apply the parent's scale."
+        )
+
+
+def _is_skewed(matrix):
+    """Whether the x and y axes are not perpendicular."""
+    x, y = (matrix.col[axis].to_3d().normalized() for axis in (0, 1))
+    return abs(x.dot(y)) > 1e-3
 
 
 def _sun(lamp, _matrix):
@@ -111,6 +124,11 @@ def _area(lamp, matrix):
 
 
 _DESCRIBE = {"SUN": _sun, "POINT": _point, "SPOT": _spot, "AREA": _area}
+
+
+def _is_mirrored(lamp):
+    """Without Multiple Importance, Cycles finds its light only by rays toward it, never in perfect mirrors."""
+    return int(getattr(getattr(lamp, "cycles", None), "use_multiple_importance_sampling", True))
 
 
 def _casts_shadow(lamp):

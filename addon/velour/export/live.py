@@ -10,7 +10,6 @@ from .kept_meshes import KeptMeshes
 from .materials import MaterialTable
 from .notes import Notes
 from .objects import ObjectExport
-from .units import metres_per_unit
 from .world import WorldLight, add_world, shown_world
 
 
@@ -22,7 +21,7 @@ class LiveExport:
         self.scene = Scene() if scene is None else scene
         try:
             set_working_space(self.scene)
-            self._materials = MaterialTable(self.scene, Notes(), False, metres_per_unit(depsgraph.scene))
+            self._materials = MaterialTable(self.scene, Notes(), False)
             self._meshes = KeptMeshes()
             self._world = WorldLight(self.scene, waits=False)
             self._look = look.key()

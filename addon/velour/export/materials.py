@@ -27,12 +27,12 @@ class MaterialTable:
     """Adds each material once, with its full model; those that may switch to a scene model are in `reduced`.
 
     `strict` refuses measured materials that cannot be read; otherwise (previews, the viewport) the nodes in
-    their groups are rendered, with a note. `metres`: per unit of Blender's coordinates.
+    their groups are rendered, with a note. `unit`: length of Blender's unit in the scene.
     """
 
-    def __init__(self, scene, notes, strict=True, metres=1.0):
+    def __init__(self, scene, notes, strict=True, unit=1.0):
         self._scene = scene
-        self._metres = metres
+        self._unit = unit
         self._notes = notes
         self.strict = strict
         self._numbers = {}
@@ -81,8 +81,7 @@ class MaterialTable:
 
     def needs_coordinates(self, material):
         """Whether an added material uses texture coordinates."""
-        key = _key(material)
-        return key in self._textured or key in self._tiles or key in self._turns
+        return self._uv_maps[_key(material)] != UNUSED
 
     def number(self, material):
         """Number of a material, which is added if needed; None: Blender's default gray."""
@@ -144,7 +143,7 @@ class MaterialTable:
         return self._uv_maps[key], self._colors.get(key), placed, key in self._textured
 
     def _add(self, material):
-        layers = surface_layers(material, self._notes, self._metres)
+        layers = surface_layers(material, self._notes, self._unit)
         if not any(layer.measured for layer in layers):
             return self._add_shader(material, layers)
         try:
@@ -159,7 +158,7 @@ class MaterialTable:
                 raise
             self._notes.add(str(error))
         self._forget_needs(material)
-        opened = surface_layers(material, Notes(), self._metres, opens_measured=True)
+        opened = surface_layers(material, Notes(), self._unit, opens_measured=True)
         return self._add_shader(material, opened)
 
     def _add_shader(self, material, layers):

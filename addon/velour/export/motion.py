@@ -7,11 +7,12 @@ returns to the frame. For the pass Vector, the times are those of the previous a
 import contextlib
 import math
 
+import bpy
 import numpy as np
 
 from .camera import final_view
 from .meshes import object_shape
-from .objects import GEOMETRY
+from .objects import is_mesh
 from .programs.curves import curve_values
 
 _MOST_KEYS = 129  # MAX_MOTION_STEPS of Cycles
@@ -20,6 +21,7 @@ _FRAMES_OF_VECTOR = 2.0
 _MIDDLE = {"START": 0.5, "CENTER": 0.0, "END": -0.5}  # of the shutter's time, from the frame on
 _CURVE_VALUES = 256
 _TIMES = 1025  # at which the opening of the shutter is given
+_DIGITS = 6  # of a zoom; more would blur through rounding
 _GONE = object()  # stands for the places of a particle that does not exist all the time
 
 
@@ -139,7 +141,7 @@ class Motion:
     def on(self, view):
         """The View with the motion of the camera and the shutter."""
         matrices = np.array([each.camera_to_world for each in self._views], np.float32)
-        windows = np.array([each.window for each in self._views], np.float32)
+        windows = np.array([_window(view, each) for each in self._views], np.float32)
         motion = {
             name: values
             for name, values in (("motion", matrices), ("motion_window", windows))
@@ -150,9 +152,9 @@ class Motion:
         return view._replace(motion=motion)
 
     def _instances(self):
-        """Shown instances of objects with faces, each valid only within its iteration."""
+        """Shown instances of meshes, each valid only within its iteration."""
         for instance in self._depsgraph.object_instances:
-            if instance.show_self and instance.object.type in GEOMETRY:
+            if instance.show_self and is_mesh(instance.object):
                 yield instance
 
     def _expect(self, instance):
@@ -168,9 +170,7 @@ class Motion:
         pointer = owner.as_pointer()
         if len(self._shapes.get(pointer, ())) >= count or not self._is_own_data(obj):
             return
-        if self._asks(obj, parent, "use_deform_motion") and owner.is_deform_modified(
-            self._depsgraph.scene, "RENDER"
-        ):
+        if self._asks(obj, parent, "use_deform_motion") and self._may_deform(owner):
             self._shapes[pointer] = [None] * count
             self._names[pointer] = owner.name
 
@@ -188,9 +188,14 @@ class Motion:
         settings = (getattr(each, "cycles", None) for each in (obj, parent))
         return not self._blurs or all(getattr(each, name, True) for each in settings)
 
+    def _may_deform(self, owner):
+        """Like Cycles: meshes made of curves, text and metaballs always may."""
+        return owner.type != "MESH" or owner.is_deform_modified(self._depsgraph.scene, "RENDER")
+
     def _is_own_data(self, obj):
-        """Whether it shows the data of its object, and not other geometry of geometry nodes."""
-        return obj.data == obj.original.evaluated_get(self._depsgraph).data
+        """Whether it shows the mesh of its object, and not other geometry of geometry nodes."""
+        own = obj.original.evaluated_get(self._depsgraph).data
+        return obj.data == own or (not isinstance(own, bpy.types.Mesh) and obj.data.name == own.name)
 
     def _moving(self, key, places):
         """[keys x 3 x 4]; None: it stays."""
@@ -225,6 +230,17 @@ def _position(scene):
     """START, CENTER or END: where the frame lies in the time of the shutter."""
     found = getattr(scene.render, "motion_blur_position", None)  # 4.1 and newer
     return found or getattr(getattr(scene, "cycles", None), "motion_blur_position", "CENTER")
+
+
+def _window(view, moved):
+    """The window of a View at the time of another: like Cycles, only what zooms a perspective camera moves.
+
+    Its shift, and the scale of an orthographic camera, are those of the middle.
+    """
+    if view.kind == "orthographic":
+        return view.window
+    zoom = (moved.window[1] - moved.window[0]) / (view.window[1] - view.window[0])
+    return [round(zoom, _DIGITS) * side for side in view.window]
 
 
 def _shutter_curve(render):

@@ -2,6 +2,8 @@
 
 from typing import NamedTuple
 
+import bpy
+
 from .axes import affine
 from .corner_colors import colors_of_slots, missing_colors
 from .instances import InstanceGroups
@@ -12,7 +14,7 @@ from .placement import Placements, missing_coordinates, projected_onto
 from .units import metres_per_unit
 from .unused_settings import note_pencil
 from .uv_maps import maps_of_slots, missing_map
-from .visibility import Visibility, note_light_visibility
+from .visibility import Visibility, hidden, note_light_visibility
 
 _FLAT = 1e-36  # the library skips instances up to this determinant, and does not count them
 _TERMINATOR = {"geometry": 0.1, "shading": 0.0}  # Cycles' defaults, without its add-on
@@ -96,6 +98,7 @@ class ObjectExport:
         self.shines = False  # whether any light emits
         self._seen = []  # queue indices of meshes that are not hidden from the camera
         self.is_seen = False  # whether any of them has triangles
+        self._shading = []  # names of objects that only shadow rays see
 
     def add_all(self, depsgraph):
         self.add_shown(depsgraph, lambda instance: instance.show_self)
@@ -113,7 +116,7 @@ class ObjectExport:
         layer = depsgraph.view_layer_eval
         override = layer.material_override
         self._drawn = None if geometry_alone else layer
-        visibility = None if geometry_alone else Visibility(depsgraph.view_layer)
+        visibility = None if geometry_alone else Visibility(depsgraph.view_layer, self._notes)
         for instance in depsgraph.object_instances:
             self._check_break()
             # The instance is only valid within this iteration.
@@ -125,46 +128,57 @@ class ObjectExport:
                 note_light_visibility(obj, self._notes)
                 self.shines |= add_light(self._scene, obj, instance.matrix_world, self._notes)
                 continue
-            shown = self._look_once(instance, obj, kind, override, visibility)
+            shown = self._look_once(instance, obj, override, visibility)
             if shown:
                 self._add_instance(instance, shown, metres)
         numbers = self._queue.numbers()
         self.is_seen = any(numbers[place] is not None for place in self._seen)
         self.owners += self._groups.add_to_scene(numbers)
 
+    def note_shadows_of_sky(self):
+        """Notes objects that block light of the world, which Cycles also finds by rays that pass through them."""
+        for name in self._shading:
+            self._notes.add(
+                f"Object '{name}': it is hidden from diffuse and glossy rays but blocks the light of the world,"
+                " which Cycles finds through it in part; disable Shadow in its Ray Visibility to let it pass."
+            )
+
     def owner(self, instance):
         """Name of the object that an instance of the scene belongs to; None for None."""
         return None if instance is None else self.owners[instance].name
 
-    def _look_once(self, instance, obj, kind, override, visibility):
+    def _look_once(self, instance, obj, override, visibility):
         if not instance.is_instance:  # it occurs only once
-            return self._look_at(obj, kind, override, visibility)
-        key = _identity(obj)
+            return self._look_at(obj, override, visibility)
+        instancer = visibility.instancer_limits(instance.parent) if visibility else None
+        key = (*_identity(obj), instancer)
         if key not in self._shown:
-            self._shown[key] = self._look_at(obj, kind, override, visibility)
+            self._shown[key] = self._look_at(obj, override, visibility, instancer)
         return self._shown[key]
 
-    def _look_at(self, obj, kind, override, visibility):
+    def _look_at(self, obj, override, visibility, instancer=None):
         """The _Shown of an object; None if it is not geometry. `visibility` None: visible to all rays."""
-        if kind not in GEOMETRY:
+        if not is_mesh(obj):
             self._note_unsupported(obj)
             return None
         if obj.modifiers:
             self._note_extras(obj)
         data = obj.data
         materials = (override,) if override else tuple(_materials(obj, data))
-        mesh = self._mesh(obj, kind, data, materials)
+        mesh = self._mesh(obj, data, materials)
         if mesh is None:
             return None
         slots = self._slots_of(materials, mesh.slot_count)
         if slots.is_placed and self._queue.numbers()[mesh.place] is None:
             return None
         self._note_missing(obj, mesh, slots)
-        hidden = visibility.hidden(obj, self._notes) if visibility else ()
-        if "camera" not in hidden:
+        hidden_from = hidden(visibility.limits(obj), instancer) if visibility else ()
+        if "camera" not in hidden_from:
             self._seen.append(mesh.place)
+        if "bounces" in hidden_from and "shadows" not in hidden_from:
+            self._shading.append(obj.name)
         owner = Owner(obj.name, _asset(obj), obj.pass_index, mesh.uv_set)
-        look = (slots.numbers, hidden, self._terminator(obj))
+        look = (slots.numbers, hidden_from, self._terminator(obj))
         return _Shown(owner, mesh.place, slots.materials, look, slots.is_placed)
 
     def _terminator(self, obj):
@@ -193,19 +207,19 @@ class ObjectExport:
         if placements is None:
             self._groups.add(shown.mesh, shown.look, matrix, shown.owner, motion)
         else:
-            numbers, hidden, terminator = shown.look
+            numbers, hidden_from, terminator = shown.look
             mesh = self._queue.numbers()[shown.mesh]
             place = affine(matrix) if motion is None else motion
-            self._scene.add_instance(mesh, place, numbers, placements, hidden, terminator)
+            self._scene.add_instance(mesh, place, numbers, placements, hidden_from, terminator)
             self.owners.append(shown.owner)
 
-    def _mesh(self, obj, kind, data, materials):
+    def _mesh(self, obj, data, materials):
         """The _Mesh of an object; None if it has no faces."""
         if materials not in self._asked:
             uv_maps = maps_of_slots(tuple(map(self._materials.uv_maps, materials)))
             self._asked[materials] = uv_maps, colors_of_slots(tuple(map(self._materials.colors, materials)))
         asked = self._asked[materials]
-        key = (kind, (data or obj).as_pointer(), asked)
+        key = (data.as_pointer(), asked)
         if not self._meshes.has(key, obj):
             arrays = object_arrays(obj, *asked, self._queue.empty, self._shows_uvs)
             if arrays and self._motion:
@@ -292,6 +306,15 @@ def _identity(obj):
     """Key shared by all instances of an object; geometry nodes may put several meshes under one object."""
     data = obj.data
     return obj.original.as_pointer(), data.as_pointer() if data else 0
+
+
+def is_mesh(obj):
+    """Whether renderers show an evaluated object.
+
+    Curves, surfaces, text and metaballs are themselves left out: the depsgraph also has an instance of the
+    same object with the mesh made of them, if there is one.
+    """
+    return isinstance(obj.data, bpy.types.Mesh)
 
 
 def all_materials(obj):

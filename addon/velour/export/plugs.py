@@ -33,12 +33,35 @@ def followed(plug):
     That input may belong to an enclosing group node, or to a muted node upstream. The shader of a group that
     contains a measured model is an output like that of any other shader node.
     """
+    return _path(plug)[-1]
+
+
+def types_between(plug):
+    """Types of the sockets that a value passes on its way to an input, from its source to the input.
+
+    Each converts it, as in Cycles; inputs of muted nodes do not.
+    """
+    passed = [each for each in _path(plug) if each and (each.socket.is_output or not each.node.mute)]
+    return [each.socket.type for each in reversed(passed)]
+
+
+def _path(plug):
+    """The plugs from an input to what followed() finds."""
+    path = [plug]
     for _ in range(_MOST_STEPS):
         step = _step_out_of(plug) if plug.socket.is_output else _step_into(plug)
-        if step is plug or step is None:
-            return step
+        if step is plug:
+            return path
+        path.append(step)
+        if step is None:
+            return path
         plug = step
-    return None
+    return [*path, None]
+
+
+def is_passed_through(node):
+    """Whether links pass through a node; its unlinked inputs are 0, as in Cycles."""
+    return node.mute or node.bl_idname == "NodeReroute"
 
 
 def fed_by(plug):

@@ -12,7 +12,6 @@ from .libraries import refuse_missing_libraries
 from .materials import MaterialTable
 from .objects import ObjectExport
 from .pass_labels import AskedPasses, asked_passes
-from .units import metres_per_unit
 from .unused_settings import note_layer, note_scene
 from .world import WorldLight, add_world, has_moving_picture, layer_world, shown_world
 
@@ -26,7 +25,7 @@ class Export(NamedTuple):
 
 def export_scene(depsgraph, view, notes, check_break=lambda: None, strict=True):
     """Exports what the depsgraph shows through `view`; the caller must close the Export's scene."""
-    export = SceneExport(notes, strict, metres=metres_per_unit(depsgraph.scene))
+    export = SceneExport(notes, strict)
     try:
         return export.take(depsgraph, view, check_break)
     except BaseException:
@@ -38,14 +37,14 @@ class SceneExport:
     """The library's scene for renders; for subsequent frames, only changes are exported.
 
     `strict` refuses missing measured materials and libraries, and scenes that can only be black.
-    `asked`: keys of table.PASSES. `metres`: per unit of Blender's coordinates.
+    `asked`: keys of table.PASSES.
     """
 
-    def __init__(self, notes, strict=True, asked=(), metres=1.0):
+    def __init__(self, notes, strict=True, asked=()):
         self.notes = notes
         self._strict, self._asked = strict, asked
         self.scene = Scene()
-        self.materials = MaterialTable(self.scene, notes, strict, metres)
+        self.materials = MaterialTable(self.scene, notes, strict)
         self._meshes = KeptMeshes()
         self._world = WorldLight(self.scene)
         self._changes = None  # since the previous frame; None: first frame
@@ -111,6 +110,8 @@ class SceneExport:
             motion=motion,
         )
         objects.add_all(depsgraph)
+        if self._world_shines:
+            objects.note_shadows_of_sky()
         self._world.add_suns()
         if self._changes is not None:
             self._meshes.remove_unused(self.scene)

@@ -67,7 +67,7 @@ def export_tile(source, depsgraph, approximate=False):
     metres = metres_per_unit(depsgraph.scene)
     try:
         set_working_space(scene)
-        materials = MaterialTable(scene, material_notes, metres=metres)
+        materials = MaterialTable(scene, material_notes, unit=metres)
         to_scene = Matrix.Scale(metres, 4) @ source.to_tile
         export = ObjectExport(scene, materials, notes, lambda: None, to_scene)
         export.add_geometry(depsgraph, lambda instance: is_of_tile(instance, source))

@@ -1,5 +1,7 @@
 """Ray visibility of objects."""
 
+from typing import NamedTuple
+
 import bpy
 
 from .notes import listed
@@ -7,42 +9,74 @@ from .notes import listed
 # Looking up a missing attribute on every object is slow.
 _LINKS_LIGHT = "light_linking" in bpy.types.Object.bl_rna.properties  # 4.0 and newer
 _BOUNCES = {"visible_diffuse": "diffuse rays", "visible_glossy": "glossy rays"}
+_RAYS = {"visible_camera": "camera", "visible_transmission": "transmission", "visible_shadow": "shadows"}
+
+
+class Limits(NamedTuple):
+    """Visibility settings of an evaluated object, which also apply to what it instances."""
+
+    rays: tuple  # names of `hidden` in Scene.add_instance
+    is_holdout: bool
+    is_indirect: bool  # its collection is Indirect Only
 
 
 class Visibility:
     """Ray visibility of evaluated objects in a view layer."""
 
-    def __init__(self, layer):
+    def __init__(self, layer, notes):
         self._layer = layer
+        self._notes = notes
         collections = list(_all_collections(layer.layer_collection))
         # Querying them per object would cost more than everything else here.
         self._some_indirect = any(each.indirect_only for each in collections)
         self._some_holdout = any(each.holdout for each in collections)
+        self._limits = {}  # of instancers
 
-    def hidden(self, obj, notes):
-        """The keyword `hidden` of Scene.add_instance; notes unsupported settings."""
-        found = []
-        if not obj.visible_camera or self._is_indirect(obj):
-            found.append("camera")
+    def instancer_limits(self, instancer):
+        """The Limits of an evaluated object that instances others."""
+        key = instancer.original.as_pointer()
+        if key not in self._limits:
+            self._limits[key] = self.limits(instancer)
+        return self._limits[key]
+
+    def limits(self, obj):
+        """The Limits of an object; notes unsupported settings."""
+        if obj.is_shadow_catcher:
+            self._notes.add(f"Object '{obj.name}': Shadow Catcher is not supported; ignored.")
+        _note_linking(obj, "Object", self._notes)
+        is_holdout = obj.is_holdout or self._is_in_holdout(obj)
+        return Limits(self._hidden_rays(obj), is_holdout, not is_holdout and self._is_in_indirect(obj))
+
+    def _hidden_rays(self, obj):
+        found = [ray for name, ray in _RAYS.items() if not getattr(obj, name)]
         bounces = _hidden_bounces(obj)
         if len(bounces) == len(_BOUNCES):
             found.append("bounces")
         elif bounces:
-            notes.add(f"Object '{obj.name}': hiding it from {bounces[0]} only is not supported; ignored.")
-        if not obj.visible_shadow:
-            found.append("shadows")
-        if obj.is_holdout or self._is_holdout(obj):
-            found.append("holdout")
-        if obj.is_shadow_catcher:
-            notes.add(f"Object '{obj.name}': Shadow Catcher is not supported; ignored.")
-        _note_linking(obj, "Object", notes)
+            self._notes.add(
+                f"Object '{obj.name}': hiding it from {bounces[0]} only is not supported; ignored."
+            )
         return tuple(found)
 
-    def _is_indirect(self, obj):
+    def _is_in_indirect(self, obj):
         return self._some_indirect and obj.original.indirect_only_get(view_layer=self._layer)
 
-    def _is_holdout(self, obj):
+    def _is_in_holdout(self, obj):
         return self._some_holdout and obj.original.holdout_get(view_layer=self._layer)
+
+
+def hidden(own, instancer=None):
+    """The keyword `hidden` of Scene.add_instance, from Limits of an object and of what instances it.
+
+    Like Cycles: rays must be allowed by both; only the instancer makes holdouts and Indirect Only.
+    """
+    layer = instancer or own
+    found = {*own.rays, *layer.rays}
+    if layer.is_indirect:
+        found.add("camera")
+    if layer.is_holdout:
+        found.add("holdout")
+    return tuple(sorted(found))
 
 
 def _all_collections(root):
@@ -55,7 +89,7 @@ def hidden_backs(material):
     """Rays that pass through a material's back faces: the argument of Scene.hide_backs."""
     found = []
     if material and material.use_backface_culling:
-        found += ["camera", "bounces"]
+        found += ["camera", "bounces", "transmission"]
     if getattr(material, "use_backface_culling_shadow", False):  # 4.2 and newer
         found.append("shadows")
     return tuple(found)

@@ -71,13 +71,19 @@ def read_picture(path: str | os.PathLike, layer: str = "", as_stored: bool = Fal
     channels, upright, linear Rec. 709. `layer`: layer of an OpenEXR file. `as_stored`: ignores orientation,
     exposure, primaries and windows in the header, as Blender does.
     """
-    width, height, channels = c_uint32(), c_uint32(), c_uint32()
-    places = byref(width), byref(height), byref(channels)
-    options = picture_options(layer, as_stored)
-    library.load().vlr_picture_read(path_bytes(path), byref(options), *places, None, 0)
-    pixels = np.empty((height.value, width.value, channels.value), np.float32)
-    library.load().vlr_picture_read(path_bytes(path), byref(options), *places, pointer(pixels), pixels.size)
+    width, height, channels = picture_size(path, layer, as_stored)
+    pixels = np.empty((height, width, channels), np.float32)
+    again, options = [byref(c_uint32()) for _ in range(3)], picture_options(layer, as_stored)
+    library.load().vlr_picture_read(path_bytes(path), byref(options), *again, pointer(pixels), pixels.size)
     return pixels
+
+
+def picture_size(path: str | os.PathLike, layer: str = "", as_stored: bool = False) -> tuple[int, int, int]:
+    """Width, height and channels of read_picture(), without reading the pixels."""
+    width, height, channels = c_uint32(), c_uint32(), c_uint32()
+    places, options = (byref(width), byref(height), byref(channels)), picture_options(layer, as_stored)
+    library.load().vlr_picture_read(path_bytes(path), byref(options), *places, None, 0)
+    return width.value, height.value, channels.value
 
 
 def picture_warnings(path: str | os.PathLike, layer: str = "", as_stored: bool = False) -> list[dict]:

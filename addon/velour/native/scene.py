@@ -131,7 +131,7 @@ class Scene(Handle):
         )
 
     def _set_looks(self, hidden, terminator: float, steps: int) -> None:
-        self._lib.vlr_scene_hide_instances(self.pointer, sum(table.HIDDEN[name] for name in set(hidden)))
+        self._lib.vlr_scene_hide_instances(self.pointer, _hidden_from(hidden))
         self._lib.vlr_scene_soften_terminator(self.pointer, terminator)
         self._lib.vlr_scene_move_instances(self.pointer, steps)
 
@@ -160,9 +160,9 @@ class Scene(Handle):
         self._lib.vlr_scene_set_gain(self.pointer, material, (c_float * 3)(*gain))
 
     def hide_backs(self, material: int, hidden) -> None:
-        """hidden: which rays ("camera", "bounces", "shadows") pass through the material's back faces."""
-        flags = sum(table.HIDDEN[name] for name in set(hidden))
-        self._lib.vlr_scene_hide_backs(self.pointer, material, flags)
+        """hidden: which rays ("camera", "bounces", "transmission", "shadows") pass through the material's back
+        faces."""
+        self._lib.vlr_scene_hide_backs(self.pointer, material, _hidden_from(hidden))
 
     def set_shell_softness(self, material: int, widths: float) -> None:
         """Sets the share of the tile's width over which a shell's edge fades out: 0 (hard) to below 1."""
@@ -219,7 +219,7 @@ class Scene(Handle):
 
     # ---- light
 
-    def add_light(self, kind: str, color, light_to_world, **values) -> None:
+    def add_light(self, kind: str, color, light_to_world, hidden=(), **values) -> None:
         """`kind`: sun, point, rectangle, disk, spot; shines along its -z.
 
         color [3]: a sun's irradiance on a facing plane, W/m^2; the others' power, W. angle: a sun's angular
@@ -227,15 +227,22 @@ class Scene(Handle):
         sides, a disk's diameters, meters. blend: share of a spot's cone over which it fades out. spread: the
         angle into which a rectangle or disk emits, radians. sphere: whether a point or spot is a sphere, or a
         disk facing each point it lights. cosine: whether a spot's light falls off with the cosine to its
-        axis. cone_scale [2]: factors on the width of a spot's cone along its x and y.
+        axis. cone_scale [2]: factors on the width of a spot's cone along its x and y. mirrored: whether
+        perfect mirrors and clear glass show it. hidden: rays ("bounces", "transmission") that it does not
+        light.
         """
         values = {"type": choice("light", kind, table.LIGHTS), "color": color, **values}
+        values["hidden_from"] = _hidden_from(hidden)
         desc = self._desc(structs.LightDesc, "vlr_light_desc_init", values)
         desc.light_to_world = affine("light_to_world", light_to_world)
         self._lib.vlr_scene_add_light(self.pointer, byref(desc))
 
     def clear_lights(self) -> None:
         self._lib.vlr_scene_clear_lights(self.pointer)
+
+    def hide_world(self, hidden) -> None:
+        """hidden: rays ("bounces", "transmission") that the world does not light."""
+        self._lib.vlr_scene_hide_world(self.pointer, _hidden_from(hidden))
 
     def set_world_color(self, color) -> None:
         """Radiance [3] from every direction."""
@@ -340,6 +347,10 @@ class Scene(Handle):
         getattr(self._lib, init_name)(byref(desc))
         set_fields(desc, {n: small(n, v, _COLORS[n]) if n in _COLORS else v for n, v in values.items()})
         return desc
+
+
+def _hidden_from(rays) -> int:
+    return sum(table.HIDDEN[name] for name in set(rays))
 
 
 def _rotation(matrix):

@@ -370,6 +370,8 @@ class LightDesc(Struct):
         ("sphere", c_int32),
         ("cosine", c_int32),
         ("cone_scale", c_float * 2),
+        ("mirrored", c_int32),
+        ("hidden_from", c_uint32),
     ]
 
 

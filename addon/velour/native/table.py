@@ -34,7 +34,8 @@ PEERS = ("ggx", "principled", "plain_principled")
 MASKINGS = ("separable", "correlated")
 PLOTS = ("lobes", "order", "view-error", "albedo", "outline")
 LIGHTS = ("sun", "point", "rectangle", "disk", "spot")
-HIDDEN = {"camera": 1, "bounces": 2, "shadows": 4, "holdout": 8}  # VLR_HIDDEN_FROM_*, VLR_HOLDOUT
+# VLR_HIDDEN_FROM_*, VLR_HOLDOUT
+HIDDEN = {"camera": 1, "bounces": 2, "shadows": 4, "holdout": 8, "transmission": 16}
 PASSES = {  # VLR_PASS_*
     "position": 1,
     "uv": 2,
@@ -353,6 +354,7 @@ STATUS_CALLS = {
     "vlr_scene_hide_instances": [_handle, c_uint32],
     "vlr_scene_add_light": [_handle, POINTER(structs.LightDesc)],
     "vlr_scene_clear_lights": [_handle],
+    "vlr_scene_hide_world": [_handle, c_uint32],
     "vlr_scene_set_world_color": [_handle, _floats],
     "vlr_scene_set_world_pixels": [_handle, c_uint32, c_uint32, c_uint32, _floats, c_float, _floats],
     "vlr_program_radiance": [_handle, c_uint32, c_int32, c_uint32, _floats, _floats],

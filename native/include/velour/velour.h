@@ -448,7 +448,7 @@ VLR_API vlr_status vlr_scene_set_shell_softness(vlr_scene* scene, uint32_t mater
 /* Multiplies the reflection of the material by `gain`: red, green, blue in the working space, finite and at least 0;
  * default (1, 1, 1). Emission, transparency and sampling are unchanged. */
 VLR_API vlr_status vlr_scene_set_gain(vlr_scene* scene, uint32_t material, const float gain[3]);
-/* Rays (VLR_HIDDEN_FROM_CAMERA, _BOUNCES, _SHADOWS) that pass through the material's back, the side opposite the mesh's
+/* Rays (VLR_HIDDEN_FROM_ values) that pass through the material's back, the side opposite the mesh's
  * normal; for _SHADOWS, light that falls on the back. Default 0: none. A shell has no back. */
 VLR_API vlr_status vlr_scene_hide_backs(vlr_scene* scene, uint32_t material, uint32_t hidden_from);
 /* Whether the material's emissive surfaces are sampled as lights (not 0; the default). 0: only the directions sampled
@@ -536,9 +536,16 @@ VLR_API vlr_status vlr_scene_move_instances(vlr_scene* scene, uint32_t steps);
 /* Removes all instances; meshes and materials stay. */
 VLR_API vlr_status vlr_scene_clear_instances(vlr_scene* scene);
 
-/* Bits: rays that pass through an instance as if it were not there. VLR_HOLDOUT: the camera sees neither the instance
+/* Bits: rays that pass through an instance as if it were not there. _BOUNCES: reflected rays; _TRANSMISSION: rays that
+ * surfaces have transmitted. VLR_HOLDOUT: the camera sees neither the instance
  * nor anything behind it: black, alpha 0. */
-enum { VLR_HIDDEN_FROM_CAMERA = 1, VLR_HIDDEN_FROM_BOUNCES = 2, VLR_HIDDEN_FROM_SHADOWS = 4, VLR_HOLDOUT = 8 };
+enum {
+  VLR_HIDDEN_FROM_CAMERA = 1,
+  VLR_HIDDEN_FROM_BOUNCES = 2,
+  VLR_HIDDEN_FROM_SHADOWS = 4,
+  VLR_HOLDOUT = 8,
+  VLR_HIDDEN_FROM_TRANSMISSION = 16
+};
 /* Applies to all instances added from here on; 0 (initially): hidden from no rays. */
 VLR_API vlr_status vlr_scene_hide_instances(vlr_scene* scene, uint32_t hidden_from);
 /* Shadow terminator of all instances added from here on: where light arrives at a cosine below `offset` (0 to 1),
@@ -561,6 +568,8 @@ typedef struct vlr_light_desc {
   int32_t sphere;      /* point, spot: 1: a ball; 0: a disk that faces each lit point, like Cycles' soft falloff */
   int32_t cosine;      /* spot: 1: its light also falls off with the cosine to the axis, as in Blender before 3.5 */
   float cone_scale[2]; /* spot: factors by which its cone is wider along its x and y; 1, 1 */
+  int32_t mirrored;    /* 0: perfect mirrors and clear glass do not show it; 1 */
+  uint32_t hidden_from; /* VLR_HIDDEN_FROM_BOUNCES, _TRANSMISSION: rays that it does not light; 0 */
 } vlr_light_desc;
 VLR_API void vlr_light_desc_init(vlr_light_desc* desc);
 VLR_API vlr_status vlr_scene_add_light(vlr_scene* scene, const vlr_light_desc* desc);
@@ -577,6 +586,8 @@ VLR_API void vlr_picture_options_init(vlr_picture_options* options);
 /* The world is +z up. Image: equirectangular, row 0 at the top (+z), in Blender's convention: the middle column looks
  * along +x; u = 1/2 - atan2(y, x) / (2 pi) from the left, v = 1/2 + asin(z) / pi from the bottom. world_to_image [9,
  * row-major] transforms a world direction before that look-up (NULL: identity). */
+/* Rays that the world does not light: VLR_HIDDEN_FROM_BOUNCES, _TRANSMISSION; 0 (initially): none. */
+VLR_API vlr_status vlr_scene_hide_world(vlr_scene* scene, uint32_t hidden_from);
 VLR_API vlr_status vlr_scene_set_world_color(vlr_scene* scene, const float* color);
 VLR_API vlr_status vlr_scene_set_world_pixels(vlr_scene* scene, uint32_t width, uint32_t height, uint32_t channels,
                                               const float* pixels, float strength, const float* world_to_image);
@@ -995,7 +1006,7 @@ enum {
   VLR_LAYER_TRANSLUCENT = 7 /* base_color: diffuse light from the other side */
 };
 /* The weight of a layer is the product of its factors. For a mix, SHARE is its factor and REST 1 minus that, both
- * within [0, 1]; GAIN is any non-negative number. */
+ * within [0, 1]; GAIN is any number, below 0 only for emission. */
 enum {
   VLR_FACTOR_SHARE = 0,
   VLR_FACTOR_REST = 1,

@@ -37,6 +37,9 @@ namespace velour {
   X(out_of_gamut, "outside values error")                                                                             \
   X(repeated_directions, "views lights")                                                                              \
   X(images_outside_folder, "index outside images first")                                                              \
+  X(images_channels_ignored, "images all first layer channels") /* layer and channels: of the first image */          \
+  X(images_parts_ignored, "images all first part parts")                                                              \
+  X(images_channel_missing, "images all first")                                                                       \
   X(values_not_finite, "values")                                                                                      \
   /* Fits and models */                                                                                               \
   X(views_exceed_tolerance, "views errors tolerance") /* reported views; the tolerance is twice as large beyond 75 */ \

@@ -17,7 +17,8 @@
 
 namespace velour::capi {
 
-inline constexpr uint32_t kRays = VLR_HIDDEN_FROM_CAMERA | VLR_HIDDEN_FROM_BOUNCES | VLR_HIDDEN_FROM_SHADOWS;
+inline constexpr uint32_t kContinuedRays = VLR_HIDDEN_FROM_BOUNCES | VLR_HIDDEN_FROM_TRANSMISSION;
+inline constexpr uint32_t kRays = VLR_HIDDEN_FROM_CAMERA | VLR_HIDDEN_FROM_SHADOWS | kContinuedRays;
 
 /// Throws Error(invalid_argument) for bits outside `known`.
 inline void require_hidden(uint32_t hidden_from, uint32_t known) {

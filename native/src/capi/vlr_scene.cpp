@@ -153,6 +153,7 @@ Light converted(const vlr_light_desc& desc) {
     throw Error(Status::invalid_argument,
                 "vlr_light_desc.type is " + std::to_string(desc.type) + ", not a VLR_LIGHT value.");
   }
+  require_hidden(desc.hidden_from, kContinuedRays);
   return {.type = static_cast<Light::Type>(desc.type),
           .color = color_from(desc.color),
           .light_to_world = affine_from(desc.light_to_world),
@@ -163,7 +164,9 @@ Light converted(const vlr_light_desc& desc) {
           .cosine = desc.cosine != 0,
           .spread = desc.spread,
           .sphere = desc.sphere != 0,
-          .casts_shadow = desc.casts_shadow != 0};
+          .casts_shadow = desc.casts_shadow != 0,
+          .is_mirrored = desc.mirrored != 0,
+          .hidden_from = static_cast<uint8_t>(desc.hidden_from)};
 }
 
 }  // namespace
@@ -184,6 +187,8 @@ void vlr_light_desc_init(vlr_light_desc* desc) {
   for (int i = 0; i < 2; ++i) desc->cone_scale[i] = defaults.cone_scale[i];
   desc->spread = defaults.spread;
   desc->sphere = defaults.sphere ? 1 : 0;
+  desc->mirrored = defaults.is_mirrored ? 1 : 0;
+  desc->hidden_from = defaults.hidden_from;
 }
 
 vlr_status vlr_scene_add_light(vlr_scene* scene, const vlr_light_desc* desc) {
@@ -198,6 +203,14 @@ vlr_status vlr_scene_clear_lights(vlr_scene* scene) {
   return guard([&] {
     require(scene, "scene");
     scene->scene->clear_lights();
+  });
+}
+
+vlr_status vlr_scene_hide_world(vlr_scene* scene, uint32_t hidden_from) {
+  return guard([&] {
+    require(scene, "scene");
+    require_hidden(hidden_from, kContinuedRays);
+    scene->scene->hide_environment(static_cast<uint8_t>(hidden_from));
   });
 }
 

@@ -86,15 +86,17 @@ class OpenPicture {
 /// Error message "FILE: cannot be read as a picture: DETAIL", on one line.
 std::string input_error(const std::string& path, std::string detail);
 
-/// Opens the colors of `layer` (choose_exr_colors) of the first part that has them with OpenEXR; 1 to 4 channels.
+/// Opens the colors of `layer` (choose_exr_colors) with OpenEXR; 1 to 4 channels. Without a layer, of the first part
+/// with R, G or B, else with Y, else with a single channel or X, Y and Z.
 std::unique_ptr<OpenPicture> open_exr(const std::string& path, const std::string& layer);
 /// Opens all channels of the first part with OpenEXR, colors first, in the order R, G, B, A.
 std::unique_ptr<OpenPicture> open_exr_channels(const std::string& path);
 std::unique_ptr<OpenPicture> open_radiance(const std::string& path);
-/// Opens the first picture of the file with libtiff: OpenImageIO (2.4) refuses YCbCr tiles, inverts 16-bit pictures
-/// whose 0 is white, and rotates what it converts. Palettes and CMYK become RGB, other color spaces 8-bit RGB.
+/// Opens the first picture of full size with libtiff: OpenImageIO (2.4) refuses YCbCr tiles, inverts 16-bit pictures
+/// whose 0 is white, and rotates what it converts. Palettes, CMYK and LogLuv become RGB, other color spaces 8-bit RGB.
 std::unique_ptr<OpenPicture> open_tiff(const std::string& path);
-/// Opens PNG, JPEG and BMP files with OpenImageIO or, in a library without it, with stb_image and libjpeg.
+std::unique_ptr<OpenPicture> open_bmp(const std::string& path);
+/// Opens PNG and JPEG files with OpenImageIO or, in a library without it, with stb_image and libjpeg.
 std::unique_ptr<OpenPicture> open_integers(const std::string& path, PictureFormat format);
 
 /// Encodes an 8-bit PNG file; the top row comes first.

@@ -78,8 +78,10 @@ std::unique_ptr<OpenPicture> open_picture(const std::string& path, const std::st
   }
   // The former run lengths of Radiance have no bound of their own; only a picture of one color exceeds this one.
   if (format == PictureFormat::radiance) return checked(path, open_radiance(path), 8);
+  if (format == PictureFormat::tiff) return checked(path, open_tiff(path));
+  if (format == PictureFormat::bmp) return checked(path, open_bmp(path));
   const int bits = format == PictureFormat::png ? check_png_chunks(path) : 1;
-  return checked(path, format == PictureFormat::tiff ? open_tiff(path) : open_integers(path, format), bits);
+  return checked(path, open_integers(path, format), bits);
 }
 
 std::unique_ptr<OpenPicture> open_channels(const std::string& path) {

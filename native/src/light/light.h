@@ -24,6 +24,8 @@ struct Light {
   float spread = kPi;
   bool sphere = true;  // point, spot: a sphere; false: a disk that faces each point that it lights
   bool casts_shadow = true;
+  bool is_mirrored = true;  // whether perfect mirrors and clear glass show it
+  uint8_t hidden_from = 0;  // bits of `hidden` (scene.h): bounces, transmission
 };
 
 }  // namespace velour

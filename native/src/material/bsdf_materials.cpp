@@ -26,7 +26,7 @@ constexpr float kMeanUnevenAlbedo = (2 * kPi - 5.6f) / 3;  // cosine-weighted
 class PreparedRoughDiffuse final : public PreparedBrdf {
  public:
   PreparedRoughDiffuse(const RoughDiffuseParameters& p, const Vec3& wv, const SurfaceSite& site)
-      : wv_(wv), color_(glm::clamp(p.color_texture.at(site, p.color), Rgb(0.0f), Rgb(1.0f))) {
+      : wv_(wv), color_(glm::max(p.color_texture.at(site, p.color), Rgb(0.0f))) {
     const float roughness = std::clamp(p.roughness_texture.at_point(site, p.roughness), 0.0f, 1.0f);
     even_ = 1 / (kPi + kWhole * roughness);
     uneven_ = roughness * even_;
@@ -56,7 +56,8 @@ class PreparedRoughDiffuse final : public PreparedBrdf {
   Rgb interreflected() const {
     const float lost = one_minus_albedo(kMeanUnevenAlbedo);                                // 1 - m
     const float of_mean = (kWhole - uneven_albedo(wv_.z)) / (kWhole - kMeanUnevenAlbedo);  // (1 - E) / (1 - m)
-    return color_ * color_ * color_ * ((1 - lost) * of_mean / kPi) / (1.0f - color_ * lost);
+    const Rgb between = glm::min(color_, Rgb(1.0f));  // the series of reflections converges
+    return color_ * between * between * ((1 - lost) * of_mean / kPi) / (1.0f - between * lost);
   }
 
   Vec3 wv_;
@@ -92,10 +93,10 @@ class PreparedGlossy final : public PreparedBrdf {
  public:
   PreparedGlossy(const GlossyParameters& p, const Vec3& wv, const SurfaceSite& site, const LobeFilter& filter)
       : wv_(wv), lobe_(p.lobe) {
-    const Rgb given = glm::clamp(p.color_texture.at(site, p.color), Rgb(0.0f), Rgb(1.0f));
+    const Rgb given = glm::max(p.color_texture.at(site, p.color), Rgb(0.0f));
     const Rgb color = filter.diffuse_only ? Rgb(0.0f) : given;
     const float roughness = std::clamp(p.roughness_texture.at_point(site, p.roughness), kMinRoughness, 1.0f);
-    color_ = color * Interreflection(p.lobe, roughness, wv.z).gain(color);
+    color_ = color * Interreflection(p.lobe, roughness, wv.z).gain(glm::min(color, Rgb(1.0f)));
     alpha_ = Vec2(std::max(roughness * roughness, filter.min_alpha));
   }
 

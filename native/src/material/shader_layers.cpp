@@ -209,7 +209,7 @@ class LayeredMaterial final : public Material {
     for (size_t i = 0; i < albedo_.size(); ++i) {
       PreparedLayer& layer = prepared[i];
       const ReflectingLayer& from = layers_.reflecting[i];
-      layer.weight = Rgb(brighter * from.weight.at(site)) * from.weight.tint(site);
+      layer.weight = Rgb(brighter * std::max(from.weight.at(site), 0.0f)) * from.weight.tint(site);
       if (from.top) layer.weight *= from.top->through(wv, site, options.filter);
       layer.to_working = from.rec709_colors && layers_.rec709_to_working ? &*layers_.rec709_to_working : nullptr;
       layer.above_only = transmits_ && !from.material->transmits();
@@ -272,7 +272,7 @@ class LayeredMaterial final : public Material {
   float stopping(const SurfaceSite& site) const {
     float sum = 0;
     for (const ReflectingLayer& l : layers_.reflecting) sum += l.weight.at(site);
-    for (const ColorLayer& l : layers_.emissive) sum += std::min(l.weight.at(site), 1.0f);
+    for (const ColorLayer& l : layers_.emissive) sum += std::min(std::abs(l.weight.at(site)), 1.0f);
     return sum;
   }
   /// alpha(), or 1 where it is 0 and the layers are not evaluated.
@@ -300,7 +300,7 @@ Rgb PrincipledTop::through(const Vec3& wv, const SurfaceSite& site, const LobeFi
 
 float LayerFactor::at(const SurfaceSite& site) const {
   const float given = texture.at(site, value);
-  if (kind == Kind::gain) return std::max(given, 0.0f);
+  if (kind == Kind::gain) return given;
   const float share = std::clamp(given, 0.0f, 1.0f);
   return kind == Kind::rest ? 1 - share : share;
 }

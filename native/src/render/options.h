@@ -31,6 +31,7 @@ struct LightPathOptions {
 struct PathPast {
   float least_density = std::numeric_limits<float>::infinity();  // minimum over the sampled directions, 1/sr
   bool was_diffuse = false;                                      // whether the last bounce was diffuse
+  bool was_transmitted = false;                                  // whether the last bounce went through the surface
 };
 
 /// As in Cycles (kernel/integrator/surface_shader.h, kernel/svm/closure.h).

@@ -198,7 +198,11 @@ void TileRenderer::aim_paths(const PixelRect& run, int count) {
 
 void TileRenderer::trace(int depth, RayLog* log) {
   if (log != nullptr) log->add(flight_.rays, RayLog::Kind::nearest);
-  flight_.trace(depth == 0 ? hidden::kFromCamera : hidden::kFromBounces);
+  if (depth == 0) {
+    flight_.trace_camera_rays();
+  } else {
+    flight_.trace_continued();
+  }
   ray_count_ += flight_.rays.size();
 }
 

@@ -21,9 +21,10 @@ Mesh read_obj(const std::string& path);
 
 // Triangulation of polygons.
 
-/// Cuts simple polygons, convex or not, into count - 2 triangles by ear clipping (Meisters 1975) in the plane of the
-/// polygon's normal (Newell). Up to the choice of diagonals, the result does not depend on the origin or the first
-/// corner. Self-intersecting polygons also give some triangles. Reuses its memory between calls.
+/// Cuts polygons, convex or not, into count - 2 triangles by ear clipping (Meisters 1975) in the plane of the polygon's
+/// normal (Newell). Outlines may touch themselves at corners and along edges, as bridges to holes do; edges traversed
+/// in both directions give triangles without area. Up to the choice of diagonals, the result does not depend on the
+/// origin or the first corner. Self-intersecting polygons also give some triangles. Reuses its memory between calls.
 class PolygonTriangles {
  public:
   /// Maximum number of corners. The time grows with its square.
@@ -38,7 +39,10 @@ class PolygonTriangles {
   void cut_quad();
   void clip_ears();
   double turn(uint32_t a, uint32_t b, uint32_t c) const;
+  bool is_spike(uint32_t corner) const;
+  int winding(const glm::dvec2& point, uint32_t start) const;
   bool is_ear(uint32_t corner) const;
+  uint32_t flattest(uint32_t start) const;
 
   std::vector<glm::dvec2> points_;  // counterclockwise
   std::vector<uint32_t> next_, previous_;

@@ -208,6 +208,11 @@ void Scene::set_environment(Environment environment) {
   world_.reset();
 }
 
+void Scene::hide_environment(uint8_t from) {
+  changed();
+  environment_hidden_ = from;
+}
+
 void Scene::set_world(WorldProgram world, int width, int height) {
   set_environment(world.baked(width, height));
   world_ = std::move(world);

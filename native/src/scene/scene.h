@@ -90,7 +90,8 @@ struct SurfaceMaterial {
 
 /// Kinds of rays that may pass through an instance: bits of Instance::hidden, values of velour.h.
 namespace hidden {
-inline constexpr uint8_t kFromCamera = 1, kFromBounces = 2, kFromShadows = 4;
+/// Bounces: reflected rays. Transmission: rays that surfaces have transmitted.
+inline constexpr uint8_t kFromCamera = 1, kFromBounces = 2, kFromShadows = 4, kFromTransmission = 16;
 /// Not a kind of ray: the camera sees neither the instance nor anything behind it.
 inline constexpr uint8_t kHoldout = 8;
 }  // namespace hidden
@@ -184,6 +185,8 @@ class Scene {
   uint32_t add_light(const Light& light);
   void clear_lights();
   void set_environment(Environment environment);
+  /// Kinds of rays, bits of `hidden` (bounces, transmission), that the environment does not light; 0: none.
+  void hide_environment(uint8_t from);
   /// Sets the environment to WorldProgram::baked(). Camera rays that leave the scene see the program itself.
   void set_world(WorldProgram world, int width, int height);
   void set_camera(const Camera& camera);
@@ -290,6 +293,7 @@ class Scene {
 
   const Camera& camera() const { return camera_; }
   const Environment& environment() const { return environment_; }
+  uint8_t environment_hidden() const { return environment_hidden_; }
   /// Radiance of camera rays that leave the scene, in each direction of `world`, a padded batch.
   void look_up_background(const DirectionBatch& world, RgbBatch& radiance) const;
   const std::vector<Light>& lights() const { return lights_; }
@@ -335,6 +339,7 @@ class Scene {
   std::vector<Light> lights_;
   uint64_t flat_instances_ = 0;
   Environment environment_;
+  uint8_t environment_hidden_ = 0;
   std::optional<WorldProgram> world_;  // that environment_ is baked from
   Camera camera_;
   std::optional<Mat3> rec709_to_working_;

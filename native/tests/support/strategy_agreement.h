@@ -8,15 +8,16 @@
 
 namespace velour::test {
 
-inline PictureMeans by_many_samples(const Scene& scene) {
-  return strategy_means(scene, {"mis", Strategy::mis}, 8, 1'000'000);
+inline PictureMeans by_many_samples(const Scene& scene, double effort = 1) {
+  return strategy_means(scene, {"mis", Strategy::mis}, 8 * effort, 1'000'000);
 }
 
-/// All strategies have the same expectation; a bias of the whole picture above `bias` would have been seen.
-inline void expect_strategies_agree(const Scene& scene, double bias) {
-  const PictureMeans expected = by_many_samples(scene);
+/// All strategies have the same expectation; a bias of the whole picture above `bias` would have been seen. `effort`:
+/// factor of the samples.
+inline void expect_strategies_agree(const Scene& scene, double bias, double effort) {
+  const PictureMeans expected = by_many_samples(scene, effort);
   ZTests tests(0.01);
-  for (const NamedStrategy& s : all_strategies()) compare(s.name, strategy_means(scene, s), expected, tests);
+  for (const NamedStrategy& s : all_strategies()) compare(s.name, strategy_means(scene, s, effort), expected, tests);
   EXPECT_TRUE(tests.agree());
   for (const NamedStrategy& s : all_strategies()) EXPECT_LT(tests.smallest_bias(s.name + " whole"), bias) << s.name;
 }

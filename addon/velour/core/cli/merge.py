@@ -22,7 +22,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(args: argparse.Namespace) -> dict:
-    output.check_writable(args.output)
+    output.check_picture(args.output)
     start = time.perf_counter()
     parts = [picture_parts.open_part(path) for path in args.parts]
     merged = picture_parts.merge(parts, args.partial)

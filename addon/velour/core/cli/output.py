@@ -111,6 +111,8 @@ def check_writable(path: str) -> None:
         raise OSError(f"The folder {folder} of the output {path} does not exist; create it first.")
     if Path(path).is_dir():
         raise OSError(f"The output {path} is a folder; give the name of a file.")
+    if Path(path).exists() and not Path(path).is_file():  # a device or a pipe would be replaced
+        raise OSError(f"The output {path} is not a regular file; choose another name.")
     try:
         tempfile.TemporaryFile(dir=folder).close()
     except OSError as error:
@@ -118,3 +120,12 @@ def check_writable(path: str) -> None:
             f"The folder {folder} of the output {path} is not writable ({error.strerror}); choose another"
             " one, or change its permissions."
         ) from error
+
+
+def check_picture(path: str) -> None:
+    """check_writable(), and that the extension names a format that images can be written in."""
+    if Path(path).suffix not in (".exr", ".png"):
+        raise OSError(
+            f"The output {path} can only be written as .exr or .png; give it one of these extensions."
+        )
+    check_writable(path)

@@ -136,13 +136,13 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(args: argparse.Namespace) -> dict:
     options = _options(args)
     render_part.check(args, options)
-    output.check_writable(args.output)
+    output.check_picture(args.output)
     if args.noisy_image:
         if not args.denoise:
             raise refuse(
                 "--noisy-image writes the image before denoising, so it needs --denoise; add that option."
             )
-        output.check_writable(args.noisy_image)
+        output.check_picture(args.noisy_image)
     if args.denoise:
         library.denoiser()  # if it is missing, fails before the render, not after it
     estimate = memory.check(args)

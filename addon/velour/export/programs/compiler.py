@@ -1,8 +1,8 @@
 """Compiles the nodes that feed an input."""
 
 from ..image_nodes import UnsupportedError
-from ..plugs import followed
-from .conversions import converted, own
+from ..plugs import fed_by, types_between
+from .conversions import converted, numbers_of, own_numbers
 from .draft import MOST_INSTRUCTIONS, Draft
 from .nodes import NODES
 
@@ -10,11 +10,11 @@ _MOST_DEPTH = 100  # links of a broken file may be cyclic
 
 
 class Compiler:
-    """Compiles inputs of one material's shaders to one Draft. `metres`: per unit of Blender's coordinates."""
+    """Compiles inputs of one material's shaders to one Draft. `unit`: length of Blender's unit in the scene."""
 
-    def __init__(self, reader, metres):
+    def __init__(self, reader, unit):
         self.reader = reader
-        self.metres = metres
+        self.unit = unit
         self.draft = Draft()
         self.more_nodes = {}  # compiled beside NODES
         self.is_world = False  # directions are evaluated in place of points of a surface
@@ -23,32 +23,32 @@ class Compiler:
         self._values = {}
         self._depth = 0
 
-    def computed(self, plug, asked, kind):
-        """The Computed of the output `plug` for the socket `asked`; raises UnsupportedError.
+    def computed(self, plug, kind):
+        """The Computed of what feeds the input `plug` through an output; raises UnsupportedError.
 
         kind: color, number, normal.
         """
-        value = converted(self.draft, self.output(plug), plug.socket.type, asked.type)
-        found = self.draft.output(value, kind)
+        found = self.draft.output(self._fed(plug), kind)
         if found is None:
             raise UnsupportedError("the material has too many computed inputs")
         return found
 
     def input(self, plug):
         """The Value of an input, as its type; its own value, with a note, if it cannot be evaluated."""
-        fed = followed(plug)
-        if fed is None or not fed.socket.is_output:
-            return own(self.draft, (fed or plug).socket, plug.socket.type)
+        if fed_by(plug) is None:
+            return self.draft.constant(own_numbers(plug))
         try:
-            return converted(self.draft, self.output(fed), fed.socket.type, plug.socket.type)
+            return self._fed(plug)
         except UnsupportedError as reason:
             self.reader.note_link(plug, f" ({reason})")
-            return own(self.draft, plug.socket, plug.socket.type)
+            return self.draft.constant(numbers_of(plug.socket))
+
+    def _fed(self, plug):
+        return converted(self.draft, self.output(fed_by(plug)), types_between(plug))
 
     def linked(self, plug):
         """The Value of an input if a node feeds it, else None."""
-        fed = followed(plug) if plug else None
-        return self.input(plug) if fed is not None and fed.socket.is_output else None
+        return self.input(plug) if fed_by(plug) else None
 
     def output(self, plug):
         """The Value of an output, as its type; raises UnsupportedError."""

@@ -1,6 +1,7 @@
 """Conversion of values between types of sockets, as Cycles converts them."""
 
 from ..color import luminance_weights
+from ..plugs import followed, is_passed_through, types_between
 
 _NUMBERS = ("VALUE", "INT", "BOOLEAN")
 _EQUAL = (1.0 / 3.0,) * 3
@@ -11,27 +12,51 @@ def is_number(kind):
     return kind in _NUMBERS
 
 
-def converted(draft, value, given, asked):
-    """The Value of a socket of type `given`, as a socket of type `asked`."""
+def converted(draft, value, types):
+    """The Value of a socket of the first type after conversion to each type in turn."""
+    for given, asked in zip(types, types[1:], strict=False):
+        if is_number(given) == is_number(asked):
+            continue
+        if value.first < 0:
+            value = draft.constant(_converted(draft.constants_of(value), given, asked))
+        elif is_number(given):
+            value = draft.joined(value, value, value)
+        else:
+            value = draft.vector_math("dot_product", value, draft.vector(_weights(given)))[1]
+    return value
+
+
+def _converted(numbers, given, asked):
+    """Like converted(), for one or three numbers."""
     if is_number(given) == is_number(asked):
-        return value
+        return numbers
     if is_number(given):
-        return draft.joined(value, value, value)
-    weights = luminance_weights() if given == "RGBA" else _EQUAL
-    return draft.vector_math("dot_product", value, draft.vector(weights))[1]
+        return numbers * 3
+    return (sum(float(w) * c for w, c in zip(_weights(given), numbers, strict=True)),)
+
+
+def _weights(kind):
+    return luminance_weights() if kind == "RGBA" else _EQUAL
 
 
 def luminance_of(draft, color):
     return draft.vector_math("dot_product", color, draft.vector(luminance_weights()))[1]
 
 
-def own(draft, socket, asked):
-    """A socket's own value as a constant of type `asked`."""
+def own_numbers(plug):
+    """Tuple of one or three numbers: the value of an input that no node feeds, or that of a Value or RGB node
+    that feeds it, as its type."""
+    source = followed(plug)
+    types = types_between(plug) if source else [plug.socket.type]
+    numbers = numbers_of((source or plug).socket)
+    for given, asked in zip(types, types[1:], strict=False):
+        numbers = _converted(numbers, given, asked)
+    return numbers
+
+
+def numbers_of(socket):
+    """Tuple of one or three numbers: a socket's own value."""
     value = getattr(socket, "default_value", 0.0)
-    if not hasattr(value, "__len__"):
-        constant = draft.number(value)
-        return constant if is_number(asked) else draft.vector((value,) * 3)
-    if not is_number(asked):
-        return draft.vector(value)
-    weights = luminance_weights() if socket.type == "RGBA" else _EQUAL
-    return draft.number(sum(w * c for w, c in zip(weights, value, strict=False)))
+    numbers = tuple(map(float, value[:3])) if hasattr(value, "__len__") else (float(value),)
+    is_zero = not socket.is_output and is_passed_through(socket.node)
+    return (0.0,) * len(numbers) if is_zero else numbers

@@ -15,7 +15,7 @@ def generated(c):
 def position(c):
     """World-space position in Blender's units; of a world, the direction."""
     place = c.source("position")
-    return place if c.metres == 1.0 else c.draft.vector_math("scale", place, scale=1.0 / c.metres)[0]
+    return place if c.unit == 1.0 else c.draft.vector_math("scale", place, scale=1.0 / c.unit)[0]
 
 
 def _object(c, plug):

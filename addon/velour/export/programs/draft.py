@@ -65,17 +65,22 @@ class Draft:
 
     def number(self, value):
         """A constant."""
-        return self._constant((float(value),))
+        return self.constant((float(value),))
 
     def vector(self, values):
         """A constant of three."""
-        return self._constant(tuple(float(v) for v in values[:3]))
+        return self.constant(tuple(float(v) for v in values[:3]))
 
-    def _constant(self, values):
+    def constant(self, values):
+        """A constant of a tuple of one or three numbers."""
         if values not in self._places:
             self._places[values] = -1 - len(self.constants)
             self.constants += values
         return Value(self._places[values], len(values))
+
+    def constants_of(self, value):
+        """Tuple of the numbers of a constant Value."""
+        return tuple(self.constants[-1 - value.first :][: value.size])
 
     def step(self, operation, inputs, sizes, choices=(), table=()):
         """Adds a step; the Values of its outputs, of these sizes."""

@@ -29,12 +29,12 @@ def _bump(c, plug):
     if c.linked(height) is None or c.shift != "none":
         return normal
     heights = [c.input(height), c.shifted("x", height), c.shifted("y", height)]
-    side = -c.metres if plug.node.invert else c.metres
+    side = -c.unit if plug.node.invert else c.unit
     return bumped(c, plug, normal, heights, c.draft.math("multiply", c.input(plug.input("Distance")), side))
 
 
 def bumped(c, plug, normal, heights, distance):
-    """A normal bent by the height at the point and beside it; `distance`: meters per unit of height."""
+    """A normal bent by the height at the point and beside it; `distance`: length of a unit of height in the scene."""
     width = plug.input("Filter Width")  # newer Blenders
     if width:
         c.draft.width = min(c.draft.width, max(width.socket.default_value, 1e-3))
@@ -52,7 +52,7 @@ def displaced(c, plug):
     if c.linked(plug.input("Normal")) is not None:
         raise UnsupportedError(f"'{node.name}' has a linked normal")
     heights = [_displacement(c, plug, shift) for shift in ("none", "x", "y")]
-    return bumped(c, plug, c.draft.source("normal"), heights, _metres_of(c, node.space))
+    return bumped(c, plug, c.draft.source("normal"), heights, _length_of(c, node.space))
 
 
 def _displacement(c, plug, shift):
@@ -60,10 +60,10 @@ def _displacement(c, plug, shift):
     return c.draft.math("multiply", c.draft.math("subtract", height, middle), scale)
 
 
-def _metres_of(c, space):
-    """Meters per unit of displacement; in object space it scales with the object, along the surface."""
+def _length_of(c, space):
+    """Length of a unit of displacement in the scene; in object space it scales with the object, along the surface."""
     if space == "WORLD":
-        return c.draft.number(c.metres)
+        return c.draft.number(c.unit)
     here, beside = (c.draft.source("object_position", 0, shift) for shift in ("none", "x"))
     in_object = c.draft.vector_math("distance", here, beside)[1]
     in_world = c.draft.vector_math("length", c.draft.source("step_x"))[1]

@@ -35,9 +35,6 @@ def _folded(draft, function, *values):
     """The vector that a function makes of constants, as a constant; None if a value is computed."""
     if any(value.first >= 0 for value in values):
         return None
-    return draft.vector(np.broadcast_to(function(*(constants_of(draft, value) for value in values)), 3))
-
-
-def constants_of(draft, value):
-    """Array of the numbers of a constant Value."""
-    return np.array(draft.constants[-1 - value.first :][: value.size])
+    return draft.vector(
+        np.broadcast_to(function(*(np.array(draft.constants_of(value)) for value in values)), 3)
+    )

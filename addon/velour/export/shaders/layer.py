@@ -88,7 +88,7 @@ def shines(layer):
     """Whether the layer emits light."""
     if layer.kind != "emission":
         return layer.glow is not None and shines(layer.glow)
-    return "base_color" in layer.pictures or max(layer.values["base_color"]) > 0.0
+    return "base_color" in layer.pictures or any(layer.values["base_color"])
 
 
 def sources_of(layers):
@@ -160,4 +160,4 @@ def _constant(factor):
     if factor.kind == "tint":
         return None
     share = min(max(factor.value, 0.0), 1.0)
-    return {"share": share, "rest": 1.0 - share, "gain": max(factor.value, 0.0)}[factor.kind]
+    return {"share": share, "rest": 1.0 - share, "gain": factor.value}[factor.kind]

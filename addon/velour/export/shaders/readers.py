@@ -115,7 +115,10 @@ def _read_disney(found):
     """Parameters specific to Principled before 4.0, if they have an effect. Its tints are the shares of the
     base color's hue in the dielectric reflection and in sheen [Bur12]."""
     found.values["formula"] = "disney"
-    found.read("coat", "Clearcoat", largest=1.0)
+    _note_beyond_range(found, "metallic", "Metallic")
+    _note_beyond_range(found, "roughness", "Roughness")
+    found.read("coat", "Clearcoat")
+    _note_beyond_range(found, "coat", "Clearcoat")
     if found.has("coat"):
         found.read("coat_roughness", "Clearcoat Roughness")
     else:
@@ -126,6 +129,14 @@ def _read_disney(found):
     else:
         found.drop("sheen")
     _read_hue(found, "Specular Tint", "specular_tint", _GRAY)
+
+
+def _note_beyond_range(found, name, socket):
+    """Notes a constant that Cycles does not clamp before 4.0, and clamps it."""
+    value = found.values[name]
+    if name not in found.pictures and not 0.0 <= value <= 1.0:
+        found.values[name] = min(max(value, 0.0), 1.0)
+        found.reader.note(found.plug, f"'{socket}' is {value:g}; {found.values[name]:g} is used instead.")
 
 
 def _read_hue(found, socket, name, weights):
@@ -270,7 +281,7 @@ def _glow(color, strength, reader):
     strength, gain = reader.number(strength)
     if picture is None and gain is None:
         radiance = tuple(strength * c for c in color)
-        return Layer("emission", {"base_color": radiance}, {}) if max(radiance) > 0.0 else None
+        return Layer("emission", {"base_color": radiance}, {}) if any(radiance) else None
     pictures = {"base_color": picture} if picture else {}
     return Layer("emission", {"base_color": color}, pictures, (Factor("gain", strength, gain),))
 

@@ -9,6 +9,14 @@ from .layer import Relief
 # Cycles' correction of steep normals changed in these versions; no property reveals it.
 _CORRECTION = "turned" if bpy.app.version < (4, 0) else "faded" if bpy.app.version < (4, 5) else "shadowed"
 
+# Nodes whose vectors have unit length.
+_UNIT = (
+    "ShaderNodeNormalMap",
+    "ShaderNodeBump",
+    "ShaderNodeNormal",
+    "ShaderNodeNewGeometry",
+    "ShaderNodeTexCoord",
+)
 _UNTILTED = (0.5, 0.5, 1.0)  # color of a normal map
 
 
@@ -44,8 +52,21 @@ def _relief_of(socket, reader):
             return None
         if isinstance(picture, Picture) and varies is None:
             return Relief(picture, strength, fed.node.uv_map)
+    if not _has_unit_length(fed.node):
+        reader.note(
+            fed,
+            f"'{fed.socket.name}' may not have unit length; normalized. Before 4.0, Cycles does not"
+            " normalize it, which changes brightness. Normalize it with a Vector Math node for the same"
+            " image.",
+        )
     try:
-        return Relief(reader.compiler.computed(fed, fed.socket, "normal"), 1.0)
+        return Relief(reader.compiler.computed(socket, "normal"), 1.0)
     except UnsupportedError as reason:
         reader.note_link(socket, f" ({reason})")
         return None
+
+
+def _has_unit_length(node):
+    """Whether Cycles uses the normal of a node as Velour does."""
+    is_normalized = node.bl_idname == "ShaderNodeVectorMath" and node.operation == "NORMALIZE"
+    return bpy.app.version >= (4, 0) or is_normalized or node.bl_idname in _UNIT

@@ -13,10 +13,10 @@ from .values import Reader
 _MOST_LAYERS = 64  # nested mixes with shared shaders can have far more
 
 
-def surface_layers(material, notes, metres=1.0, opens_measured=False):
+def surface_layers(material, notes, unit=1.0, opens_measured=False):
     """The Layers of a material; notes what is left out.
 
-    metres: per unit of Blender's coordinates.
+    unit: length of Blender's unit in the library's scene.
     opens_measured: read the nodes in measured groups instead of their models.
     """
     if material is None:
@@ -34,7 +34,7 @@ def surface_layers(material, notes, metres=1.0, opens_measured=False):
         return [black()]
     if fed_by(Plug(output.inputs["Volume"])):
         notes.add(f"{owner}: volume is not supported; ignored.")
-    reader = Reader(owner, notes, metres, opens_measured)
+    reader = Reader(owner, notes, unit, opens_measured)
     _read_displacement(fed_by(Plug(output.inputs["Displacement"])), material, reader)
     layers = simplified(_read(plug, reader))
     if reader.steps_left <= 0 or len(layers) > _MOST_LAYERS:

@@ -1,12 +1,10 @@
 """Values, colors and pictures of a node's inputs."""
 
-import numpy as np
-
-from ..color import luminance_weights
 from ..corner_colors import corner_colors_of
 from ..image_nodes import UnsupportedError, picture_of, uv_placement
-from ..plugs import followed
+from ..plugs import fed_by, types_between
 from ..programs import Compiler
+from ..programs.conversions import numbers_of, own_numbers
 
 _MOST_STEPS = 256
 
@@ -14,28 +12,29 @@ _MOST_STEPS = 256
 class Reader:
     """Reads inputs of one material's nodes; notes what it leaves out."""
 
-    def __init__(self, owner, notes, metres=1.0, opens_measured=False):
-        """`metres`: per unit of Blender's coordinates.
+    def __init__(self, owner, notes, unit=1.0, opens_measured=False):
+        """`unit`: length of Blender's unit in the library's scene.
 
         opens_measured: read the nodes in measured groups instead of their models."""
         self.owner = owner
         self.notes = notes
         self.opens_measured = opens_measured
-        self.compiler = Compiler(self, metres)
+        self.compiler = Compiler(self, unit)
         self.steps_left = _MOST_STEPS  # shaders that may still be read
 
     def number(self, plug):
         """Value or color of an input that may vary, and its Picture, CornerColors, Computed or None."""
-        fed = followed(plug) if plug else None
-        if fed is None or not fed.socket.is_output:
-            return own_value((fed or plug).socket, plug.socket) if plug else 0.0, None
-        if fed.node.bl_idname in ("ShaderNodeValue", "ShaderNodeRGB"):
-            return own_value(fed.socket, plug.socket), None
+        if plug is None:
+            return 0.0, None
+        fed = fed_by(plug)
+        if fed is None or fed.node.bl_idname in ("ShaderNodeValue", "ShaderNodeRGB"):
+            return own_value(plug), None
+        value = _single(numbers_of(plug.socket))
         try:
-            return own_value(plug.socket), self._source_of(fed, plug.socket)
+            return value, self._source_of(fed, plug)
         except UnsupportedError as reason:
             self.note_link(plug, f" ({reason})")
-            return own_value(plug.socket), None
+            return value, None
 
     def value(self, plug):
         """Value or color of an input that cannot vary; notes a link."""
@@ -44,14 +43,18 @@ class Reader:
             self.note_link(plug)
         return value
 
-    def _source_of(self, fed, asked):
-        """What an output that feeds the socket `asked` provides; raises UnsupportedError."""
-        is_number = isinstance(asked.default_value, (int, float))
+    def _source_of(self, fed, plug):
+        """What an output that feeds an input provides; raises UnsupportedError."""
+        is_number = isinstance(plug.socket.default_value, (int, float))
+        kind = "number" if is_number else "color"
+        given, *passed, _asked = types_between(plug)
+        if set(passed) - {given}:  # converted on the way
+            return self.compiler.computed(plug, kind)
         if fed.node.bl_idname in ("ShaderNodeVertexColor", "ShaderNodeAttribute"):
             return corner_colors_of(fed, is_number)
         if fed.node.bl_idname == "ShaderNodeTexImage" and self._is_on_uv_map(fed):
             return picture_of(fed, self.owner, self.notes)
-        return self.compiler.computed(fed, asked, "number" if is_number else "color")
+        return self.compiler.computed(plug, kind)
 
     @staticmethod
     def _is_on_uv_map(fed):
@@ -69,10 +72,10 @@ class Reader:
         self.note(plug, f"the link to '{plug.socket.name}' is not supported{reason}; {used} is used.")
 
 
-def own_value(socket, asked=None):
-    """Float, or color triple, in the kind of the socket `asked`; 0 for None and shader sockets."""
-    value = getattr(socket, "default_value", 0.0)
-    value = float(value) if isinstance(value, (int, float)) else tuple(value[:3])
-    if asked is None or isinstance(asked.default_value, (int, float)) == isinstance(value, float):
-        return value
-    return (value,) * 3 if isinstance(value, float) else float(np.dot(luminance_weights(), value))
+def own_value(plug):
+    """Float, or color triple, of an input that nothing feeds but a Value or RGB node."""
+    return _single(own_numbers(plug))
+
+
+def _single(numbers):
+    return numbers[0] if len(numbers) == 1 else numbers

@@ -6,14 +6,14 @@ import os
 import numpy as np
 from mathutils import Matrix
 
-from ..color import is_linear_rec709
+from ..color import is_linear_rec709, luminance_weights
 from ..files import absolute_path
 from ..newer import has_nodes
 from ..nodes import active_output
 from ..notes import ExportError
 from ..picture_files import linear_file
 from ..pixels import multiplies_floats, working_pixels
-from ..plugs import Plug, fed_by, followed
+from ..plugs import Plug, fed_by
 from ..sequences import sequence_file, sequence_number
 from ..shaders.values import own_value
 from ..unused_settings import note_emitter
@@ -45,6 +45,8 @@ def has_moving_picture(world):
 def add_world(light, world, frame, notes):
     """Sets the WorldLight `light` for a frame; returns whether it emits."""
     _note_visibility(world, notes)
+    visibility = getattr(world, "cycles_visibility", None)
+    light.hide(() if getattr(visibility, "transmission", True) else ("transmission",))
     if world is None:
         return _add_color(light, (0.0, 0.0, 0.0))
     if not has_nodes(world):
@@ -55,6 +57,13 @@ def add_world(light, world, frame, notes):
 def _add_color(light, color):
     light.set_color(color)
     return any(c != 0.0 for c in color)
+
+
+def _add_negative(light, owner, notes):
+    notes.add(
+        f"{owner}: its light is negative, which is not supported; rendered black. Use a strength above 0."
+    )
+    return _add_color(light, (0.0, 0.0, 0.0))
 
 
 def _note_visibility(world, notes):
@@ -80,7 +89,9 @@ def _add_nodes(light, world, frame, notes):
         return _add_color(light, (0.0, 0.0, 0.0))
     picture = _lone_environment(surface)
     if picture is not None:
-        strength = own_value((followed(surface.input("Strength")) or surface.input("Strength")).socket)
+        strength = own_value(surface.input("Strength"))
+        if strength < 0.0:
+            return _add_negative(light, owner, notes)
         _add_environment(light, owner, *picture, strength, frame, notes)
         return strength != 0.0
     try:
@@ -88,6 +99,8 @@ def _add_nodes(light, world, frame, notes):
     except PendingError:
         return True  # what it was before is shown meanwhile
     if found.constant is not None:
+        if np.dot(luminance_weights(), found.constant) < 0.0:
+            return _add_negative(light, owner, notes)
         return _add_color(light, found.constant)
     light.set_nodes(found, owner, notes)
     return True

@@ -28,6 +28,7 @@ class WorldLight:
         """`waits` until a sky is rendered; else it is shown when the world is set again."""
         self.waits = waits
         self._scene = scene
+        self._hidden = ()
         self.suns = []  # SunLights of the sky
         self._picture = None  # key of the current image; None: a color, or an image that may change unnoticed
         self._textures = {}  # of the nodes, by image and use
@@ -75,11 +76,16 @@ class WorldLight:
         self._scene.set_world_program(program, emitted.output, *emitted.size)
         self.suns = [_sun_light(program, emitted.output, sun) for sun in emitted.suns]
 
+    def hide(self, rays):
+        """Rays that neither it nor its suns light: names of `hidden` in Scene.hide_world."""
+        self._hidden = rays
+        self._scene.hide_world(rays)
+
     def add_suns(self):
         """Adds the suns to the scene's lights."""
         for sun in self.suns:
             matrix = np.column_stack((Vector(sun.direction).to_track_quat("Z", "Y").to_matrix(), np.zeros(3)))
-            self._scene.add_light("sun", sun.irradiance, matrix.astype(np.float32), angle=sun.angle)
+            self._scene.add_light("sun", sun.irradiance, matrix.astype(np.float32), hidden=self._hidden, angle=sun.angle)
 
     def _show(self, key, strength, rotation, read):
         self.suns = []

@@ -10,7 +10,7 @@ from ..image_nodes import UnsupportedError
 from ..programs import Draft, ImageNumber
 from ..programs.coordinate_nodes import position
 from ..programs.image_nodes import place_on_sphere
-from ..shaders.emission import constants_of, radiance_of
+from ..shaders.emission import radiance_of
 from ..shaders.values import Reader
 from .sky import SkyPicture, sky_of
 
@@ -28,7 +28,7 @@ class Emitted(NamedTuple):
     def constant(self):
         """The color if nothing has to be evaluated, else None."""
         value = self.draft.outputs[self.output][0]
-        return None if value.first >= 0 else tuple(constants_of(self.draft, value))
+        return None if value.first >= 0 else self.draft.constants_of(value)
 
     @property
     def size(self):

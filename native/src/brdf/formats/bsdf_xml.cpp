@@ -76,8 +76,21 @@ std::array<KlemsBasis::Weighed, 4> KlemsBasis::around(const Vec3& w) const {
 
 namespace {
 
-constexpr uint32_t kMaxPatches = 4096;  // per basis; Klems Full has 145
+constexpr double kMaxPatches = 4096;  // per basis; Klems Full has 145
 constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
+
+/// Elements are known by their local names; the prefix of their namespace is up to the file.
+void remove_prefixes(pugi::xml_document& document) {
+  struct Walker : pugi::xml_tree_walker {
+    bool for_each(pugi::xml_node& node) override {
+      const std::string_view name = node.name();
+      const size_t colon = name.find(':');
+      if (colon != std::string_view::npos) node.set_name(std::string(name.substr(colon + 1)).c_str());
+      return true;
+    }
+  } walker;
+  document.traverse(walker);
+}
 
 std::string text_of(const pugi::xml_node& node) {
   const std::string_view all = node.text().get();
@@ -93,6 +106,7 @@ BsdfXml::BsdfXml(std::span<const uint8_t> bytes, const std::string& path) : path
     fail("is not a valid XML document: " + std::string(parsed.description()) + " at byte " +
          std::to_string(parsed.offset) + "; it may be truncated. Download or export it again.");
   }
+  remove_prefixes(xml_);
   layer_ = xml_.child("WindowElement").child("Optical").child("Layer");
   if (!layer_) fail("has no WindowElement/Optical/Layer element; it is not a BSDF file.");
   read_structure();
@@ -126,12 +140,14 @@ std::vector<float> BsdfXml::numbers(const pugi::xml_node& block, size_t count) c
   std::vector<float> values;
   values.reserve(std::min(count, rest.size() / 2 + 1));
   while (const auto value = next_number(rest)) values.push_back(*value);
+  const std::string where = "ScatteringData of " + text_of(block.child("WavelengthDataDirection")) + ", " +
+                            text_of(block.parent().child("Wavelength")) + ", has ";
   if (!rest.empty()) {
-    fail("ScatteringData has '" + std::string(rest.substr(0, 12)) + "' where a number is expected.");
+    fail(where + "'" + next_word(rest) + "' where value " + std::to_string(values.size() + 1) +
+         " is expected; write numbers as 0.17 or 1.7e-1, separated by commas or blanks.");
   }
   if (values.size() != count) {
-    fail("ScatteringData has " + std::to_string(values.size()) + " values, but its angle bases require " +
-         std::to_string(count) + ".");
+    fail(where + std::to_string(values.size()) + " values, but its angle bases require " + std::to_string(count) + ".");
   }
   return values;
 }
@@ -163,21 +179,21 @@ void BsdfXml::read_structure() {
 void BsdfXml::read_bases() {
   for (const pugi::xml_node basis : definition().children("AngleBasis")) {
     std::vector<KlemsBasis::Ring> rings;
-    uint64_t patches = 0;
+    double patches = 0;
     for (const pugi::xml_node block : basis.children("AngleBasisBlock")) {
       const pugi::xml_node bounds = block.child("ThetaBounds");
-      const double least = bounds.child("LowerTheta").text().as_double(kMissing);
-      const double most = bounds.child("UpperTheta").text().as_double(kMissing);
-      const uint32_t count = block.child("nPhis").text().as_uint();
+      const std::string lower = text_of(bounds.child("LowerTheta")), upper = text_of(bounds.child("UpperTheta")),
+                        phis = text_of(block.child("nPhis"));
+      const double least = number_from(lower).value_or(kMissing), most = number_from(upper).value_or(kMissing),
+                   count = number_from(phis).value_or(kMissing);
       const double expected = rings.empty() ? 0 : rings.back().most_theta;
-      if (!(std::abs(least - expected) < 1e-3 && most > least && most < 90.001) || count == 0 ||
-          (patches += count) > kMaxPatches) {
+      if (!(std::abs(least - expected) < 1e-3 && most > least && most < 90.001) ||
+          !(count >= 1 && count == std::floor(count) && (patches += count) <= kMaxPatches)) {
         fail("AngleBasis '" + text_of(basis.child("AngleBasisName")) + "': ring " + std::to_string(rings.size() + 1) +
-             " spans " + std::to_string(least) + " to " + std::to_string(most) + " degrees with " +
-             std::to_string(count) +
-             " patches; rings must follow each other up to 90 degrees and have at most 4096 patches in all.");
+             " spans '" + lower + "' to '" + upper + "' degrees with '" + phis +
+             "' patches; rings must follow each other up to 90 degrees and have at most 4096 patches in all.");
       }
-      rings.push_back({expected, most, count});
+      rings.push_back({expected, most, static_cast<uint32_t>(count)});
     }
     if (rings.empty()) continue;  // a standard basis
     if (rings.back().most_theta < 89.999) {

@@ -1,10 +1,9 @@
 // The parts of a BSDF XML document (schema windows.lbl.gov/BSDF-v1.4), and the bases of its directions.
 #pragma once
 
+#include <algorithm>
 #include <array>
-#include <charconv>
 #include <cstdint>
-#include <limits>
 #include <map>
 #include <optional>
 #include <pugixml.hpp>
@@ -12,6 +11,7 @@
 #include <string>
 #include <string_view>
 #include <vector>
+#include "base/text_number.h"
 #include "math/sphere/vec.h"
 
 namespace velour {
@@ -88,26 +88,28 @@ class BsdfXml {
 
 // Reads numbers separated by commas or white space from a text.
 
+inline constexpr std::string_view kEndsOfNumbers = ", \t\n\v\f\r{}", kSeparators = kEndsOfNumbers.substr(0, 7);
+
 inline void skip_separators(std::string_view& rest) {
-  const size_t next = rest.find_first_not_of(", \t\n\v\f\r");
-  rest.remove_prefix(next == std::string_view::npos ? rest.size() : next);
+  rest.remove_prefix(std::min(rest.find_first_not_of(kSeparators), rest.size()));
 }
 
-/// Removes the next number from `rest`. A number too small for a float becomes 0, one too large infinity. Nothing if no
-/// number follows.
+/// The next word of `rest`, shortened for a message.
+inline std::string next_word(std::string_view rest) {
+  skip_separators(rest);
+  const std::string_view begin = rest.substr(0, 12);
+  return std::string(begin.substr(0, begin.find_first_of(kSeparators)));
+}
+
+/// Removes the next number from `rest`. Nothing if no number follows, or one that does not end at a separator or brace.
 inline std::optional<float> next_number(std::string_view& rest) {
   skip_separators(rest);
-  double value = 0;
-  const auto [stop, error] = std::from_chars(rest.data(), rest.data() + rest.size(), value);
-  const auto length = static_cast<size_t>(stop - rest.data());
-  if (length == 0) return std::nullopt;
-  if (error != std::errc()) {
-    const bool is_tiny = rest.substr(0, length).find("e-") != std::string_view::npos ||
-                         rest.substr(0, length).find("E-") != std::string_view::npos;
-    value = is_tiny ? 0 : std::numeric_limits<double>::infinity();
-  }
-  rest.remove_prefix(length);
-  return static_cast<float>(value);
+  const auto number = leading_number(rest);
+  if (!number) return std::nullopt;
+  const std::string_view after = rest.substr(number->length);
+  if (!after.empty() && kEndsOfNumbers.find(after[0]) == std::string_view::npos) return std::nullopt;
+  rest = after;
+  return static_cast<float>(number->value);
 }
 
 }  // namespace velour

@@ -1,11 +1,11 @@
 #include "brdf/formats/cornell.h"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <string_view>
 
 #include "base/error.h"
+#include "base/text_number.h"
 #include "brdf/measure/brdf_table.h"
 #include "brdf/measure/held_out.h"
 #include "brdf/measure/irregular_samples.h"
@@ -23,42 +23,55 @@ constexpr std::string_view kUtf8Mark = "\xef\xbb\xbf";
 /// Reads the numbers of a text one by one; skips comments.
 class NumberReader {
  public:
-  explicit NumberReader(std::span<const uint8_t> text)
-      : at_(reinterpret_cast<const char*>(text.data())), end_(at_ + text.size()) {
-    if (std::string_view(at_, end_).starts_with(kUtf8Mark)) at_ += kUtf8Mark.size();
+  explicit NumberReader(std::string_view text) : text_(text), rest_(text) {
+    if (rest_.starts_with(kUtf8Mark)) rest_.remove_prefix(kUtf8Mark.size());
   }
 
   enum class Result { number, end, not_a_number };
 
   Result next(double& value) {
-    skip_to_token();
-    if (at_ == end_) return Result::end;
-    const auto [stop, error] = std::from_chars(at_, end_, value);
-    if (stop == at_ || (stop != end_ && !is_space(*stop) && *stop != '#')) return Result::not_a_number;
-    if (error == std::errc::result_out_of_range) value = NAN;
-    at_ = stop;
+    skip_to_number();
+    if (rest_.empty()) return Result::end;
+    const auto number = leading_number(rest_);
+    if (!number || !is_end_of_number(number->length)) return Result::not_a_number;
+    value = number->value;
+    rest_.remove_prefix(number->length);
     return Result::number;
   }
 
   /// The word at the cursor, shortened for a message.
-  std::string word() const {
-    const char* stop = std::find_if(at_, std::min(end_, at_ + std::min<std::ptrdiff_t>(end_ - at_, 20)), is_space);
-    return {at_, stop};
+  std::string_view word() const {
+    const std::string_view begin = rest_.substr(0, 20);
+    return begin.substr(0, begin.find_first_of(kSpace));
+  }
+
+  /// The line of the cursor, from 1.
+  size_t line() const {
+    size_t line = 1;
+    for (const char* c = text_.data(); c < rest_.data(); ++c) line += *c == '\n' || (*c == '\r' && c[1] != '\n');
+    return line;
   }
 
  private:
-  static bool is_space(char c) { return c == ' ' || (c >= '\t' && c <= '\r'); }
-  void skip_to_token() {
-    while (at_ != end_ && (is_space(*at_) || *at_ == '#')) {
-      if (*at_ == '#')
-        at_ = std::find_if(at_, end_, [](char c) { return c == '\n' || c == '\r'; });
-      else
-        ++at_;
+  static constexpr std::string_view kSpace = " \t\n\v\f\r";
+
+  bool is_end_of_number(size_t at) const {
+    return at == rest_.size() || rest_[at] == '#' || kSpace.find(rest_[at]) != std::string_view::npos;
+  }
+  void skip_to_number() {
+    while (true) {
+      rest_.remove_prefix(std::min(rest_.find_first_not_of(kSpace), rest_.size()));
+      if (!rest_.starts_with('#')) return;
+      rest_.remove_prefix(std::min(rest_.find_first_of("\r\n"), rest_.size()));
     }
   }
-  const char* at_;
-  const char* end_;
+
+  std::string_view text_, rest_;
 };
+
+std::string_view text_of(std::span<const uint8_t> bytes) {
+  return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
+}
 
 [[noreturn]] void fail(const std::string& path, const std::string& what) {
   throw Error(Status::bad_data, path + ": " + what);
@@ -66,14 +79,15 @@ class NumberReader {
 
 std::vector<double> read_numbers(std::span<const uint8_t> bytes, const std::string& path, const Progress& progress) {
   constexpr size_t kBetweenChecks = 1 << 16;
-  NumberReader in(bytes);
+  NumberReader in(text_of(bytes));
   std::vector<double> numbers;
   for (double value = 0;;) {
     if (numbers.size() % kBetweenChecks == 0) progress.check();
     const auto result = in.next(value);
     if (result == NumberReader::Result::end) return numbers;
     if (result == NumberReader::Result::not_a_number)
-      fail(path, "number " + std::to_string(numbers.size() + 1) + " is '" + in.word() + "', which is not a number.");
+      fail(path, "line " + std::to_string(in.line()) + " has '" + std::string(in.word()) +
+                     "' where a number is expected; write numbers as 0.17 or 1.7e-1, separated by blanks.");
     numbers.push_back(value);
   }
 }
@@ -199,7 +213,7 @@ TableMeasurement::Details describe(const CornellText& text) {
 /// The comment lines before the first number, as the file's description.
 std::string opening_comment(std::span<const uint8_t> bytes) {
   constexpr size_t kLimit = 1000;
-  std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+  std::string_view text = text_of(bytes);
   if (text.starts_with(kUtf8Mark)) text.remove_prefix(kUtf8Mark.size());
   std::string comment;
   while (true) {
@@ -214,9 +228,9 @@ std::string opening_comment(std::span<const uint8_t> bytes) {
 
 }  // namespace
 
-bool looks_like_cornell(std::span<const uint8_t> head) {
-  if (std::any_of(head.begin(), head.end(), [](uint8_t c) { return c < ' ' && !(c >= '\t' && c <= '\r'); }))
-    return false;
+bool looks_like_cornell(std::string_view head) {
+  const auto is_binary = [](unsigned char c) { return c < ' ' && !(c >= '\t' && c <= '\r'); };
+  if (std::ranges::any_of(head, is_binary)) return false;
   NumberReader in(head);
   double count = 0, wavelength = 0;
   return in.next(count) == NumberReader::Result::number && is_count(count) &&

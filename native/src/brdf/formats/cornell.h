@@ -3,13 +3,14 @@
 
 #include <memory>
 #include <span>
+#include <string_view>
 
 #include "brdf/measure/measurement.h"
 
 namespace velour {
 
 /// True for text whose first numbers are a count and a plausible wavelength (nm). '#' begins a comment.
-bool looks_like_cornell(std::span<const uint8_t> head);
+bool looks_like_cornell(std::string_view head);
 
 /// `provenance` has path, name, sha256 and size already. Throws Error(cancelled) once `progress` is cancelled:
 /// interpolating the samples takes seconds.

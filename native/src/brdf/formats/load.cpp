@@ -1,9 +1,12 @@
 #include <algorithm>
+#include <cctype>
 #include <filesystem>
+#include <string>
 #include <string_view>
 
 #include "base/error.h"
 #include "base/file.h"
+#include "base/text_head.h"
 #include "brdf/formats/cornell.h"
 #include "brdf/formats/merl.h"
 #include "brdf/formats/rgl.h"
@@ -29,75 +32,77 @@ struct Format {
   Reader read;
 };
 
-/// Tried in order; each recognizes its own first bytes.
+/// Binary formats, tried in order; each recognizes its own first bytes.
 constexpr Format kFormats[] = {{looks_like_merl, read_at_once<read_merl>},
                                {looks_like_rgl, read_at_once<read_rgl>},
-                               {looks_like_exr, read_at_once<read_brdf_table>},
-                               {looks_like_window_bsdf, read_at_once<read_window_bsdf>}};
+                               {looks_like_exr, read_at_once<read_brdf_table>}};
 constexpr size_t kHeadBytes = 4096;
 
-/// The first bytes of a text after a UTF-8 mark and comments, which may be as long as a lab report.
-std::vector<uint8_t> head_after_comments(const std::string& path) {
-  constexpr uint64_t kBlock = 1 << 16;
-  const RandomAccessFile file(path);
-  std::vector<uint8_t> block;
-  bool in_comment = false;
-  for (uint64_t at = 0; at < file.size(); at += block.size()) {
-    block.resize(std::min(kBlock, file.size() - at));
-    file.read(at, block);
-    const bool has_mark = at == 0 && block.size() >= 3 && block[0] == 0xef && block[1] == 0xbb && block[2] == 0xbf;
-    for (size_t i = has_mark ? 3 : 0; i < block.size(); ++i) {
-      const uint8_t c = block[i];
-      if (c == '#') in_comment = true;
-      if (c == '\n' || c == '\r') in_comment = false;
-      if (in_comment || c == ' ' || (c >= '\t' && c <= '\r')) continue;
-      std::vector<uint8_t> head(std::min<uint64_t>(kHeadBytes, file.size() - at - i));
-      file.read(at + i, head);
-      return head;
-    }
+/// Name of the first element of an XML file, without the prefix of its namespace; empty for other files.
+std::string xml_root(const std::string& path) {
+  const std::string head = read_text_head(path, kHeadBytes, Comments::xml);
+  if (!head.starts_with('<')) return "";
+  const auto begins_name = [](char c) { return std::isalpha(static_cast<unsigned char>(c)) != 0 || c == '_'; };
+  for (size_t at = 0; at < head.size(); at = std::min(head.find('<', at), head.size())) {
+    if (++at == head.size() || !begins_name(head[at])) continue;  // a document type comes before the first element
+    const std::string name = head.substr(at, head.find_first_of(" \n/>", at) - at);
+    return name.substr(name.find(':') + 1);
   }
-  return {};
+  return "";
 }
 
 Reader reader_of(const std::string& path) {
   const std::vector<uint8_t> head = read_file_head(path, kHeadBytes);
   for (const Format& format : kFormats)
     if (format.recognize(head)) return format.read;
-  return looks_like_cornell(head_after_comments(path)) ? read_cornell : nullptr;
+  if (xml_root(path) == "WindowElement") return read_at_once<read_window_bsdf>;
+  return looks_like_cornell(read_text_head(path, kHeadBytes, Comments::hash)) ? read_cornell : nullptr;
+}
+
+/// The header of ASTM E1392: a line that begins with the standard's number, or the line VARS, which names the columns.
+bool looks_like_astm(std::string_view head) {
+  while (!head.empty()) {
+    std::string line(head.substr(0, head.find_first_of("\r\n")));
+    head.remove_prefix(std::min(line.size() + 1, head.size()));
+    std::ranges::transform(line, line.begin(), [](unsigned char c) { return static_cast<char>(std::toupper(c)); });
+    line.erase(0, line.find_first_not_of(" \t#;%/*\xef\xbb\xbf"));
+    if (line.starts_with("ASTM") && line.find("1392") != std::string::npos) return true;
+    if (line.starts_with("VARS") && line.find("THETA") != std::string::npos) return true;
+  }
+  return false;
 }
 
 /// Unsupported formats that users may try, with advice for each.
 struct OtherFormat {
-  std::string_view begin;   // first bytes of the file
-  std::string_view inside;  // also contained in the file's first kHeadBytes
+  bool (*recognize)(std::string_view head, std::string_view root_of_xml);
   const char* sentence;
 };
 
 constexpr OtherFormat kOtherFormats[] = {
-    {"\x89HDF\r\n\x1a\n", "",
+    {[](auto head, auto) { return head.starts_with("\x89HDF\r\n\x1a\n"); },
      "is an HDF5 file, for example X-Rite's AxF. Velour cannot read AxF, which requires X-Rite's library; export a "
      "table of BRDF values (MERL), or images per view and light direction, from the software that created it."},
-    {"7z\xbc\xaf\x27\x1c", "",
+    {[](auto head, auto) { return head.starts_with("7z\xbc\xaf\x27\x1c"); },
      "is an archive, for example Substance's .sbsar: a procedural material, not a measurement. Export its textures and "
      "use them in a Principled BSDF."},
-    {"PK\x03\x04", "",
+    {[](auto head, auto) { return head.starts_with("PK\x03\x04"); },
      "is a ZIP archive. Unpack it and load the file inside. Velour cannot read Chaos's .vrscan, which only Chaos's "
      "library can decode."},
-    {"", "<materialx",
+    {[](auto, auto root) { return root == "materialx"; },
      "is a MaterialX document: material parameters, not a measurement. Import it in Blender, or use its values in a "
      "Principled BSDF."},
-    {"", "ASTM",
+    {[](auto head, auto root) { return root.empty() && looks_like_astm(head); },
      "looks like an ASTM E1392 file, which Velour cannot read; convert it to a list of directions and values "
      "(Cornell's format, docs/reference/measurement_formats.md)."},
 };
 
 [[noreturn]] void refuse_file(const std::string& path) {
-  const std::vector<uint8_t> head = read_file_head(path, kHeadBytes);
-  const std::string_view text(reinterpret_cast<const char*>(head.data()), head.size());
-  for (const OtherFormat& other : kOtherFormats) {
-    if (text.starts_with(other.begin) && text.find(other.inside) != std::string_view::npos)
-      throw Error(Status::unsupported, path + ": " + other.sentence);
-  }
+  constexpr size_t kSearched = 1 << 16;  // E1392 allows long headers
+  const std::vector<uint8_t> bytes = read_file_head(path, kSearched);
+  const std::string_view head(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+  const std::string root = xml_root(path);
+  for (const OtherFormat& other : kOtherFormats)
+    if (other.recognize(head, root)) throw Error(Status::unsupported, path + ": " + other.sentence);
   throw Error(Status::unsupported, path +
                                        ": is not a measurement in a supported format; use MERL .binary, RGL .bsdf, "
                                        "Cornell .brdf, BSDF .xml or a Velour table.");

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <bit>
-#include <charconv>
 #include <cmath>
 #include <cstdint>
 #include <optional>
@@ -111,8 +110,7 @@ class TensorTree::Reader {
   }
 
   [[noreturn]] void fail(const std::string& what) const {
-    const std::string found =
-        rest_.empty() ? " at the end of the data" : " at '" + std::string(rest_.substr(0, 12)) + "'";
+    const std::string found = rest_.empty() ? " at the end of the data" : " at '" + next_word(rest_) + "'";
     throw Error(Status::bad_data, where_ + " " + what + found + ".");
   }
 
@@ -342,12 +340,6 @@ std::shared_ptr<const Measurement> read_tree(const BsdfXml& in, const char* side
 }
 
 }  // namespace
-
-bool looks_like_window_bsdf(std::span<const uint8_t> head) {
-  const std::string_view text(reinterpret_cast<const char*>(head.data()), head.size());
-  const size_t element = text.find("<WindowElement");
-  return element != std::string_view::npos && text.find_first_not_of(" \t\r\n\xef\xbb\xbf") == text.find('<');
-}
 
 std::shared_ptr<const Measurement> read_window_bsdf(std::span<const uint8_t> bytes, Provenance provenance) {
   const BsdfXml in(bytes, provenance.path);

@@ -9,9 +9,6 @@
 
 namespace velour {
 
-/// True for XML whose first bytes contain a WindowElement.
-bool looks_like_window_bsdf(std::span<const uint8_t> head);
-
 /// The reflection of the front, or of the back if there is no other. `provenance` has path, name, sha256 and size
 /// already. Throws Error(bad_data, unsupported).
 std::shared_ptr<const Measurement> read_window_bsdf(std::span<const uint8_t> bytes, Provenance provenance);

@@ -7,6 +7,7 @@
 
 #include "base/error.h"
 #include "base/file.h"
+#include "base/text_number.h"
 #include "brdf/measure/measurement.h"
 #include "image/tensors/exr_tensors.h"
 #include "math/sphere/directions.h"
@@ -45,12 +46,11 @@ std::string number_text(double value) {
 double number_attribute(const TensorFile& file, const std::string& key, double low, double high,
                         const std::string& path) {
   const std::string text = attribute(file, key, path);
-  double value = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error != std::errc() || end != text.data() + text.size() || !(value >= low && value <= high))
+  const auto value = number_from(text);
+  if (!value || !(*value >= low && *value <= high))
     throw Error(Status::bad_data, path + ": attribute " + key + " is '" + text + "'; it must be a number from " +
                                       number_text(low) + " to " + number_text(high) + ".");
-  return value;
+  return *value;
 }
 
 void check_kind(const TensorFile& file, const std::string& path) {

@@ -4,9 +4,11 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <iterator>
 #include <map>
 #include "base/error.h"
 #include "base/file.h"
+#include "base/text_number.h"
 #include "image/picture.h"
 #include "math/sphere/directions.h"
 
@@ -84,10 +86,12 @@ BtfValues values_of(const BtfLoadOptions& options, const std::string& picture) {
 
 std::optional<Vec2> tile_of(const BtfLoadOptions& options, const std::string& picture) {
   if (options.tile_metres) return options.tile_metres;
-  const auto text = read_picture_text(picture, kTileText);
-  Vec2 tile;
-  const bool read = text && std::sscanf(text->c_str(), "%f %f", &tile.x, &tile.y) == 2;
-  return read && is_tile_size(tile) ? std::optional(tile) : std::nullopt;
+  const std::string text = read_picture_text(picture, kTileText).value_or("");
+  const size_t blank = std::min(text.find(' '), text.size());
+  const auto x = number_from(text.substr(0, blank)), y = number_from(text.substr(std::min(blank + 1, text.size())));
+  if (!x || !y) return std::nullopt;
+  const Vec2 tile(*x, *y);
+  return is_tile_size(tile) ? std::optional(tile) : std::nullopt;
 }
 
 std::string curve_text(const TransferCurve& curve) {
@@ -113,18 +117,51 @@ std::vector<Warning> pictures_elsewhere(const ImageSetSource& source) {
        {"first", first->path}})};
 }
 
+/// The code of a warning about images of a set, in place of that about one image; empty if there is none.
+std::optional<WarningCode> code_for_sets(WarningCode code) {
+  switch (code) {
+    case WarningCode::channels_ignored:
+      return WarningCode::images_channels_ignored;
+    case WarningCode::parts_ignored:
+      return WarningCode::images_parts_ignored;
+    case WarningCode::channel_missing:
+      return WarningCode::images_channel_missing;
+    default:
+      return std::nullopt;
+  }
+}
+
+/// One warning of each kind, about its first image and with the number of images, from those of all images.
+std::vector<Warning> summarized(std::span<const std::vector<Warning>> by_image) {
+  std::map<WarningCode, std::pair<const Warning*, uint64_t>> kinds;  // the first, and the number
+  for (const std::vector<Warning>& warnings : by_image) {
+    for (const Warning& warning : warnings) ++kinds.try_emplace(warning.code, &warning, 0).first->second.second;
+  }
+  std::vector<Warning> summary;
+  for (const auto& [code, kind] : kinds) {
+    Warning warning = *kind.first;
+    if (const auto of_set = code_for_sets(code)) {
+      warning.code = *of_set;
+      for (auto& [name, value] : warning.values)
+        if (name == "file") name = "first";
+      warning.values.insert(warning.values.begin(), {{"images", kind.second}, {"all", uint64_t{by_image.size()}}});
+    }
+    summary.push_back(std::move(warning));
+  }
+  return summary;
+}
+
 class ImageSet : public BtfMeasurement {
  public:
   ImageSet(const ImageSetSource& source, const BtfLoadOptions& options)
-      : options_(options), elsewhere_(pictures_elsewhere(source)) {
+      : options_(options), warnings_(pictures_elsewhere(source)) {
     OrderedPictures pictures = ordered(source);
     layout_ = std::move(pictures.layout);
     paths_ = std::move(pictures.paths);
     scale_ = scale_of(values_of(options, paths_[0]));
-    check_sizes();
+    read_headers();
     grid_.tile_metres = tile_of(options, paths_[0]);
     name_source(source);
-    has_alpha_ = has_alpha(read_picture_header(paths_[0], picture_options()));
   }
 
   void read_pairs(uint64_t first, uint64_t count, std::span<HalfBits> values) const override {
@@ -159,7 +196,7 @@ class ImageSet : public BtfMeasurement {
             {"first_picture", paths_[0]}};
   }
 
-  std::vector<Warning> warnings() const override { return elsewhere_; }
+  std::vector<Warning> warnings() const override { return warnings_; }
 
  private:
   PictureOptions picture_options() const {
@@ -174,15 +211,23 @@ class ImageSet : public BtfMeasurement {
 
   static bool has_alpha(const Picture& picture) { return picture.channels == 2 || picture.channels == 4; }
 
-  void check_sizes() {
+  /// Checks the sizes of all images and collects their warnings.
+  void read_headers() {
     const Picture first = read_picture_header(paths_[0], picture_options());
     if (first.width > static_cast<int>(kMaxTexelsAlong) || first.height > static_cast<int>(kMaxTexelsAlong)) {
       throw Error(Status::bad_data,
                   paths_[0] + ": has more than 16384 pixels along a side. Crop or scale the images of the set.");
     }
     grid_ = {static_cast<uint32_t>(first.width), static_cast<uint32_t>(first.height)};
-    tbb::parallel_for(size_t{1}, paths_.size(),
-                      [&](size_t i) { check_size(read_picture_header(paths_[i], picture_options()), i); });
+    has_alpha_ = has_alpha(first);
+    std::vector<std::vector<Warning>> warnings(paths_.size());
+    warnings[0] = first.warnings;
+    tbb::parallel_for(size_t{1}, paths_.size(), [&](size_t i) {
+      Picture picture = read_picture_header(paths_[i], picture_options());
+      check_size(picture, i);
+      warnings[i] = std::move(picture.warnings);
+    });
+    std::ranges::move(summarized(warnings), std::back_inserter(warnings_));
   }
 
   void check_size(const Picture& picture, uint64_t pair) const {
@@ -229,7 +274,7 @@ class ImageSet : public BtfMeasurement {
   }
 
   BtfLoadOptions options_;
-  std::vector<Warning> elsewhere_;  // of images outside the index's folder
+  std::vector<Warning> warnings_;
   ValueScale scale_;
   std::vector<std::string> paths_;
   bool has_alpha_ = false;  // whether the first image has alpha

@@ -12,6 +12,8 @@
 
 #include "base/error.h"
 #include "base/file.h"
+#include "base/text_head.h"
+#include "base/text_number.h"
 
 namespace velour {
 
@@ -20,6 +22,7 @@ namespace {
 
 /// Maximum depth of subfolders, in case a whole disk is given by mistake.
 constexpr int kMaxDepth = 3;
+constexpr double kMaxAngle = 1e6;  // degrees or radians; far beyond any azimuth
 constexpr size_t kMaxPictures = kMaxDirections * kMaxDirections;
 
 std::string lower_case(std::string_view text) {
@@ -31,12 +34,18 @@ std::string lower_case(std::string_view text) {
 bool is_letter(char c) { return std::isalpha(static_cast<unsigned char>(c)) != 0; }
 bool is_digit(char c) { return std::isdigit(static_cast<unsigned char>(c)) != 0; }
 
+/// Whether a comma before further digits follows a number: a decimal comma, or a separator before another number.
+bool is_decimal_comma(std::string_view after_number) {
+  return after_number.size() > 1 && after_number[0] == ',' && is_digit(after_number[1]);
+}
+
 struct KeyedAngle {
   size_t at;  // position of the key
   double degrees;
 };
 
-/// Degrees after `key`, which must occur exactly once as a separate word. `name` must be lower case.
+/// Degrees after `key`, which must occur exactly once as a separate word. `name` must be lower case. Empty also if the
+/// number is ambiguous (is_decimal_comma).
 std::optional<KeyedAngle> find_angle(std::string_view name, std::string_view key) {
   std::optional<KeyedAngle> found;
   for (size_t at = name.find(key); at != std::string_view::npos; at = name.find(key, at + 1)) {
@@ -46,7 +55,9 @@ std::optional<KeyedAngle> find_angle(std::string_view name, std::string_view key
     if (!word) continue;
     if (found) return std::nullopt;
     found = {at, 0};
-    std::from_chars(name.data() + number, name.data() + name.size(), found->degrees, std::chars_format::fixed);
+    const char* const name_end = name.data() + name.size();
+    const auto [end, error] = std::from_chars(name.data() + number, name_end, found->degrees, std::chars_format::fixed);
+    if (error != std::errc() || found->degrees > kMaxAngle || is_decimal_comma({end, name_end})) return std::nullopt;
   }
   return found;
 }
@@ -79,6 +90,20 @@ bool is_picture_name(const fs::path& path) {
   return std::ranges::find(kExtensions, extension) != kExtensions.end();
 }
 
+[[noreturn]] void refuse_name(const fs::path& path) {
+  std::string with_points = path.stem().string();
+  std::ranges::replace(with_points, ',', '.');
+  if (angles_of_name(with_points)) {
+    throw Error(Status::bad_data, path.string() +
+                                      ": the file name has a comma between digits, which may be a decimal comma or "
+                                      "separate two numbers. Rename the file, as '" +
+                                      with_points + path.extension().string() + "' if the angle has a fraction.");
+  }
+  throw Error(Status::bad_data, path.string() +
+                                    ": the file name does not contain the angles, as in '00081 tl015 pl000 tv000 "
+                                    "pv000.jpg'. Rename the file, or remove it from the folder.");
+}
+
 struct NamedPicture {
   std::string path;
   NamedAngles angles;
@@ -92,11 +117,7 @@ std::vector<NamedPicture> list_pictures(const std::string& folder) {
     const fs::path& path = at->path();
     if (path.filename().string().starts_with('.') || !is_picture_name(path) || !at->is_regular_file()) continue;
     const auto angles = angles_of_name(path.stem().string());
-    if (!angles) {
-      throw Error(Status::bad_data, path.string() +
-                                        ": the file name does not contain the angles, as in '00081 tl015 pl000 tv000 "
-                                        "pv000.jpg'. Rename the file, or remove it from the folder.");
-    }
+    if (!angles) refuse_name(path);
     if (pictures.size() == kMaxPictures)
       throw Error(Status::bad_data, folder + ": the folder contains more than 4096 x 4096 images.");
     pictures.push_back({path.string(), *angles});
@@ -213,7 +234,7 @@ Fields split(const std::string& line) {
   return fields;
 }
 
-/// Iterates over lines, numbered from 1. Skips comments and empty lines; strips the BOM and carriage returns.
+/// Iterates over lines, numbered from 1, that end with LF, CRLF or CR. Skips the BOM, comments and empty lines.
 class Lines {
  public:
   explicit Lines(std::string text) : text_(std::move(text)) {
@@ -221,11 +242,10 @@ class Lines {
   }
   bool next(std::string& line) {
     while (at_ < text_.size()) {
-      const size_t end = std::min(text_.find('\n', at_), text_.size());
+      const size_t end = std::min(text_.find_first_of("\r\n", at_), text_.size());
       line = text_.substr(at_, end - at_);
-      at_ = end + 1;
+      at_ = end + (text_.compare(end, 2, "\r\n") == 0 ? 2 : 1);
       ++number_;
-      if (line.ends_with('\r')) line.pop_back();
       const std::string content = trimmed(line);
       if (!content.empty() && content[0] != '#') return true;
     }
@@ -298,11 +318,9 @@ class CsvIndex {
 
   double number(const Fields& fields, const char* name) const {
     const std::string& text = fields[column(name)];
-    double value = 0;
-    const auto [end, failure] = std::from_chars(text.data(), text.data() + text.size(), value);
-    const bool whole = failure == std::errc() && end == text.data() + text.size();
-    if (!whole || !(value >= -1e6 && value <= 1e6))
-      fail(std::string("'") + name + "' is '" + text + "'; it must be a number");
+    const double value = number_from(text).value_or(NAN);
+    if (!(std::abs(value) <= kMaxAngle))
+      fail(std::string("'") + name + "' is '" + text + "'; it must be a number from -1000000 to 1000000, such as 15.5");
     const bool signs = std::string_view(name).starts_with("phi");
     if (value < 0 && !signs) fail(std::string("'") + name + "' is negative; it must be at least 0");
     return value;
@@ -357,10 +375,9 @@ std::vector<PairPicture> read_csv_index(const std::string& path, BtfAngles angle
 }
 
 bool is_csv_index(const std::string& path) {
-  Lines lines(text_of(read_file_head(path, size_t{1} << 16)));
-  std::string line;
-  if (!lines.next(line)) return false;
-  const Fields columns = split(line);
+  constexpr size_t kLongestLine = 1 << 16;
+  const std::string head = read_text_head(path, kLongestLine, Comments::hash_lines);
+  const Fields columns = split(head.substr(0, head.find('\n')));
   return std::ranges::all_of(kNeeded, [&](const char* name) { return std::ranges::count(columns, name) > 0; });
 }
 

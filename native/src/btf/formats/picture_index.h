@@ -18,7 +18,8 @@ struct NamedAngles {
 };
 
 /// Parses a file name without extension: tl, pl, tv and pv, each once, in any order and case, followed by degrees and
-/// separated by anything but letters. Empty if one is missing or repeated.
+/// separated by anything but letters. Empty if one is missing or repeated, or has a comma before further digits
+/// ("tl15,5"): a decimal comma, or a separator.
 std::optional<NamedAngles> angles_of_name(std::string_view stem);
 
 /// "00081 tl015 pl000 tv000 pv000" for whole degrees below 1000.

@@ -135,11 +135,13 @@ class AllChannels : public OpenExr {
     set_part(0);
     names_ = channels_of(exr_header());
     std::ranges::sort(names_, {}, order_of);
-    check_sampling(names_);
     header_.channels = static_cast<int>(names_.size());
   }
 
-  void read(std::span<float> values) override { read_channels(names_, values); }
+  void read(std::span<float> values) override {
+    check_sampling(names_);
+    read_channels(names_, values);
+  }
 
   ExrHeader description() const {
     ExrHeader result{
@@ -156,6 +158,31 @@ class AllChannels : public OpenExr {
  private:
   std::vector<std::string> names_;
 };
+
+std::string lower(std::string_view text) {
+  std::string result(text);
+  std::ranges::transform(result, result.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return result;
+}
+
+std::string listed(std::span<const std::string> names) {
+  constexpr size_t kShown = 12;
+  std::string text;
+  for (size_t i = 0; i < std::min(names.size(), kShown); ++i) text += (i > 0 ? ", " : "") + names[i];
+  return names.size() > kShown ? text + " and " + std::to_string(names.size() - kShown) + " more" : text;
+}
+
+/// How surely channels are the colors of a picture: depths are single channels, sometimes called Y, and normals X, Y,
+/// Z.
+int rank_of(const ExrColors& colors) {
+  const auto is_named = [&](const std::string& channel, std::string_view names) {
+    return !channel.empty() && names.find(lower(channel).back()) != std::string_view::npos;
+  };
+  if (colors.kind == ExrColors::Kind::luminance_chroma) return 2;
+  if (colors.kind == ExrColors::Kind::gray) return is_named(colors.names[0], "y") ? 1 : 0;
+  return std::ranges::any_of(colors.names, [&](const std::string& name) { return is_named(name, "xyz"); }) ? 0 : 2;
+}
+constexpr int kNamedPart = 3;
 
 /// The picture of a file: the colors of one layer of one part.
 class ExrPicture : public OpenExr {
@@ -186,29 +213,36 @@ class ExrPicture : public OpenExr {
   }
 
  private:
-  /// Chooses the first part with a clear choice of channels; `layer` may also name a part.
+  /// Chooses the first of the parts with the best choice of channels; `layer` may also name a part.
   void choose(const std::string& layer) {
     std::string refusal;
-    int flat = 0;
+    std::vector<std::string> parts;
+    int best = -1;
     for (int part = 0; part < part_count(); ++part) {
       const Imf::Header& header = file().header(part);
       if (header.hasType() && Imf::isDeepData(header.type())) continue;
-      ++flat;
-      const bool is_part = header.hasName() && !layer.empty() && header.name() == layer;
+      const std::string name = header.hasName() ? header.name() : "";
+      parts.push_back(name);
+      const bool is_part = !layer.empty() && lower(name) == lower(layer);
       try {
-        colors_ = choose_exr_colors(channels_of(header), is_part ? "" : layer, path_);
+        ExrColors colors = choose_exr_colors(channels_of(header), is_part ? "" : layer, path_);
+        const int rank = is_part ? kNamedPart : rank_of(colors);
+        if (rank <= best) continue;
+        best = rank;
+        colors_ = std::move(colors);
         set_part(part);
-        return set_names();
       } catch (const Error& error) {
-        if (is_part || refusal.empty()) refusal = error.what();
-        if (is_part) break;
+        if (is_part) throw;
+        if (refusal.empty()) refusal = error.what();
       }
     }
-    if (flat == 0) {
+    if (best >= 0) return set_names();
+    if (parts.empty()) {
       throw Error(
           Status::unsupported,
           path_ + ": is a deep image, which is not supported. Flatten it (oiiotool --flatten, or in your compositor).");
     }
+    if (parts.size() > 1 && !layer.empty()) refusal += " Its parts are " + listed(parts) + ".";
     throw Error(Status::unsupported, refusal);
   }
 
@@ -341,12 +375,6 @@ constexpr std::pair<std::string_view, Role> kRoleNames[] = {
 /// Names that programs give to the layer with the complete picture.
 constexpr std::string_view kWholePicture[] = {"combined", "rgb", "rgba", "beauty"};
 
-std::string lower(std::string_view text) {
-  std::string result(text);
-  std::ranges::transform(result, result.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return result;
-}
-
 std::string layer_of(const std::string& channel) {
   const size_t dot = channel.rfind('.');
   return dot == std::string::npos ? "" : channel.substr(0, dot);
@@ -381,13 +409,6 @@ Layers layers_of(std::span<const std::string> channels) {
     }
   }
   return layers;
-}
-
-std::string listed(std::span<const std::string> names) {
-  constexpr size_t kShown = 12;
-  std::string text;
-  for (size_t i = 0; i < std::min(names.size(), kShown); ++i) text += (i > 0 ? ", " : "") + names[i];
-  return names.size() > kShown ? text + " and " + std::to_string(names.size() - kShown) + " more" : text;
 }
 
 [[noreturn]] void refuse(const std::string& path, const std::string& what) {

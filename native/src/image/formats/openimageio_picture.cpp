@@ -1,4 +1,4 @@
-// Reads PNG, JPEG and BMP files and encodes PNG files through the module that links OpenImageIO.
+// Reads PNG and JPEG files and encodes PNG files through the module that links OpenImageIO.
 #include "base/error.h"
 #include "base/private_library.h"
 #include "image/open_picture.h"
@@ -32,7 +32,6 @@ const char* reader_of(PictureFormat format) {
     case PictureFormat::jpeg:
       return "jpeg";
     case PictureFormat::bmp:
-      return "bmp";
     case PictureFormat::tiff:
     case PictureFormat::exr:
     case PictureFormat::radiance:

@@ -17,6 +17,7 @@ namespace velour {
 namespace {
 
 constexpr uint64_t kMaxLibraryBytes = uint64_t{1} << 30;  // maximum size of an allocation by libtiff
+constexpr int kMaxPages = 4096;
 
 /// Memory stream for libtiff.
 struct Source {
@@ -66,7 +67,9 @@ struct Storage {
   uint16_t compression = COMPRESSION_NONE;
   bool is_planar = false;  // one plane per sample
   bool is_cmyk = false, is_palette = false;
+  bool is_luv = false;   // libtiff decodes it to floats: CIE X, Y, Z or Y
   bool by_rgba = false;  // libtiff converts it to 8-bit RGB
+  uint16_t colors = 1;   // samples of a pixel before further ones such as alpha
   size_t planes() const { return is_planar ? samples : 1; }
   /// Samples per pixel of a plane.
   size_t samples_together() const { return is_planar ? 1 : samples; }
@@ -90,30 +93,32 @@ Storage storage_of(TIFF* tiff) {
   s.is_palette = s.photometric == PHOTOMETRIC_PALETTE;
   s.is_planar = tag<uint16_t>(tiff, TIFFTAG_PLANARCONFIG, PLANARCONFIG_CONTIG) == PLANARCONFIG_SEPARATE &&
                 s.samples > 1 && !s.is_palette;
-  s.is_cmyk = s.photometric == PHOTOMETRIC_SEPARATED && s.samples == 4 &&
+  s.is_cmyk = s.photometric == PHOTOMETRIC_SEPARATED && s.samples >= 4 &&
               tag<uint16_t>(tiff, TIFFTAG_INKSET, INKSET_CMYK) == INKSET_CMYK;
   const bool is_jpeg = s.compression == COMPRESSION_JPEG || s.compression == COMPRESSION_OJPEG;
-  const uint16_t rare[] = {PHOTOMETRIC_YCBCR,  PHOTOMETRIC_CIELAB, PHOTOMETRIC_ICCLAB,
-                           PHOTOMETRIC_ITULAB, PHOTOMETRIC_LOGL,   PHOTOMETRIC_LOGLUV};
+  const uint16_t rare[] = {PHOTOMETRIC_YCBCR, PHOTOMETRIC_CIELAB, PHOTOMETRIC_ICCLAB, PHOTOMETRIC_ITULAB};
   s.by_rgba = std::ranges::count(rare, s.photometric) > 0 || (is_jpeg && s.samples != 3);
+  s.is_luv = s.photometric == PHOTOMETRIC_LOGL || s.photometric == PHOTOMETRIC_LOGLUV;
+  if (s.is_luv && TIFFSetField(tiff, TIFFTAG_SGILOGDATAFMT, SGILOGDATAFMT_FLOAT) == 1) {
+    s.bits = 32;
+    s.format = SAMPLEFORMAT_IEEEFP;
+  }
+  s.colors = s.is_cmyk ? 4 : s.photometric == PHOTOMETRIC_RGB || s.photometric == PHOTOMETRIC_LOGLUV ? 3 : 1;
   return s;
 }
 
-/// Alpha channel; -1: none. Unless the file says otherwise, the 2nd of two or the 4th of four or more channels.
-int alpha_of(TIFF* tiff, const Storage& s, int channels) {
-  if (s.is_cmyk || s.is_palette) return -1;
-  int alpha = channels == 2 ? 1 : channels >= 4 ? 3 : -1;
+/// Sample with the alpha of a pixel; -1: none. Unless the file says otherwise, the first after the colors.
+int alpha_of(TIFF* tiff, const Storage& s) {
+  if (s.is_palette || s.samples <= s.colors) return -1;
   uint16_t count = 0;
   const uint16_t* extra = nullptr;
-  if (TIFFGetField(tiff, TIFFTAG_EXTRASAMPLES, &count, &extra) != 1 || extra == nullptr) return alpha;
-  const bool is_gray = s.photometric == PHOTOMETRIC_MINISWHITE || s.photometric == PHOTOMETRIC_MINISBLACK ||
-                       s.photometric == PHOTOMETRIC_MASK;
-  for (int i = 0, c = is_gray ? 1 : 3; i < count && c < channels; ++i, ++c) {
-    const bool is_alpha = extra[i] == EXTRASAMPLE_ASSOCALPHA || extra[i] == EXTRASAMPLE_UNASSALPHA;
-    if (is_alpha) alpha = c;
-    if (!is_alpha && alpha == c) alpha = -1;
+  if (TIFFGetField(tiff, TIFFTAG_EXTRASAMPLES, &count, &extra) != 1 || extra == nullptr || count == 0) {
+    return s.is_cmyk ? -1 : s.colors;
   }
-  return alpha;
+  for (int i = 0; i < count && s.colors + i < s.samples; ++i) {
+    if (extra[i] == EXTRASAMPLE_ASSOCALPHA || extra[i] == EXTRASAMPLE_UNASSALPHA) return s.colors + i;
+  }
+  return -1;
 }
 
 /// Decodes the samples of a row of one plane. Integers become fractions of the largest; those of unusual bit depths are
@@ -188,6 +193,7 @@ class ByLibtiff : public OpenPicture {
                                   &Source::close, &Source::size, nullptr, nullptr, options));
     TIFFOpenOptionsFree(options);
     if (!tiff_) refuse();
+    choose_page();
     storage_ = storage_of(tiff_.get());
     if (!storage_.by_rgba) check_storage();
     if (!storage_.by_rgba && storage_.is_palette) read_palette();
@@ -213,11 +219,37 @@ class ByLibtiff : public OpenPicture {
                 input_error(path_, complaint_.text.empty() ? "the file is damaged." : complaint_.text));
   }
 
+  /// The first page that is no reduced copy of another.
+  void choose_page() {
+    const auto is_reduced = [&] {
+      return (tag<uint32_t>(tiff_.get(), TIFFTAG_SUBFILETYPE, 0) & FILETYPE_REDUCEDIMAGE) != 0;
+    };
+    uint64_t chosen = 0, pages = is_reduced() ? 0 : 1;
+    for (int page = 1; page < kMaxPages && TIFFReadDirectory(tiff_.get()) == 1; ++page) {
+      if (is_reduced()) continue;
+      if (pages++ == 0) chosen = static_cast<uint64_t>(page);
+    }
+    if (TIFFSetDirectory(tiff_.get(), static_cast<tdir_t>(chosen)) != 1) refuse();
+    complaint_.text.clear();
+    if (pages > 1) {
+      header_.warnings.push_back(
+          warning<WarningCode::parts_ignored>({{"file", path_}, {"part", "page 1"}, {"parts", pages}}));
+    }
+  }
+
   void check_storage() const {
     const bool is_odd_palette =
         storage_.is_palette && (storage_.samples != 1 || storage_.bits > 16 || storage_.format != SAMPLEFORMAT_UINT);
-    const bool are_odd_inks = storage_.is_cmyk && storage_.is_planar;
-    if (Samples(storage_).are_known() && !is_odd_palette && !are_odd_inks) return;
+    const uint16_t known[] = {PHOTOMETRIC_MINISWHITE, PHOTOMETRIC_MINISBLACK, PHOTOMETRIC_RGB,   PHOTOMETRIC_PALETTE,
+                              PHOTOMETRIC_MASK,       PHOTOMETRIC_LOGL,       PHOTOMETRIC_LOGLUV};
+    if (std::ranges::count(known, storage_.photometric) == 0 && !storage_.is_cmyk) {
+      throw Error(Status::unsupported, path_ + ": TIFF files with photometric interpretation " +
+                                           std::to_string(storage_.photometric) +
+                                           " (raw, depth or inks other than CMYK) are not supported. Convert the "
+                                           "image to EXR or PNG.");
+    }
+    const bool are_odd_inks = storage_.is_cmyk && storage_.is_planar, is_short = storage_.samples < storage_.colors;
+    if (Samples(storage_).are_known() && !is_odd_palette && !are_odd_inks && !is_short) return;
     throw Error(Status::unsupported, path_ + ": TIFF files with " + std::to_string(storage_.samples) + " samples of " +
                                          std::to_string(storage_.bits) + " bits in sample format " +
                                          std::to_string(storage_.format) +
@@ -228,12 +260,28 @@ class ByLibtiff : public OpenPicture {
     constexpr uint32_t kMost = std::numeric_limits<int>::max();
     header_.width = static_cast<int>(std::min(storage_.width, kMost));
     header_.height = static_cast<int>(std::min(storage_.height, kMost));
-    header_.channels = storage_.is_cmyk || storage_.is_palette ? 3 : storage_.samples;
-    if (storage_.by_rgba) header_.channels = std::min<int>(header_.channels, 4);
+    if (storage_.by_rgba) {
+      header_.channels = std::min<int>(storage_.samples, 4);
+      if (header_.channels % 2 == 0) header_.alpha_channel = header_.channels - 1;
+    } else {
+      header_.channels = storage_.is_palette ? 3 : std::min<int>(storage_.colors, 3);
+      alpha_ = alpha_of(tiff_.get(), storage_);
+      if (alpha_ >= 0) header_.alpha_channel = header_.channels++;
+      note_extra_samples();
+    }
     header_.integers = storage_.by_rgba || !Samples(storage_).is_float();
-    header_.alpha_channel = alpha_of(tiff_.get(), storage_, header_.channels);
     const auto orientation = tag<uint16_t>(tiff_.get(), TIFFTAG_ORIENTATION, ORIENTATION_TOPLEFT);
     if (orientation >= 1 && orientation <= 8) header_.orientation = static_cast<Orientation>(orientation);
+  }
+
+  void note_extra_samples() {
+    std::vector<std::string> ignored;
+    for (int i = storage_.colors; i < storage_.samples; ++i) {
+      if (i != alpha_) ignored.push_back("sample " + std::to_string(i + 1));
+    }
+    if (ignored.empty()) return;
+    header_.warnings.push_back(
+        warning<WarningCode::channels_ignored>({{"file", path_}, {"layer", ""}, {"channels", ignored}}));
   }
 
   void read_rgba(std::span<float> values) {
@@ -297,33 +345,52 @@ class ByLibtiff : public OpenPicture {
       float* to = values.data() + (first + i) * channels;
       if (storage_.is_palette) {
         for (size_t c = 0; c < 3; ++c) to[c] = palette(c, samples.stored(row, i));
-      } else if (storage_.is_cmyk) {
-        add_ink(samples, row, i, to);
-      } else {
-        for (size_t c = 0; c < together; ++c) {
-          const float value = samples.value(row, i * together + c);
-          to[plane + c] = storage_.photometric == PHOTOMETRIC_MINISWHITE && header_.integers ? 1.0f - value : value;
-        }
+        continue;
       }
+      for (size_t s = plane; s < plane + together; ++s) {
+        const bool is_alpha = static_cast<int>(s) == alpha_;
+        if (!is_alpha && (storage_.is_cmyk || s >= storage_.colors)) continue;
+        const float value = samples.value(row, i * together + s - plane);
+        const bool is_dark = storage_.photometric == PHOTOMETRIC_MINISWHITE && header_.integers && !is_alpha;
+        to[is_alpha ? static_cast<size_t>(header_.alpha_channel) : s] = is_dark ? 1.0f - value : value;
+      }
+      if (storage_.is_cmyk) add_ink(samples, row, i * together, to);
+      if (storage_.photometric == PHOTOMETRIC_LOGLUV) to_rgb(to);
     }
+  }
+
+  /// CIE X, Y, Z to Rec. 709, both with a white of equal energies, as libtiff converts them.
+  static void to_rgb(float* color) {
+    const float x = color[0], y = color[1], z = color[2];
+    color[0] = 2.690f * x - 1.276f * y - 0.414f * z;
+    color[1] = -1.022f * x + 1.978f * y + 0.044f * z;
+    color[2] = 0.061f * x - 0.224f * y + 1.163f * z;
   }
 
   void read_palette() {
     uint16_t* maps[3] = {};
     if (TIFFGetField(tiff_.get(), TIFFTAG_COLORMAP, &maps[0], &maps[1], &maps[2]) != 1) refuse();
-    for (size_t c = 0; c < 3; ++c) palette_[c].assign(maps[c], maps[c] + (size_t{1} << storage_.bits));
+    uint16_t largest = 0;
+    for (size_t c = 0; c < 3; ++c) {
+      palette_[c].assign(maps[c], maps[c] + (size_t{1} << storage_.bits));
+      largest = std::max(largest, std::ranges::max(palette_[c]));
+    }
+    if (largest > 255) return;
+    for (std::vector<uint16_t>& colors : palette_) {  // some programs write bytes
+      for (uint16_t& color : colors) color = static_cast<uint16_t>(257 * color);
+    }
   }
 
   float palette(size_t channel, uint64_t code) const {
     return static_cast<float>(palette_[channel][code] / 257) / 255.0f;
   }
 
-  /// Converts CMYK to RGB: each ink absorbs in proportion to its coverage.
-  static void add_ink(const Samples& samples, const uint8_t* row, size_t i, float* to) {
-    const float paper = 1.0f - samples.value(row, 4 * i + 3);
+  /// Converts CMYK to RGB: each ink absorbs in proportion to its coverage. `first`: sample of the pixel's cyan.
+  static void add_ink(const Samples& samples, const uint8_t* row, size_t first, float* to) {
+    const float paper = 1.0f - samples.value(row, first + 3);
     const auto highest = static_cast<float>(samples.largest());
     for (size_t c = 0; c < 3; ++c) {
-      const float share = (1.0f - samples.value(row, 4 * i + c)) * paper;
+      const float share = (1.0f - samples.value(row, first + c)) * paper;
       to[c] = samples.is_float() ? share : std::floor(share * highest + 0.5f) / highest;
     }
   }
@@ -334,6 +401,7 @@ class ByLibtiff : public OpenPicture {
   Complaint complaint_;
   std::unique_ptr<TIFF, Closer> tiff_;
   Storage storage_;
+  int alpha_ = -1;  // sample with the alpha; -1: none
   std::array<std::vector<uint16_t>, 3> palette_;
   PictureHeader header_;
 };

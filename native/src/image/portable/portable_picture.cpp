@@ -25,10 +25,10 @@ class WithOrientation : public OpenPicture {
 std::unique_ptr<OpenPicture> open_format(const std::string& path, PictureFormat format) {
   switch (format) {
     case PictureFormat::png:
-    case PictureFormat::bmp:
-      return open_by_stb(path, format);
+      return open_by_stb(path);
     case PictureFormat::jpeg:
       return open_jpeg(path);
+    case PictureFormat::bmp:
     case PictureFormat::tiff:
     case PictureFormat::exr:
     case PictureFormat::radiance:

@@ -1,4 +1,4 @@
-// Reads PNG, JPEG and BMP files in a library without OpenImageIO, which would bring some 260 others, using libraries
+// Reads PNG and JPEG files in a library without OpenImageIO, which would bring some 260 others, using libraries
 // linked into it. Values, channels and refusals match OpenImageIO's (portable_picture_test.cpp). Internal to image/.
 #pragma once
 
@@ -9,8 +9,8 @@
 
 namespace velour {
 
-/// Opens PNG and BMP files with stb_image.
-std::unique_ptr<OpenPicture> open_by_stb(const std::string& path, PictureFormat format);
+/// Opens PNG files with stb_image.
+std::unique_ptr<OpenPicture> open_by_stb(const std::string& path);
 /// Opens JPEG files with libjpeg; CMYK becomes RGB.
 std::unique_ptr<OpenPicture> open_jpeg(const std::string& path);
 

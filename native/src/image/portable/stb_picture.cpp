@@ -1,4 +1,6 @@
-// Reads PNG and BMP files and encodes PNG files in a library without OpenImageIO.
+// Reads and encodes PNG files in a library without OpenImageIO.
+#include <zlib.h>
+
 #include <algorithm>
 #include <cstring>
 #include <string_view>
@@ -11,7 +13,6 @@
 #define STB_IMAGE_IMPLEMENTATION
 #define STBI_NO_STDIO
 #define STBI_ONLY_PNG
-#define STBI_ONLY_BMP
 #include <stb/stb_image.h>
 #define STB_IMAGE_WRITE_STATIC
 #define STB_IMAGE_WRITE_IMPLEMENTATION
@@ -57,28 +58,54 @@ struct Free {
 template <typename T>
 using Values = std::unique_ptr<T, Free<T>>;
 
-/// Whether a PNG file has a transparent color (tRNS), which stb_image does not report before it decodes.
-bool has_clear_color(std::span<const uint8_t> png) {
-  constexpr size_t kSignature = 8, kBesideData = 12;
+uint32_t big_endian(std::span<const uint8_t> bytes) {
+  return uint32_t{bytes[0]} << 24 | uint32_t{bytes[1]} << 16 | uint32_t{bytes[2]} << 8 | uint32_t{bytes[3]};
+}
+
+/// Calls `use` with the type and the bytes (type, data) of each chunk of a PNG file, until it returns false.
+template <class Use>
+void for_each_chunk(std::span<const uint8_t> png, const Use& use) {
+  constexpr size_t kSignature = 8, kBesideData = 12;  // length, type and checksum
   for (uint64_t at = kSignature; at + kBesideData <= png.size();) {
-    const auto byte = [&](uint64_t i) { return uint64_t{png[at + i]}; };
-    const uint64_t length = byte(0) << 24 | byte(1) << 16 | byte(2) << 8 | byte(3);
+    const uint64_t length = big_endian(png.subspan(at));
+    if (length > png.size() - at - kBesideData) return;
     const std::string_view type(reinterpret_cast<const char*>(&png[at + 4]), 4);
-    if (type == "tRNS" || type == "IDAT") return type == "tRNS";
+    if (!use(type, png.subspan(at + 4, length + 8))) return;
     at += kBesideData + length;
   }
-  return false;
+}
+
+/// Whether a PNG file has a transparent color (tRNS), which stb_image does not report before it decodes.
+bool has_clear_color(std::span<const uint8_t> png) {
+  bool found = false;
+  for_each_chunk(png, [&](std::string_view type, std::span<const uint8_t>) {
+    found = type == "tRNS";
+    return !found && type != "IDAT";
+  });
+  return found;
+}
+
+/// Throws Error(bad_data) for a wrong checksum of a chunk that pixels need, which stb_image does not compare.
+void check_checksums(const std::string& path, std::span<const uint8_t> png) {
+  for_each_chunk(png, [&](std::string_view type, std::span<const uint8_t> chunk) {
+    const auto bytes = chunk.first(chunk.size() - 4);
+    const bool is_critical = (type[0] & 0x20) == 0;
+    if (is_critical && crc32_z(0, bytes.data(), bytes.size()) != big_endian(chunk.last(4))) {
+      throw Error(Status::bad_data, input_error(path, std::string(type) + ": CRC error"));
+    }
+    return true;
+  });
 }
 
 class ByStb : public OpenPicture {
  public:
-  ByStb(const std::string& path, PictureFormat format) : path_(path), bytes_(read_file(path)) {
+  explicit ByStb(const std::string& path) : path_(path), bytes_(read_file(path)) {
     const auto* data = bytes_.data();
     const int size = static_cast<int>(std::min<size_t>(bytes_.size(), INT32_MAX));
     if (stbi_info_from_memory(data, size, &header_.width, &header_.height, &header_.channels) == 0)
       throw Error(Status::bad_data, input_error(path, stbi_failure_reason()));
     header_.integers = true;
-    if (format == PictureFormat::png && header_.channels % 2 == 1 && has_clear_color(bytes_)) ++header_.channels;
+    if (header_.channels % 2 == 1 && has_clear_color(bytes_)) ++header_.channels;
     sixteen_bits_ = stbi_is_16_bit_from_memory(data, size) != 0;
     if (header_.channels % 2 == 0) header_.alpha_channel = header_.channels - 1;
   }
@@ -87,6 +114,7 @@ class ByStb : public OpenPicture {
   std::optional<std::string> text(const std::string&) const override { return std::nullopt; }
 
   void read(std::span<float> values) override {
+    check_checksums(path_, bytes_);
     if (sixteen_bits_) return copy(load<stbi_us>(stbi_load_16_from_callbacks), 65535.0f, values);
     copy(load<stbi_uc>(stbi_load_from_callbacks), 255.0f, values);
   }
@@ -122,9 +150,7 @@ void append(void* to, void* data, int size) {
 
 }  // namespace
 
-std::unique_ptr<OpenPicture> open_by_stb(const std::string& path, PictureFormat format) {
-  return std::make_unique<ByStb>(path, format);
-}
+std::unique_ptr<OpenPicture> open_by_stb(const std::string& path) { return std::make_unique<ByStb>(path); }
 
 std::vector<uint8_t> png_of(const std::string& path, int width, int height, int channels,
                             std::span<const uint8_t> values) {

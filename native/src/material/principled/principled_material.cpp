@@ -32,6 +32,8 @@ float rough_enough(float roughness) { return std::clamp(roughness, kMinRoughness
 
 Rgb within_one(const Rgb& color) { return glm::clamp(color, Rgb(0), Rgb(1)); }
 
+Rgb positive(const Rgb& color) { return glm::max(color, Rgb(0)); }
+
 Interreflection facets_of_coat(const PrincipledParameters& p, float cosine) {
   return {p.coat_lobe, rough_enough(p.coat_roughness), cosine};
 }
@@ -59,7 +61,7 @@ SheenLobe sheen_of(const PrincipledParameters& p, float cosine) {
 
 Rgb through_sheen(const PrincipledParameters& p, float cosine) {
   if (!(p.sheen > 0)) return Rgb(1);
-  const Rgb albedo = p.sheen * sheen_of(p, cosine).albedo * glm::max(p.sheen_tint, Rgb(0));
+  const Rgb albedo = p.sheen * sheen_of(p, cosine).albedo * positive(p.sheen_tint);
   return Rgb(std::clamp(1 - std::max({albedo.r, albedo.g, albedo.b}), 0.0f, 1.0f));
 }
 
@@ -67,7 +69,7 @@ Rgb through_coat(const PrincipledParameters& p, float cosine, const LobeFilter& 
   if (!(p.coat > 0)) return Rgb(1);
   const float weight = std::min(p.coat, 1.0f), eta = index_of_coat(p);
   const float depth = 1 / std::sqrt(1 - (1 - cosine * cosine) / (eta * eta));
-  const Rgb tint = glm::pow(glm::max(p.coat_tint, Rgb(0)), Rgb(depth));
+  const Rgb tint = glm::pow(positive(p.coat_tint), Rgb(depth));
   const float passing = filter.diffuse_only ? 1 : 1 - weight * albedo_of_coat(p, cosine);
   return passing * glm::mix(Rgb(1), tint, weight);
 }
@@ -100,15 +102,14 @@ Rgb through_top(const PrincipledParameters& p, float cosine, float coat_cosine, 
 }
 
 GlassParameters glass_of(const PrincipledParameters& p) {
-  const Rgb color = within_one(p.base_color);
   GlassParameters glass{
       .roughness = p.roughness, .refraction_roughness = p.roughness, .index = p.index, .lobe = p.lobe};
   if (p.formula == PrincipledFormula::layered) {
-    glass.refracted = glm::sqrt(color);
-    glass.at_normal = glm::max(p.specular_tint, Rgb(0));
+    glass.refracted = glm::sqrt(within_one(p.base_color));
+    glass.at_normal = positive(p.specular_tint);
     return glass;
   }
-  glass.refracted = color;
+  glass.refracted = positive(p.base_color);
   if (p.lobe == GgxLobe::whole) return glass;
   glass.fresnel = GlassFresnel::surface;
   const float added = std::clamp(p.transmission_roughness, 0.0f, 1.0f);
@@ -119,7 +120,7 @@ GlassParameters glass_of(const PrincipledParameters& p) {
 PrincipledPoint::PrincipledPoint(const PrincipledParameters& p, const Vec3& wv, const LobeFilter& filter,
                                  float glass_albedo)
     : base_color(within_one(p.base_color)),
-      specular_tint(glm::max(p.specular_tint, Rgb(0))),
+      specular_tint(positive(p.specular_tint)),
       roughness(rough_enough(p.roughness)),
       formula(p.formula),
       lobe(p.lobe) {
@@ -161,7 +162,7 @@ void PrincipledPoint::set_layered(const PrincipledParameters& p, float cosine, c
   const float metallic = std::clamp(p.metallic, 0.0f, 1.0f), transmission = std::clamp(p.transmission, 0.0f, 1.0f);
   if (p.sheen > 0) {
     sheen_lobe = sheen_of(p, cosine);
-    sheen = p.sheen * sheen_lobe.albedo * glm::max(p.sheen_tint, Rgb(0));
+    sheen = p.sheen * sheen_lobe.albedo * positive(p.sheen_tint);
   }
   coat = weight_of_coat(p, cosine) * through_sheen(p, cosine).r;
   const Rgb through = through_top(p, cosine, cosine, filter), not_metal = through * (1 - metallic);
@@ -182,7 +183,7 @@ void PrincipledPoint::set_layered(const PrincipledParameters& p, float cosine, c
         facets.gain_of_whole(mean) * glm::mix(normal, Rgb(1), ggx_albedo::mean_rise(roughness, cosine, eta));
     if (!filter.diffuse_only) passing = std::clamp(1 - std::max({of_lobe.r, of_lobe.g, of_lobe.b}), 0.0f, 1.0f);
   }
-  diffuse = base_color * (rest * passing / kPi);
+  diffuse = positive(p.base_color) * (rest * passing / kPi);
 }
 
 void PrincipledPoint::set_disney(const PrincipledParameters& p, float cosine, const LobeFilter& filter) {
@@ -192,17 +193,17 @@ void PrincipledPoint::set_disney(const PrincipledParameters& p, float cosine, co
   coat_alpha =
       Vec2(std::clamp(p.coat_roughness * p.coat_roughness, std::max(kMinClearCoatAlpha, filter.min_alpha), 0.999f));
   metal = Rgb(0);
-  sheen = glm::max(p.sheen_tint, Rgb(0)) * (std::max(p.sheen, 0.0f) * (1 - metallic) * (1 - transmission));
+  sheen = positive(p.sheen_tint) * (std::max(p.sheen, 0.0f) * (1 - metallic) * (1 - transmission));
   glass = Rgb(transmission * (1 - metallic));
   const float normal = 0.08f * std::max(p.specular, 0.0f);
-  const Rgb color = within_one(glm::mix(normal * specular_tint, base_color, metallic));
+  const Rgb color = within_one(glm::mix(normal * specular_tint, positive(p.base_color), metallic));
   // Cycles simulates the random walk between facets with the filtered roughness.
   const float walked = std::max(roughness, std::sqrt(filter.min_alpha));
   const Rgb gain = Interreflection(lobe, walked, cosine).gain(glm::mix(color, Rgb(1), mean_rise()));
   const Rgb reflecting = gain * (1 - transmission * (1 - metallic));
   at_normal = reflecting * color;
   rise = reflecting * (1.0f - color);
-  diffuse = base_color * ((1 - metallic) * (1 - transmission) / kPi);
+  diffuse = positive(p.base_color) * ((1 - metallic) * (1 - transmission) / kPi);
 }
 
 /// The shares affect only the noise, so a metal's albedo is approximated by that of a smooth one.

@@ -42,7 +42,12 @@ float smooth_step(float t) { return t * t * (3.0f - 2.0f * t); }
 
 }  // namespace
 
-Lamp::Lamp(const Light& light) : type_(light.type), casts_shadow_(light.casts_shadow), sphere_(light.sphere) {
+Lamp::Lamp(const Light& light)
+    : type_(light.type),
+      casts_shadow_(light.casts_shadow),
+      is_mirrored_(light.is_mirrored),
+      sphere_(light.sphere),
+      hidden_from_(light.hidden_from) {
   switch (type_) {
     case Light::Type::sun:
       set_sun(light);
@@ -63,7 +68,7 @@ Lamp::Lamp(const Light& light) : type_(light.type), casts_shadow_(light.casts_sh
 
 void Lamp::set_sun(const Light& light) {
   axis_ = glm::normalize(light.light_to_world.column(2));
-  power_ = luminance(light.color);
+  power_ = luminance(glm::abs(light.color));
   const float sine = std::sin(0.5f * std::clamp(light.angle, 0.0f, kPi));
   sharp_ = !(sine > 1e-5f);  // two arc seconds: below what float32 directions resolve
   if (sharp_) {
@@ -78,7 +83,7 @@ void Lamp::set_sun(const Light& light) {
 void Lamp::set_point(const Light& light) {
   center_ = light.light_to_world.column(3);
   radius_ = std::max(light.size.x, 0.0f);
-  power_ = luminance(light.color);
+  power_ = luminance(glm::abs(light.color));
   sharp_ = radius_ == 0.0f;
   if (sharp_) {
     intensity_ = light.color / (4.0f * kPi);
@@ -123,7 +128,7 @@ void Lamp::set_area(const Light& light) {
   const float length = glm::length(map.column(2));
   shine_ = length > 0.0f ? -map.column(2) / length : axis_;
   if (drop_between(shine_, axis_) < kStraight) shine_ = axis_;
-  power_ = luminance(light.color);
+  power_ = luminance(glm::abs(light.color));
   radiance_ = light.color / (kPi * area_);
   if (type_ == Light::Type::rectangle) radiance_ *= quarter / (glm::length(half_x_) * glm::length(half_y_));
   set_spread(light.spread);

@@ -14,6 +14,9 @@ class Lamp {
   bool sharp() const { return sharp_; }
   bool black() const { return !(intensity() > 0.0f); }
   bool casts_shadow() const { return casts_shadow_; }
+  bool is_mirrored() const { return is_mirrored_; }
+  /// `kind`: a bit of `hidden`.
+  bool is_hidden(uint8_t kind) const { return (hidden_from_ & kind) != 0; }
 
   /// For the choice among lights that are not suns (light_tree.h).
   bool distant() const { return type_ == Light::Type::sun; }
@@ -72,7 +75,8 @@ class Lamp {
   float cone(const Vec3& position, Vec3& axis) const;
 
   Light::Type type_;
-  bool sharp_ = false, casts_shadow_ = true, sphere_ = true, cosine_ = false;
+  bool sharp_ = false, casts_shadow_ = true, is_mirrored_ = true, sphere_ = true, cosine_ = false;
+  uint8_t hidden_from_ = 0;
   float power_ = 0;      // luminance; for a sun, per square meter
   Rgb radiance_{0.0f};   // lights with extent, before falloff
   Rgb intensity_{0.0f};  // delta lights: irradiance of a sun, W/sr of a point

@@ -18,7 +18,7 @@ constexpr float kMinOfMean = 1.0f / 64;  // minimum luminance of a triangle, as 
 constexpr float kMaxLuminance = 1e20f;
 
 float luminance_at(const SurfaceMaterial& m, const SurfaceSite& site) {
-  const float light = luminance(m.emission + m.material->emission(site)) * m.material->alpha(site);
+  const float light = luminance(glm::abs(m.emission + m.material->emission(site))) * m.material->alpha(site);
   return light > 0.0f ? std::min(light, kMaxLuminance) : 0.0f;
 }
 
@@ -182,7 +182,8 @@ void EmissiveMeshes::find_places(const Progress& progress) {
   for (uint32_t k = 0; k < place_of_.size(); ++k) {
     const Scene::Instance& i = scene_.instances()[k];
     const bool emissive = std::ranges::any_of(i.materials, [&](uint32_t m) { return emits_[m] != 0; });
-    if (!emissive || (i.hidden & hidden::kFromBounces) != 0) continue;
+    constexpr uint8_t kAll = hidden::kFromBounces | hidden::kFromTransmission;
+    if (!emissive || (i.hidden & kAll) == kAll) continue;
     const auto [found, is_new] = group_of.emplace(GroupKey(i), static_cast<uint32_t>(groups_.size()));
     if (is_new) groups_.emplace_back(scene_, i, progress);
     place_of_[k] = static_cast<uint32_t>(places_.size());
@@ -194,8 +195,8 @@ void EmissiveMeshes::find_lights(const Progress& progress) {
   for (uint32_t p = 0; p < places_.size(); ++p) {
     progress.check();
     Place& place = places_[p];
-    if (group(place).tree().empty()) continue;
     const Scene::Instance& i = scene_.instances()[place.instance];
+    if (group(place).tree().empty() || (i.hidden & hidden::kFromBounces) != 0) continue;
     const auto power = static_cast<float>(group(place).power(scene_.traced_mesh(i), i.object_to_world));
     if (!(power > 0.0f) || !std::isfinite(power)) continue;
     place.light = static_cast<uint32_t>(lights_.size());

@@ -51,9 +51,9 @@ struct EmissiveHit {
   Hit hit;
 };
 
-/// All triangles of emissive materials, except those of instances hidden from bounces and those under a shell, whose
-/// emission only bounces find. Geometry and hierarchies belong to the scene, which must outlive this. Immutable;
-/// thread-safe; allocates only for what it finds.
+/// All triangles of emissive materials, except those of instances hidden from bounces and transmission and those under
+/// a shell, whose emission only bounces find. Instances hidden from bounces alone are not light-sampled. Geometry and
+/// hierarchies belong to the scene, which must outlive this. Immutable; thread-safe; allocates only for what it finds.
 class EmissiveMeshes {
  public:
   /// `scene` must be committed. Throws Error(cancelled): preparing the choice among millions of triangles takes
@@ -66,6 +66,8 @@ class EmissiveMeshes {
 
   /// Whether a hit of the scene's rays is on one of these surfaces.
   bool holds(const Hit& hit) const;
+  /// Whether a kind of ray, a bit of `hidden`, passes through the instance.
+  bool is_hidden(const Hit& hit, uint8_t kind) const { return (scene_.instances()[hit.instance].hidden & kind) != 0; }
   /// Whether that surface is light-sampled.
   bool draws(const Hit& hit) const;
 

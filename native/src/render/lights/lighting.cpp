@@ -217,6 +217,7 @@ int find_sharp_light(const Lighting& lighting, const Vertex& vertex, PathNumbers
     const Lamp::Irradiance light = lamps[chosen].irradiance(vertex.position);
     const Vec3 wl = vertex.frame.to_local(light.direction);
     if (!vertex.receives_light(wl, light.direction)) continue;
+    if (lamps[chosen].is_hidden(vertex.kind_along(light.direction))) continue;
     const float share = all ? 1.0f : 1.0f / (static_cast<float>(room) * probability);
     found[static_cast<size_t>(lit++)] = {&lamps[chosen], light.distance, wl, light.direction,
                                          share * light.perpendicular};

@@ -240,12 +240,15 @@ void DirectLight::settle(std::span<const Receiver> receivers, Output output) {
     // Cycles finds a sky of one color by bounces, which start on the mesh.
     const Vertex& vertex = receivers[terms_.receiver[i]].vertex;
     const Vec3 wl_world = terms_.world.get(i);
+    if ((environment_hidden_ & vertex.kind_along(wl_world)) != 0) continue;
     if (even_sky_ && !vertex.receives(vertex.frame.to_local(wl_world), wl_world)) continue;
     const Rgb of_sky = terms_.weight.v[i] * terms_.environment.get(i);
     add(i, of_sky * reflected_sky(receivers, i), std::numeric_limits<float>::infinity(), true, !even_sky_);
   }
   for (const LampHit& hit : terms_.lamp_hits) {
     const int i = hit.direction;
+    if (hit.lamp->is_hidden(receivers[terms_.receiver[i]].vertex.kind_along(terms_.world.get(i)))) continue;
+    if (along_deltas_ && !hit.lamp->is_mirrored()) continue;
     const Rgb radiance = hit.lamp->radiance(terms_.world.get(i));
     add(i, terms_.lamp_weight.v[i] * radiance * terms_.reflected.get(i), hit.distance, hit.lamp->casts_shadow(), true);
   }
@@ -272,6 +275,7 @@ void DirectLight::settle_emissive(std::span<const Receiver> receivers, Output ou
   for (const LightTerms::EmissiveTerm& g : terms_.emissive) {
     const Receiver& receiver = receivers[terms_.receiver[g.direction]];
     if (along_deltas_ && !counts_emissive(g.hit)) continue;
+    if (lighting_.emissive().is_hidden(g.hit, receiver.vertex.kind_along(terms_.world.get(g.direction)))) continue;
     const auto [radiance, far] = lighting_.emissive().light(rays[g.direction], g.hit, receiver.vertex.cone);
     const Rgb light = g.weight * radiance * terms_.reflected.get(g.direction);
     settle_term(receivers, g.direction,
@@ -327,7 +331,8 @@ std::optional<Continuation> DirectLight::extend(const Receiver& receiver, size_t
 }
 
 PathPast DirectLight::past_after(const Receiver& receiver, size_t place, const Continuation& continuation) const {
-  PathPast past{std::min(receiver.past.least_density, continuation.density), false};
+  PathPast past{std::min(receiver.past.least_density, continuation.density), false,
+                receiver.vertex.goes_through(continuation.ray.direction)};
   if (options_.light_paths.reflective_caustics) return past;
   const PreparedBrdf& brdf = work_[place].prepared.brdf();
   past.was_diffuse = receiver.numbers->label() < brdf.diffuse_share(continuation.wl, continuation.density);

@@ -119,6 +119,7 @@ class DirectLight {
         sampling_(surface_sampling(options.strategy)),
         mixing_(mixing_of(options)),
         shares_rays_(VisibleRays(scene).plain()),
+        environment_hidden_(scene.environment_hidden()),
         even_sky_(!lighting.environment().black() && lighting.environment().equirectangular() == nullptr),
         sky_(sky) {}
 
@@ -264,7 +265,8 @@ class DirectLight {
   const SurfaceSampling sampling_;
   const Mixing mixing_;     // of the strategy
   const bool shares_rays_;  // whether a continuation ray may also serve as a shadow ray
-  const bool even_sky_;     // the environment has one color
+  const uint8_t environment_hidden_;
+  const bool even_sky_;  // the environment has one color
   const EnvironmentProductSampler* sky_;
 
   ScratchArena arena_;  // for the points of a batch, until the next gather()

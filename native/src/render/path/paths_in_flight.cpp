@@ -4,12 +4,20 @@
 
 namespace velour {
 
-void PathsInFlight::trace(uint8_t kind) {
+void PathsInFlight::trace_continued() {
+  kinds_.clear();
+  for (const Path& path : paths) {
+    kinds_.push_back(path.past.was_transmitted ? hidden::kFromTransmission : hidden::kFromBounces);
+  }
+  trace(continued(kinds_));
+}
+
+void PathsInFlight::trace(const RayKinds& kinds) {
   hits.resize(rays.size());
   passed_.resize(visible.dims() ? rays.size() : 0);
   decisions_.clear();
   for (size_t i = 0; i < passed_.size(); ++i) decisions_.push_back(paths[i].numbers.decisions());
-  visible.intersect(rays, hits.data(), kind, visible.dims() ? passed_.data() : nullptr, decisions_);
+  visible.intersect(rays, hits.data(), kinds, visible.dims() ? passed_.data() : nullptr, decisions_);
   for (size_t i = 0; i < passed_.size(); ++i) paths[i].throughput *= passed_[i];
   add_awaited();
 }
@@ -72,7 +80,7 @@ void IndirectLight::resolve(int surfaces) {
   for (int met = 1; met <= surfaces && !flight_.paths.empty(); ++met) {
     meet_surfaces();
     flight_.gather(met < surfaces, nullptr);
-    flight_.trace(hidden::kFromBounces);
+    flight_.trace_continued();
   }
 }
 

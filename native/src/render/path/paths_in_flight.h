@@ -28,8 +28,9 @@ struct PathsInFlight {
       : visible(scene), light(scene, lighting, options, sky) {}
 
   /// Finds where the rays end and how much of their light is transmitted on the way. Adds light that waited for them to
-  /// the samples. `kind`: a bit of `hidden`.
-  void trace(uint8_t kind);
+  /// the samples.
+  void trace_camera_rays() { trace({hidden::kFromCamera}); }
+  void trace_continued();
   /// Adds the light at the receivers to the samples. Afterwards `paths` holds their continuations if they `go_on`,
   /// otherwise none. Returns the number of shadow rays, which `log` (may be null) receives.
   size_t gather(bool go_on, RayLog* log);
@@ -45,12 +46,14 @@ struct PathsInFlight {
  private:
   /// Adds the continuations of the receivers of the last DirectLight::gather().
   void extend(std::span<const Receiver> batch);
+  void trace(const RayKinds& kinds);
   void add_awaited();
 
   ShadowQueue shadows_;
   std::vector<AwaitedLight> awaited_;  // `place` is the index of the path
   std::vector<Path> next_;
   std::vector<Ray> next_rays_;
+  std::vector<uint8_t> kinds_;  // by path
   // Per ray, if rays may pass through surfaces.
   std::vector<Rgb> passed_;
   std::vector<RayDecisions> decisions_;

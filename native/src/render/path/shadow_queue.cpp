@@ -113,14 +113,15 @@ VisibleRays::VisibleRays(const Scene& scene)
   for (const Scene::Instance& i : scene.instances()) hidden_ |= i.hidden;
 }
 
-void VisibleRays::intersect(std::span<const Ray> rays, Hit* hits, uint8_t kind, Rgb* passed,
+void VisibleRays::intersect(std::span<const Ray> rays, Hit* hits, const RayKinds& kinds, Rgb* passed,
                             std::span<const RayDecisions> decisions) const {
   scene_.rays().intersect(rays, hits);
   if (passed != nullptr) std::fill_n(passed, rays.size(), Rgb(1.0f));
-  if (sees_all(kind)) return;
+  if (sees_all(kinds.all)) return;
   for (size_t done = 0; done < rays.size(); done += kTogether) {
     const size_t count = std::min(kTogether, rays.size() - done);
-    pass_on(rays.subspan(done, count), hits + done, kind, behind(passed, done), part(decisions, done, count));
+    pass_on(rays.subspan(done, count), hits + done, kinds.part(done, count), behind(passed, done),
+            part(decisions, done, count));
   }
 }
 
@@ -155,7 +156,7 @@ void VisibleRays::occluded_some(std::span<const Ray> rays, uint8_t* blocked, Rgb
     asked[count] = rays[i];
     number[count++] = static_cast<uint8_t>(i);
   }
-  intersect({asked, count}, hit, hidden::kFromShadows, passed != nullptr ? through : nullptr);
+  intersect({asked, count}, hit, {hidden::kFromShadows}, passed != nullptr ? through : nullptr);
   for (size_t i = 0; i < count; ++i) {
     blocked[number[i]] = hit[i].instance != kNoHit;
     if (passed != nullptr) passed[number[i]] = through[i];
@@ -187,12 +188,12 @@ bool VisibleRays::meets_surface(Pending& pending, size_t i, uint8_t kind, Rgb* p
   return false;
 }
 
-void VisibleRays::decide(Pending& pending, uint8_t kind, bool* met, Rgb* passed,
+void VisibleRays::decide(Pending& pending, const RayKinds& kinds, bool* met, Rgb* passed,
                          std::span<const RayDecisions> decisions) const {
   ShellWays ways(pending.hit, met);
   for (size_t i = 0; i < pending.count; ++i) {
     const Hit& hit = pending.hit[i];
-    met[i] = !pending.again(i) && meets_surface(pending, i, kind, passed, decisions);
+    met[i] = !pending.again(i) && meets_surface(pending, i, kinds[pending.number[i]], passed, decisions);
     if (!met[i] || !shells_ || !scene_.has_shell(hit)) continue;
     const ShellCrossing crossing(scene_, pending.ray[i], hit);
     met[i] = false;
@@ -201,7 +202,7 @@ void VisibleRays::decide(Pending& pending, uint8_t kind, bool* met, Rgb* passed,
   ways.trace();
 }
 
-void VisibleRays::pass_on(std::span<const Ray> rays, Hit* hits, uint8_t kind, Rgb* passed,
+void VisibleRays::pass_on(std::span<const Ray> rays, Hit* hits, const RayKinds& kinds, Rgb* passed,
                           std::span<const RayDecisions> decisions) const {
   Pending pending;
   for (size_t i = 0; i < rays.size(); ++i) {
@@ -209,7 +210,7 @@ void VisibleRays::pass_on(std::span<const Ray> rays, Hit* hits, uint8_t kind, Rg
   }
   bool met[kTogether];
   while (pending.count > 0) {
-    decide(pending, kind, met, passed, decisions);
+    decide(pending, kinds, met, passed, decisions);
     size_t left = 0;
     for (size_t i = 0; i < pending.count; ++i) {
       hits[pending.number[i]] = pending.hit[i];

@@ -12,6 +12,20 @@ namespace velour {
 
 // Rays that respect the alpha, shells and visibility of surfaces.
 
+/// Kinds of rays: bits of `hidden`, the same for all rays or one each.
+struct RayKinds {
+  uint8_t all = hidden::kFromBounces;  // that occur
+  std::span<const uint8_t> each = {};
+
+  uint8_t operator[](size_t ray) const { return each.empty() ? all : each[ray]; }
+  RayKinds part(size_t first, size_t count) const { return {all, each.empty() ? each : each.subspan(first, count)}; }
+};
+
+/// Rays after the first bounce.
+inline RayKinds continued(std::span<const uint8_t> each) {
+  return {hidden::kFromBounces | hidden::kFromTransmission, each};
+}
+
 /// Like EmbreeScene, but a ray hits a surface of a material that is not opaque with the probability of its alpha there,
 /// and otherwise continues straight: correct on average. The decision uses the ray's own numbers, or the bits of ray
 /// and triangle, so it depends on neither threads nor order. Shadow rays decide nothing: they pass, dimmed by the
@@ -23,9 +37,8 @@ class VisibleRays {
   /// `scene` must be committed, and its materials must not change.
   explicit VisibleRays(const Scene& scene);
 
-  /// Distances are from the origin, whatever was passed on the way. `kind`: a bit of `hidden`. `decisions`: one per
-  /// ray, or none.
-  void intersect(std::span<const Ray> rays, Hit* hits, uint8_t kind = hidden::kFromBounces, Rgb* passed = nullptr,
+  /// Distances are from the origin, whatever was passed on the way. `decisions`: one per ray, or none.
+  void intersect(std::span<const Ray> rays, Hit* hits, const RayKinds& kinds = {}, Rgb* passed = nullptr,
                  std::span<const RayDecisions> decisions = {}) const;
   bool occluded(const Ray& ray, Rgb* passed = nullptr) const;
   /// Batch version, as in EmbreeScene::occluded.
@@ -34,17 +47,18 @@ class VisibleRays {
   /// Whether rays may pass through surfaces. Otherwise `passed` is always 1, and there is nothing to decide.
   bool dims() const { return dims_; }
   /// Whether shadow and bounce rays simply hit the nearest surface.
-  bool plain() const { return sees_all(hidden::kFromShadows | hidden::kFromBounces); }
+  bool plain() const { return sees_all(hidden::kFromShadows | hidden::kFromBounces | hidden::kFromTransmission); }
 
  private:
   struct Pending;
   /// Replaces `hits`, the nearest surfaces of at most as many `rays` as Pending holds, by the nearest that do not let
   /// the rays pass.
-  void pass_on(std::span<const Ray> rays, Hit* hits, uint8_t kind, Rgb* passed,
+  void pass_on(std::span<const Ray> rays, Hit* hits, const RayKinds& kinds, Rgb* passed,
                std::span<const RayDecisions> decisions) const;
   /// Decides which of the pending rays hit the surfaces that they have reached. Multiplies what passes into `passed`,
   /// by index of the ray.
-  void decide(Pending& pending, uint8_t kind, bool* met, Rgb* passed, std::span<const RayDecisions> decisions) const;
+  void decide(Pending& pending, const RayKinds& kinds, bool* met, Rgb* passed,
+              std::span<const RayDecisions> decisions) const;
   bool meets_surface(Pending& pending, size_t i, uint8_t kind, Rgb* passed,
                      std::span<const RayDecisions> decisions) const;
   bool sees_all(uint8_t kind) const { return all_opaque_ && (hidden_ & kind) == 0; }

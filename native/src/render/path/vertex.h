@@ -153,10 +153,18 @@ struct Vertex {
   /// Radiance that the surface emits toward the viewer, in the working space.
   Rgb emission() const;
 
+  bool goes_through(const Vec3& direction_world) const {
+    return transmits && glm::dot(direction_world, geometric_normal) < 0.0f;
+  }
+  /// Kind of a ray that continues along a direction: a bit of `hidden`.
+  uint8_t kind_along(const Vec3& direction_world) const {
+    return goes_through(direction_world) ? hidden::kFromTransmission : hidden::kFromBounces;
+  }
+
   /// Ray that starts on the side of the surface that it goes to.
   Ray ray(const Vec3& direction_world, float far) const {
-    const bool through = transmits && glm::dot(direction_world, geometric_normal) < 0.0f;
-    return {position + (through ? -through_offset : offset) * geometric_normal, 0.0f, direction_world, far, time};
+    const float off = goes_through(direction_world) ? -through_offset : offset;
+    return {position + off * geometric_normal, 0.0f, direction_world, far, time};
   }
 
   /// Ray toward light. Directions close to the horizon start on the smooth surface, so that coarse meshes with smooth

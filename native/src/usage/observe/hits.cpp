@@ -28,8 +28,9 @@ void ViewTracer::follow(uint64_t first, uint64_t end, SeenWeights& seen) {
   for (int depth = 0; depth <= options_.bounces && !paths_.empty(); ++depth) {
     hits_.resize(rays_.size());
     passed_.resize(visible_.dims() ? rays_.size() : 0);
-    visible_.intersect(rays_, hits_.data(), depth == 0 ? hidden::kFromCamera : hidden::kFromBounces,
-                       visible_.dims() ? passed_.data() : nullptr);
+    const RayKinds kinds = depth == 0 ? RayKinds{hidden::kFromCamera} : continued(kinds_);
+    visible_.intersect(rays_, hits_.data(), kinds, visible_.dims() ? passed_.data() : nullptr);
+    kinds_.clear();
     for (size_t i = 0; i < passed_.size(); ++i) paths_[i].throughput *= passed_[i];
     next_.clear();
     next_rays_.clear();
@@ -93,6 +94,7 @@ void ViewTracer::go_on(const Vertex& vertex, const Path& path) {
   numbers.next_vertex();
   next_.push_back({numbers, continuation->throughput, path.cell, vertex.cone});
   next_rays_.push_back(continuation->ray);
+  kinds_.push_back(vertex.kind_along(continuation->ray.direction));
 }
 
 HitLight HitLightRecorder::record(const Vertex& vertex, int bounces, uint64_t key) {
@@ -111,7 +113,7 @@ void HitLightRecorder::record_half(const Vertex& vertex, int bounces, uint64_t k
   direct_[half].gather_incident(vertex, numbers, kObservedDirections, bounces > 0, incident_);
   std::ranges::fill(light_, Rgb(0.0f));
   add_unoccluded_terms();
-  if (bounces > 0) add_surfaces(vertex.cone, bounces, key, half);
+  if (bounces > 0) add_surfaces(vertex, bounces, key, half);
   for (size_t i = 0; i < std::size(light_); ++i) add_term(wl_[i], light_[i]);
   add_sharp(vertex, numbers);
 }
@@ -131,12 +133,16 @@ void HitLightRecorder::add_unoccluded_terms() {
   }
 }
 
-void HitLightRecorder::add_surfaces(const RayCone& cone, int bounces, uint64_t key, int half) {
+void HitLightRecorder::add_surfaces(const Vertex& vertex, int bounces, uint64_t key, int half) {
   rays_.clear();
-  for (const IncidentLight::Path& path : incident_.paths) rays_.push_back(path.along.ray);
+  kinds_.clear();
+  for (const IncidentLight::Path& path : incident_.paths) {
+    rays_.push_back(path.along.ray);
+    kinds_.push_back(vertex.kind_along(path.along.ray.direction));
+  }
   hits_.resize(rays_.size());
   passed_.assign(rays_.size(), Rgb(1.0f));
-  visible_.intersect(rays_, hits_.data(), hidden::kFromBounces, visible_.dims() ? passed_.data() : nullptr);
+  visible_.intersect(rays_, hits_.data(), continued(kinds_), visible_.dims() ? passed_.data() : nullptr);
   IndirectLight& indirect = indirect_[half];
   indirect.clear();
   met_.clear();
@@ -145,7 +151,7 @@ void HitLightRecorder::add_surfaces(const RayCone& cone, int bounces, uint64_t k
     PathNumbers numbers(options_[half], key, static_cast<uint32_t>(i));
     numbers.next_vertex();
     met_.push_back(i);
-    indirect.add(rays_[i], cone, hits_[i], numbers);
+    indirect.add(rays_[i], vertex.cone, hits_[i], numbers);
   }
   indirect.resolve(bounces);
   for (size_t k = 0; k < met_.size(); ++k) {

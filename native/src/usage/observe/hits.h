@@ -75,6 +75,7 @@ class ViewTracer {
   DrawByWeight<SeenHit> draws_;
   std::vector<Path> paths_, next_;
   std::vector<Ray> rays_, next_rays_;  // by path
+  std::vector<uint8_t> kinds_;         // of continued rays, by path
   std::vector<Hit> hits_;
   std::vector<Rgb> passed_;  // by ray, if rays may change color
   ScratchArena arena_;
@@ -109,7 +110,7 @@ class HitLightRecorder {
   /// Lights, environment and emissive meshes.
   void add_unoccluded_terms();
   /// Light that surfaces reflect.
-  void add_surfaces(const RayCone& cone, int bounces, uint64_t key, int half);
+  void add_surfaces(const Vertex& vertex, int bounces, uint64_t key, int half);
   void add_sharp(const Vertex& vertex, PathNumbers& numbers);
   /// To the sum of a direction; drops light that is not finite, as the renderer does.
   void add(uint32_t direction, const Vec3& wl, const Rgb& light);
@@ -128,6 +129,7 @@ class HitLightRecorder {
   // For one half.
   IncidentLight incident_;
   std::vector<Ray> rays_;
+  std::vector<uint8_t> kinds_;  // by ray
   std::vector<Hit> hits_;
   std::vector<uint8_t> blocked_;
   std::vector<Rgb> passed_;  // transmittance of the rays

@@ -64,7 +64,7 @@ TEST(EmissiveMeshes, AQuadLightsAFloorInClosedForm) {
     for (const NamedStrategy& s : test::all_strategies()) {
       const bool blind = s.strategy != Strategy::light && !is_mixed(s.strategy);
       if (blind && k > 0 && !test::long_tests()) continue;  // what surfaces reflect does not know of lights
-      RenderOptions options = test::small_options(s.strategy, blind ? 1024 : 256);
+      RenderOptions options = test::small_options(s.strategy, blind ? 384 : 96);
       options.heuristic = s.heuristic;
       options.light_share = s.light_share;
       const std::string name = s.name + " place " + std::to_string(k);
@@ -128,13 +128,13 @@ TEST(EmissiveMeshes, DrawnRaysChangeNothingButNoise) {
   for (const int bounces : {0, 1}) {
     if (bounces == 0 && !test::long_tests()) continue;  // a bounce has direct light, too
     const Scene drawn = gallery(true);
-    const auto expected = pictures(gallery(false), {"cosine", Strategy::cosine}, 16384, 1'000'000, bounces);
+    const auto expected = pictures(gallery(false), {"cosine", Strategy::cosine}, 10240, 1'000'000, bounces);
     for (const NamedStrategy& s : test::all_strategies()) {
       const bool blind = s.strategy != Strategy::light && !is_mixed(s.strategy);
-      compare(s.name + " " + std::to_string(bounces), pictures(drawn, s, blind ? 2048 : 1024, 1, bounces), expected,
+      compare(s.name + " " + std::to_string(bounces), pictures(drawn, s, blind ? 1280 : 640, 1, bounces), expected,
               tests);
     }
-    compare("brighter", pictures(gallery(true, 1.05f), {"mis", Strategy::mis}, 1024, 1, bounces), expected, control);
+    compare("brighter", pictures(gallery(true, 1.05f), {"mis", Strategy::mis}, 640, 1, bounces), expected, control);
     EXPECT_LT(tests.smallest_bias("mis " + std::to_string(bounces) + " whole"), 0.05);
   }
   EXPECT_TRUE(tests.agree());
@@ -173,7 +173,7 @@ TEST(EmissiveMeshes, ThoseInFrontHideThoseBehind) {
     }
     scene.set_camera(test::camera_above(0.001f));
     scene.commit(1);
-    return test::mean_of(test::rendered(scene, test::small_options(strategy, 16384))) / static_cast<double>(kAlbedo);
+    return test::mean_of(test::rendered(scene, test::small_options(strategy, 4096))) / static_cast<double>(kAlbedo);
   };
   for (const Strategy strategy : {Strategy::cosine, Strategy::mis}) {
     EXPECT_NEAR(seen(0, strategy), 1, 0.02);

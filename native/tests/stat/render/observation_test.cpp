@@ -9,7 +9,7 @@ namespace {
 
 using test::ObservedLight;
 
-constexpr uint64_t kRenders = 12, kObservations = 64;
+constexpr uint64_t kRenders = 12, kObservations = 44;
 constexpr float kScales[] = {0, 0.5f, 1.5f, 2};
 constexpr double kStencil[] = {1.0 / 6, -8.0 / 6, 8.0 / 6, -1.0 / 6};  // of the derivative at 1, exact to degree 4
 
@@ -18,7 +18,7 @@ constexpr double kStencil[] = {1.0 / 6, -8.0 / 6, 8.0 / 6, -1.0 / 6};  // of the
 test::Estimate rendered_derivative(ObservedLight light, std::shared_ptr<const Material> material, int bounces) {
   std::vector<Scene> scenes;
   for (const float scale : kScales) scenes.push_back(test::observed_scene(light, scale, material));
-  RenderOptions options = test::small_options(Strategy::mis, 64);
+  RenderOptions options = test::small_options(Strategy::mis, 44);
   options.width = options.height = 32;
   options.bounces = bounces;
   test::RunningMean derivative;

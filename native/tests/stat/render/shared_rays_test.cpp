@@ -25,7 +25,7 @@ Scene with_speck(Scene scene) {
 }
 
 test::PictureMeans pictures(const Scene& scene, const NamedStrategy& s, uint64_t seed) {
-  RenderOptions options = test::small_options(s.strategy, 128);
+  RenderOptions options = test::small_options(s.strategy, 96);
   options.width = options.height = 16;
   options.heuristic = s.heuristic;
   options.split = 2;

@@ -186,32 +186,63 @@ TEST_F(ForeignExr, Tiles) {
   EXPECT_EQ(pixel_of(read_picture(path_), 5, 0), (std::vector<float>{1, 2, 3}));
 }
 
-TEST_F(ForeignExr, TheFirstPartWithColors) {
-  test::record_input("OpenEXR", "several parts", "the first one with colors, said");
-  const Channels color{{"B", 3}, {"G", 2}, {"R", 1}}, other{{"B", 6}, {"G", 5}, {"R", 4}};
+/// A file with the parts `parts`, by name.
+void write_parts(const std::string& path, const std::vector<std::pair<std::string, Channels>>& parts) {
   std::vector<Imf::Header> headers;
-  for (const auto& [name, channels] : std::vector<std::pair<std::string, Channels>>{
-           {"depth", {{"u", 0}, {"v", 0}}}, {"beauty", color}, {"other", other}}) {
+  for (const auto& [name, channels] : parts) {
     headers.push_back(header_of(channels, kWindow, kWindow));
     headers.back().setName(name);
     headers.back().setType(Imf::SCANLINEIMAGE);
   }
-  {
-    Imf::MultiPartOutputFile file(path_.c_str(), headers.data(), static_cast<int>(headers.size()));
-    const std::vector<Channels> all{{{"u", 0}, {"v", 0}}, color, other};
-    for (int i = 0; i < 3; ++i) {
-      Planes planes(all[static_cast<size_t>(i)], kWindow);
-      Imf::OutputPart part(file, i);
-      part.setFrameBuffer(planes.buffer());
-      part.writePixels(kHeight);
-    }
+  Imf::MultiPartOutputFile file(path.c_str(), headers.data(), static_cast<int>(headers.size()));
+  for (size_t i = 0; i < parts.size(); ++i) {
+    Planes planes(parts[i].second, kWindow);
+    Imf::OutputPart part(file, static_cast<int>(i));
+    part.setFrameBuffer(planes.buffer());
+    part.writePixels(kHeight);
   }
-  const Picture picture = read_picture(path_);
-  EXPECT_EQ(pixel_of(picture, 1, 1), (std::vector<float>{1, 2, 3}));
-  ASSERT_EQ(picture.warnings.size(), 1u);
-  EXPECT_EQ(picture.warnings[0],
-            warning<WarningCode::parts_ignored>({{"file", path_}, {"part", "beauty"}, {"parts", uint64_t{3}}}));
-  EXPECT_EQ(pixel_of(read_picture(path_, {.layer = "other"}), 1, 1), (std::vector<float>{4, 5, 6}));
+}
+
+const Channels kColor{{"B", 3}, {"G", 2}, {"R", 1}}, kOther{{"B", 6}, {"G", 5}, {"R", 4}};
+
+TEST_F(ForeignExr, TheFirstPartWithColors) {
+  test::record_input("OpenEXR", "several parts", "the first one with colors, said");
+  const std::vector<std::pair<std::string, Channels>> before{{"depth", {{"Z", 9}}},
+                                                             {"depthY", {{"Y", 9}}},
+                                                             {"normals", {{"X", 7}, {"Y", 8}, {"Z", 9}}},
+                                                             {"motion", {{"u", 0}, {"v", 0}}}};
+  for (const auto& first : before) {
+    SCOPED_TRACE(first.first);
+    write_parts(path_, {first, {"beauty", kColor}, {"other", kOther}});
+    const Picture picture = read_picture(path_);
+    EXPECT_EQ(pixel_of(picture, 1, 1), (std::vector<float>{1, 2, 3}));
+    ASSERT_EQ(picture.warnings.size(), 1u);
+    EXPECT_EQ(picture.warnings[0],
+              warning<WarningCode::parts_ignored>({{"file", path_}, {"part", "beauty"}, {"parts", uint64_t{3}}}));
+    EXPECT_EQ(pixel_of(read_picture(path_, {.layer = "Other"}), 1, 1), (std::vector<float>{4, 5, 6}));
+  }
+  write_parts(path_, {{"depth", {{"Z", 9}}}, {"mask", {{"Y", 5}}}});
+  EXPECT_EQ(pixel_of(read_picture(path_), 1, 1), std::vector<float>{5});
+  try {
+    read_picture(path_, {.layer = "sky"});
+    ADD_FAILURE();
+  } catch (const Error& error) {
+    EXPECT_NE(std::string(error.what()).find("Its parts are depth, mask."), std::string::npos) << error.what();
+  }
+}
+
+/// The memory that a picture takes is asked for by all channels, which need not have its resolution.
+TEST_F(ForeignExr, LuminanceAndChromaHaveASize) {
+  Imf::Header header(kWidth, kHeight);
+  {
+    Imf::RgbaOutputFile file(path_.c_str(), header, Imf::WRITE_YC);
+    std::vector<Imf::Rgba> pixels(kWidth * kHeight, Imf::Rgba(0.5f, 0.5f, 0.5f));
+    file.setFrameBuffer(pixels.data(), 1, kWidth);
+    file.writePixels(kHeight);
+  }
+  EXPECT_EQ(read_picture_channels_header(path_).width, kWidth);
+  EXPECT_EQ(read_picture_text(path_, "any"), std::nullopt);
+  EXPECT_THROW(read_picture_channels(path_), Error);
 }
 
 /// The same light in other primaries is the same picture.

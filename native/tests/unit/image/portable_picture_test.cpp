@@ -228,7 +228,6 @@ TEST(PortablePicture, TiffIsThatOfOpenImageIo) {
       {"gray 32", kGray, 1, 32},
       TiffCase("gray signed 16", kGray, 1, 16).numbers(SAMPLEFORMAT_INT),
       kGray2.with_extra(EXTRASAMPLE_UNASSALPHA),
-      kGray2.with_extra(EXTRASAMPLE_UNSPECIFIED),
       {"white is zero 1", PHOTOMETRIC_MINISWHITE, 1, 1},
       {"white is zero 8", PHOTOMETRIC_MINISWHITE, 1, 8},
       {"palette 1", PHOTOMETRIC_PALETTE, 1, 1},
@@ -270,6 +269,119 @@ TEST(PortablePicture, TiffWhoseZeroIsWhiteIsInvertedAtEveryDepth) {
     ASSERT_EQ(white.values.size(), black.values.size());
     for (size_t i = 0; i < white.values.size(); ++i) ASSERT_EQ(white.values[i], 1.0f - black.values[i]) << bits;
   }
+}
+
+std::string written_tiff(const char* name, uint16_t photometric, uint16_t samples,
+                         const std::function<void(TIFF*)>& more_tags, const std::vector<uint8_t>& row) {
+  const std::string path = test::scratch_folder() / (std::string(name) + ".tif");
+  TIFF* tiff = TIFFOpen(path.c_str(), "w");
+  set_tags(tiff, {name, photometric, samples, 8});
+  more_tags(tiff);
+  std::vector<uint8_t> line;
+  for (int x = 0; x < kWidth; ++x) line.insert(line.end(), row.begin(), row.end());
+  for (uint32_t y = 0; y < kHeight; ++y) TIFFWriteScanline(tiff, line.data(), y, 0);
+  TIFFClose(tiff);
+  return path;
+}
+
+std::vector<float> first_pixel(const std::string& path) {
+  const Decoded decoded = by_portable(path);
+  EXPECT_EQ(decoded.error, "");
+  return {decoded.values.begin(), decoded.values.begin() + decoded.channels};
+}
+
+/// Paper of 8 bits: red 200 / 255.
+TEST(PortablePicture, CmykKeepsItsColorsBesideFurtherSamples) {
+  const uint16_t extra[] = {EXTRASAMPLE_UNASSALPHA};
+  const auto with_alpha = [&](TIFF* tiff) { TIFFSetField(tiff, TIFFTAG_EXTRASAMPLES, 1, extra); };
+  const std::vector<float> color =
+      first_pixel(written_tiff("cmyka", PHOTOMETRIC_SEPARATED, 5, with_alpha, {55, 0, 255, 0, 51}));
+  ASSERT_EQ(color.size(), 4u);
+  EXPECT_NEAR(color[0], 200 / 255.0, 1e-6);
+  EXPECT_NEAR(color[1], 1, 1e-6);
+  EXPECT_NEAR(color[2], 0, 1e-6);
+  EXPECT_NEAR(color[3], 0.2, 1e-6);
+  const auto other_inks = [](TIFF* tiff) { TIFFSetField(tiff, TIFFTAG_INKSET, INKSET_MULTIINK); };
+  const std::string refused =
+      by_portable(written_tiff("inks", PHOTOMETRIC_SEPARATED, 4, other_inks, {1, 2, 3, 4})).error;
+  EXPECT_NE(refused.find("photometric interpretation 5"), std::string::npos) << refused;
+  test::record_input("TIFF", "CMYK with alpha", "read");
+  test::record_input("TIFF", "other inks, raw colors, depths", "refused");
+}
+
+TEST(PortablePicture, SamplesBeyondTheColorsAreNoted) {
+  const uint16_t extra[] = {EXTRASAMPLE_UNSPECIFIED, EXTRASAMPLE_ASSOCALPHA, EXTRASAMPLE_UNSPECIFIED};
+  const auto tags = [&](TIFF* tiff) { TIFFSetField(tiff, TIFFTAG_EXTRASAMPLES, 3, extra); };
+  const std::string path = written_tiff("passes", PHOTOMETRIC_RGB, 6, tags, {51, 102, 153, 1, 204, 2});
+  const std::vector<float> color = first_pixel(path);
+  ASSERT_EQ(color.size(), 4u);
+  for (size_t c = 0; c < 4; ++c) EXPECT_NEAR(color[c], 0.2f * static_cast<float>(c + 1), 1e-6);
+  const PictureHeader header = open_tiff(path)->header();
+  ASSERT_EQ(header.warnings.size(), 1u);
+  EXPECT_EQ(header.warnings[0],
+            warning<WarningCode::channels_ignored>(
+                {{"file", path}, {"layer", ""}, {"channels", std::vector<std::string>{"sample 4", "sample 6"}}}));
+  test::record_input("TIFF", "further samples", "alpha is read, others are ignored, said");
+}
+
+TEST(PortablePicture, PalettesOfBytesAreRead) {
+  const auto map = [](TIFF* tiff) {
+    std::vector<uint16_t> colors(256, 51);
+    TIFFSetField(tiff, TIFFTAG_COLORMAP, colors.data(), colors.data(), colors.data());
+  };
+  EXPECT_NEAR(first_pixel(written_tiff("bytes", PHOTOMETRIC_PALETTE, 1, map, {7}))[1], 0.2, 1e-6);
+}
+
+/// Light of 0.05 to 20 keeps its brightness and its color.
+TEST(PortablePicture, LogLuvKeepsItsRange) {
+  for (const bool is_color : {true, false}) {
+    const std::string path = test::scratch_folder() / "log.tif";
+    TIFF* tiff = TIFFOpen(path.c_str(), "w");
+    TiffCase c("log", is_color ? PHOTOMETRIC_LOGLUV : PHOTOMETRIC_LOGL, is_color ? 3 : 1, 32);
+    c.format = SAMPLEFORMAT_IEEEFP;
+    c.compression = COMPRESSION_SGILOG;
+    set_tags(tiff, c);
+    TIFFSetField(tiff, TIFFTAG_SGILOGDATAFMT, SGILOGDATAFMT_FLOAT);
+    for (uint32_t y = 0; y < kHeight; ++y) {
+      std::vector<float> line;
+      for (int x = 0; x < kWidth; ++x) {
+        const float bright = 0.05f * std::pow(400.0f, static_cast<float>(x) / (kWidth - 1));
+        for (int channel = 0; channel < c.samples; ++channel) line.push_back(bright);  // X = Y = Z: white
+      }
+      TIFFWriteScanline(tiff, line.data(), y, 0);
+    }
+    TIFFClose(tiff);
+    const Decoded decoded = by_portable(path);
+    ASSERT_EQ(decoded.channels, is_color ? 3 : 1) << decoded.error;
+    EXPECT_FALSE(decoded.integers);
+    for (int x = 0; x < kWidth; ++x) {
+      const float bright = 0.05f * std::pow(400.0f, static_cast<float>(x) / (kWidth - 1));
+      for (int channel = 0; channel < decoded.channels; ++channel) {
+        const float value = decoded.values[static_cast<size_t>(x * decoded.channels + channel)];
+        EXPECT_NEAR(value / bright, 1, 0.02) << x << ' ' << channel;
+      }
+    }
+  }
+  test::record_input("TIFF", "LogLuv, LogL", "converted to RGB, with their range");
+}
+
+TEST(PortablePicture, TheFirstPageOfFullSizeIsRead) {
+  const std::string path = test::scratch_folder() / "pages.tif";
+  TIFF* tiff = TIFFOpen(path.c_str(), "w");
+  for (const uint8_t value : std::initializer_list<uint8_t>{10, 51, 90}) {
+    set_tags(tiff, {"page", PHOTOMETRIC_MINISBLACK, 1, 8});
+    if (value == 10) TIFFSetField(tiff, TIFFTAG_SUBFILETYPE, FILETYPE_REDUCEDIMAGE);
+    std::vector<uint8_t> line(kWidth, value);
+    for (uint32_t y = 0; y < kHeight; ++y) TIFFWriteScanline(tiff, line.data(), y, 0);
+    TIFFWriteDirectory(tiff);
+  }
+  TIFFClose(tiff);
+  EXPECT_NEAR(first_pixel(path)[0], 0.2, 1e-6);
+  const PictureHeader header = open_tiff(path)->header();
+  ASSERT_EQ(header.warnings.size(), 1u);
+  EXPECT_EQ(header.warnings[0],
+            warning<WarningCode::parts_ignored>({{"file", path}, {"part", "page 1"}, {"parts", uint64_t{2}}}));
+  test::record_input("TIFF", "several pages, a thumbnail first", "the first page of full size, said");
 }
 
 /// libtiff turns what it converts, but picture.cpp does so for all files.
@@ -404,6 +516,15 @@ TEST(PortablePicture, PngIsThatOfOpenImageIo) {
   }
   test::record_input("PNG", "gray, palette, RGB, with alpha or tRNS; 1 to 16 bits, interlaced",
                      "read, by both builds alike");
+}
+
+TEST(PortablePicture, AWrongChecksumIsRefused) {
+  const std::string path = written({PNG_COLOR_TYPE_RGB, 8}, 999);
+  std::vector<uint8_t> bytes = read_file(path);
+  bytes[bytes.size() / 2] ^= 1;  // in the pixels
+  write_file(path, bytes);
+  EXPECT_NE(by_portable(path).error.find("CRC"), std::string::npos);
+  EXPECT_NE(by_openimageio(path, "png").error, "");
 }
 
 TEST(PortablePicture, DamagedTiffIsRefused) {

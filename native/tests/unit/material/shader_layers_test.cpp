@@ -157,6 +157,22 @@ TEST(GlossyMaterial, FacetsKeepTheLightThatTheySendToEachOther) {
   }
 }
 
+TEST(SingleNodes, ColorsAboveOneAreNotClamped) {
+  const Rgb one(0.75f, 0.25f, 0.5f), two = 2.0f * one;
+  const auto glossy = [](const Rgb& c) { return make_glossy_material({.color = c, .lobe = GgxLobe::single}); };
+  const auto rough = [](const Rgb& c) { return make_rough_diffuse_material({.color = c, .roughness = 0.5f}); };
+  const auto disney = [](const Rgb& c) {
+    return make_principled_material({.base_color = c, .specular = 0, .formula = PrincipledFormula::disney});
+  };
+  expect_near(f_of(*glossy(two)), 2.0f * f_of(*glossy(one)));
+  expect_near(f_of(*rough(two)), 2.0f * f_of(*rough(one)));
+  expect_near(f_of(*matte(two)), 2.0f * f_of(*matte(one)));
+  expect_near(f_of(*disney(two)) - f_of(*disney(Rgb(0.0f))), 2.0f * (f_of(*disney(one)) - f_of(*disney(Rgb(0.0f)))));
+  // Cycles clamps the reflectance of metals at normal incidence.
+  const auto metal = [](const Rgb& c) { return make_principled_material({.base_color = c, .metallic = 1}); };
+  expect_near(f_of(*metal(Rgb(2.0f))), f_of(*metal(Rgb(1.0f))));
+}
+
 TEST(RoughDiffuseMaterial, IsLambertWithoutRoughnessAndDarkerWithIt) {
   const auto albedo_of = [](float roughness, float theta_v) {
     return albedo(*make_rough_diffuse_material({.color = Rgb(0.8f), .roughness = roughness}), theta_v);

@@ -8,6 +8,7 @@
 #include "brdf/measure/held_out.h"
 #include "brdf/measure/irregular_samples.h"
 #include "measurement_support.h"
+#include "support/inputs.h"
 #include "support/test_data.h"
 
 namespace velour::cornell_test {
@@ -89,6 +90,35 @@ TEST(Cornell, InvalidSamplesAreCountedNotUsed) {
   EXPECT_EQ(measurement->samples().size(), 101u);
 }
 
+TEST(Cornell, NumbersMayHaveAPlusSign) {
+  test::record_input("Cornell .brdf", "numbers with a plus sign", "read");
+  const std::string plain = small_cornell(40, glossy_gray);
+  const size_t values = plain.find("700\n") + 4;
+  const std::string with_sign = plain.substr(0, values) + "+0.1 +0 +2e-1 0 +0.25 0.25 0.25\n" + plain.substr(values);
+  const auto measurement = read(with_sign);
+  EXPECT_EQ(measurement->samples().size(), 41u);
+  EXPECT_NEAR(measurement->samples()[0].f.g, 0.25, 1e-5);
+}
+
+TEST(Cornell, NumbersBeyondADoubleAreCountedOrZero) {
+  test::record_input("Cornell .brdf", "values too large or too small for a double", "not finite, counted; 0");
+  const auto measurement =
+      read(small_cornell(100, glossy_gray) + "0.1 0 0.2 0 1e400 1 1\n0.1 0 0.2 0 -1e400 1 1\n0.1 0 0.2 0 1e-400 1 1\n");
+  EXPECT_EQ(measurement->counts().not_finite, 2u);
+  EXPECT_EQ(measurement->counts().valid, 101u);
+}
+
+TEST(Cornell, WordsAreNamedWithTheirLine) {
+  test::record_input("Cornell .brdf", "decimal commas, other words", "refused with the line");
+  for (const char* end : {"\n", "\r\n", "\r"}) {
+    const std::string text =
+        std::string("# two lines") + end + "# of comment" + end + "1 550" + end + "0,5 0 0.1 0 1" + end;
+    EXPECT_EQ(refusal(text),
+              "x.brdf: line 4 has '0,5' where a number is expected; write numbers as 0.17 or 1.7e-1, separated by "
+              "blanks.");
+  }
+}
+
 TEST(Cornell, FarFromAllSamplesIsNotCovered) {
   std::string text = "1 550\n";
   for (int i = 0; i < 40; ++i)
@@ -126,15 +156,13 @@ TEST(Cornell, TruncationIsSeenUnlessASampleEndsThere) {
 }
 
 TEST(Cornell, IsToldFromOtherText) {
-  const auto looks = [](const std::string& text) {
-    return looks_like_cornell(std::vector<uint8_t>(text.begin(), text.end()));
-  };
+  const auto looks = [](std::string_view text) { return looks_like_cornell(text); };
   EXPECT_TRUE(looks("# hello\n3 400 550 700"));
   EXPECT_FALSE(looks("v 1 2 3\nf 1 2 3"));
   EXPECT_FALSE(looks("{\"a\": 1}"));
   EXPECT_FALSE(looks("3 4 5 6"));
   EXPECT_FALSE(looks(""));
-  EXPECT_FALSE(looks(std::string("3 400 \0", 7)));
+  EXPECT_FALSE(looks(std::string_view("3 400 \0", 7)));
 }
 
 class Krylon : public ::testing::Test {

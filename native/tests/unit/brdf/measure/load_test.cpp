@@ -76,6 +76,18 @@ TEST(Load, CornellBehindCommentsOfAnyLength) {
   }
 }
 
+/// The count and the first wavelength may be far apart.
+TEST(Load, CornellWithCommentsBetweenItsFirstNumbers) {
+  test::record_input("Cornell .brdf", "long comments between count and wavelengths", "read");
+  const std::string path = test::scratch_folder() / "a.brdf";
+  std::string text = text_of_cornell("", "\n");
+  std::string comment;
+  for (int i = 0; i < 4000; ++i) comment += "# about the wavelengths\n";
+  text.replace(1, 1, " # one\n" + comment);
+  write_file(path, bytes_of(text));
+  EXPECT_EQ(load_measurement(path)->samples().size(), 60u);
+}
+
 TEST(Load, IrregularSamplesCanBeCancelled) {
   const std::string path = test::scratch_folder() / "a.brdf";
   write_file(path, bytes_of(text_of_cornell("", "\n")));
@@ -91,17 +103,37 @@ TEST(Load, IrregularSamplesCanBeCancelled) {
 }
 
 TEST(Load, NamesOtherFormatsAndWhatToDo) {
+  const std::string license = "<!--" + std::string(100000, ' ') + "license -->";
   const std::pair<std::string, const char*> others[] = {
-      {"\x89HDF\r\n\x1a\n....", "AxF"},       {"7z\xbc\xaf\x27\x1c....", ".sbsar"},
-      {"PK\x03\x04....", ".vrscan"},          {"<?xml version='1.0'?>\n<materialx version='1.38'>", "MaterialX"},
-      {"# ASTM E1392\nVARS theta_i", "ASTM"}, {"nothing that is known", "not a measurement"}};
+      {"\x89HDF\r\n\x1a\n....", "AxF"},
+      {"7z\xbc\xaf\x27\x1c....", ".sbsar"},
+      {"PK\x03\x04....", ".vrscan"},
+      {"<?xml version='1.0'?>\n<materialx version='1.38'>", "MaterialX"},
+      {"<?xml version='1.0'?>\n" + license + "\n<materialx version='1.38'>", "MaterialX"},
+      {"# ASTM E1392\nVARS theta_i", "ASTM"},
+      {"; astm e 1392-96(2002) BRDF\r\n1 2 3\r\n", "ASTM"},
+      {"LAB_NAME Lab\nNUM_POINTS 1\nVARS theta_i,phi_i,theta_s,465nm\n0,0,0,1\n", "ASTM"}};
   const std::string path = test::scratch_folder() / "a.bin";
   for (const auto& [head, words] : others) {
-    if (std::string(words) != "not a measurement") test::record_input(words, "any", "refused by name, with what to do");
-    write_file(path, std::vector<uint8_t>(head.begin(), head.end()));
-    EXPECT_NE(test::refusal([&] { load_measurement(path); }).find(words), std::string::npos)
-        << test::refusal([&] { load_measurement(path); });
+    test::record_input(words, "any", "refused by name, with what to do");
+    write_file(path, bytes_of(head));
+    const std::string said = test::refusal([&] { load_measurement(path); });
+    EXPECT_NE(said.find(words), std::string::npos) << said;
     EXPECT_FALSE(is_measurement_file(path));
+  }
+  test::record_input("MaterialX", "long comments before the root", "refused by name, with what to do");
+}
+
+/// A name in a text does not make its format.
+TEST(Load, TextsThatCiteAFormatAreNotOfIt) {
+  const std::string path = test::scratch_folder() / "a.bin";
+  for (const char* text :
+       {"nothing that is known", "%PDF-1.4 ASTM", "measured after ASTM E1392", "ASTM E308",
+        "<report>\nASTM E1392\n</report>", "<!-- <materialx> --><report/>", "VARS mass, length\n1 2"}) {
+    write_file(path, bytes_of(text));
+    EXPECT_NE(test::refusal([&] { load_measurement(path); }).find("not a measurement in a supported"),
+              std::string::npos)
+        << text;
   }
 }
 

@@ -294,8 +294,62 @@ TEST(WindowBsdf, ColorsOfTreesAreThoseOfTheirChromaticities) {
   EXPECT_LT(glm::distance(found, expected), 1e-5f);
 }
 
+std::string replaced(std::string text, const std::string& words, const std::string& instead) {
+  for (size_t at = text.find(words); at != std::string::npos; at = text.find(words, at + instead.size()))
+    text.replace(at, words.size(), instead);
+  return text;
+}
+
+TEST(WindowBsdf, CommentsBeforeTheRootHaveAnyLength) {
+  test::record_input("BSDF XML of Radiance and WINDOW", "long comments before the root, UTF-8 mark, UTF-16", "read");
+  const std::string good = tree_document("{0.25}", 3);
+  const std::string license = "<!--" + std::string(200000, ' ') + "-->\n<!-- <materialx> -->";
+  std::string utf16 = "\xff\xfe";
+  for (const char c : replaced(good, "UTF-8", "UTF-16")) utf16 += std::string{c, '\0'};
+  for (const std::string& text :
+       {replaced(good, "<WindowElement>", license + "<WindowElement>"), "\xef\xbb\xbf" + good, utf16}) {
+    const std::string path = written(text);
+    EXPECT_TRUE(is_measurement_file(path));
+    EXPECT_NEAR(value_of(*load_measurement(path), {0, 0, 1}, {0, 0, 1}).g, 0.25, 1e-6);
+  }
+}
+
+/// With a detector whose name cites a standard, as WINDOW writes it.
+TEST(WindowBsdf, NamesMayHaveAPrefix) {
+  test::record_input("BSDF XML of Radiance and WINDOW", "a namespace prefix at all elements or at the root", "read");
+  const std::string good = replaced(tree_document("{0.25}", 3), "<WavelengthDataBlock>",
+                                    "<DetectorSpectrum>ASTM E308 1931 Y.dsp</DetectorSpectrum><WavelengthDataBlock>");
+  const std::string root = replaced(replaced(good, "<Window", "<w:Window"), "</Window", "</w:Window");
+  std::string all;
+  for (size_t i = 0; i < good.size(); ++i) {
+    all += good[i];
+    if (good[i] == '<' && good[i + 1] == '/') all += good[++i];
+    if ((good[i] == '<' || good[i] == '/') && std::isalpha(static_cast<unsigned char>(good[i + 1])) &&
+        (good[i] == '<' || good[i - 1] == '<'))
+      all += "wbsdf:";
+  }
+  for (const std::string& text : {root, all}) {
+    EXPECT_NEAR(value_of(*load_measurement(written(text)), {0, 0, 1}, {0, 0, 1}).g, 0.25, 1e-6) << text;
+  }
+  const std::string other = "<w:WindowElement><Other>ASTM E308</Other></w:WindowElement>";
+  EXPECT_NE(test::refusal([&] { load_measurement(written(other)); }).find("not a BSDF file"), std::string::npos);
+}
+
+TEST(WindowBsdf, NumbersMayHaveAPlusSign) {
+  test::record_input("BSDF XML of Radiance and WINDOW", "numbers with a plus sign", "read");
+  const auto tree = load_measurement(written(tree_document("{+2.5e-01}", 3)));
+  EXPECT_NEAR(value_of(*tree, {0, 0, 1}, {0, 0, 1}).g, 0.25, 1e-6);
+  const std::string good = document(block_of({}, mixed, false));
+  const auto matrix = load_measurement(written(replaced(good, "\t0.", "\t+0.")));
+  EXPECT_EQ(matrix->counts().valid, load_measurement(written(good))->counts().valid);
+  const auto bounds = load_measurement(written(replaced(good, "<UpperTheta>", "<UpperTheta>+")));
+  EXPECT_EQ(bounds->counts().valid, uint64_t{kPatches} * kPatches);
+}
+
 TEST(WindowBsdf, NumbersBeyondAFloatAreZeroOrNotFinite) {
-  const auto measurement = load_measurement(written(tree_document("{1e-60 1e-400 1e60 1e400 -1 1 1 1}", 3)));
+  test::record_input("BSDF XML of Radiance and WINDOW", "values too large or too small", "not finite, counted; 0");
+  const auto measurement =
+      load_measurement(written(tree_document("{1e-60 0." + std::string(400, '0') + "1 1e60 1e400 -1 1 1 1}", 3)));
   EXPECT_EQ(measurement->counts().not_finite, 2u);
   EXPECT_EQ(measurement->counts().negative, 1u);
   EXPECT_EQ(measurement->counts().valid, 5u);
@@ -326,7 +380,10 @@ TEST(WindowBsdf, WhatCannotBeReadIsNamed) {
       {without("<nPhis>8", "<nPhis>4294967295"), "at most 4096 patches"},
       {without("<UpperTheta>20", "<UpperTheta>2"), "rings must follow each other"},
       {without("<UpperTheta>90", "<UpperTheta>88"), "ends at 88"},
-      {without("</ScatteringData>", "x</ScatteringData>"), "has 'x' where a number is expected"},
+      {without("</ScatteringData>", "x</ScatteringData>"),
+       "ScatteringData of Reflection Front, Visible, has 'x' where value 2402 is expected"},
+      {without("<ScatteringData>", "<ScatteringData>0.1x "), "has '0.1x"},
+      {without("<UpperTheta>5", "<UpperTheta>5,"), "spans '0.000000' to '5,.000000' degrees with '1' patches"},
       {without("</ScatteringData>", ""), "not a valid XML"},
       {without("Optical>", "Optics>"), "no"}};
   for (const auto& [text, words] : files) {

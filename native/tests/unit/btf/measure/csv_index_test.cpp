@@ -40,6 +40,36 @@ TEST_F(CsvIndexTest, ReadsColumnsInAnyOrder) {
   EXPECT_TRUE(is_csv_index(path_));
 }
 
+TEST_F(CsvIndexTest, LinesMayEndAsOnAnyMachine) {
+  test::record_input("CSV index of a BTF", "UTF-8 mark; LF, CRLF, CR", "read");
+  const std::string begin = "# first", head = "file,theta_l,phi_l,theta_v,phi_v";
+  for (const std::string end : {"\n", "\r\n", "\r"}) {
+    const std::string text = "\xef\xbb\xbf" + begin + end + head + end + end + "a.png,1,2,3,4" + end + "b.png,2,2,3,4";
+    const auto pictures = read_csv_index(written(text));
+    ASSERT_EQ(pictures.size(), 2u);
+    EXPECT_EQ(pictures[0].view, (PolarAngles{3, 4}));
+    EXPECT_TRUE(is_csv_index(path_));
+    EXPECT_NE(refusal(text + end + "c.png,x,2,3,4" + end).find("line 6: 'theta_l' is 'x'"), std::string::npos);
+  }
+}
+
+TEST_F(CsvIndexTest, IsKnownBehindCommentsOfAnyLength) {
+  test::record_input("CSV index of a BTF", "comments of any length, no file extension", "read");
+  std::string comment;
+  for (int i = 0; i < 9000; ++i) comment += "# a line of the lab report\n";
+  EXPECT_TRUE(is_csv_index(written(comment + "\n file , theta_l,phi_l,theta_v,phi_v\na.png,1,2,3,4\n")));
+  EXPECT_EQ(read_csv_index(path_).size(), 1u);
+  EXPECT_FALSE(is_csv_index(written(comment + "other,theta_l,phi_l,theta_v,phi_v\n")));
+  EXPECT_FALSE(is_csv_index(written(comment)));
+}
+
+TEST_F(CsvIndexTest, NumbersMayHaveAPlusSign) {
+  test::record_input("CSV index of a BTF", "numbers with a plus sign", "read");
+  const auto pictures = read_csv_index(written("file,theta_l,phi_l,theta_v,phi_v\na.png,+15.5,-30,+1.5e1,1e-400\n"));
+  EXPECT_EQ(pictures[0].light, (PolarAngles{15.5, -30}));
+  EXPECT_EQ(pictures[0].view, (PolarAngles{15, 0}));
+}
+
 TEST_F(CsvIndexTest, NumbersSetTheOrder) {
   const auto pictures =
       read_csv_index(written("file,theta_l,phi_l,theta_v,phi_v,view,light\na.png,1,0,2,0,7,4\n/b.png,3,0,2,0,7,2"));
@@ -65,9 +95,16 @@ TEST_F(CsvIndexTest, WhatIsWrongIsOneSentenceWithItsLine) {
   EXPECT_NE(refusal("").find(": line 0: the first line has no column 'file'"), std::string::npos);
   EXPECT_EQ(refusal(head), ": line 1: the file lists no images.");
   EXPECT_EQ(refusal(head + "a.png,1,2,3\n"), ": line 2: the line has 4 fields, but the first line names 5 columns.");
-  EXPECT_EQ(refusal(head + "a.png,1,2,3,4\n#\nb.png,1,two,3,4\n"), ": line 4: 'phi_l' is 'two'; it must be a number.");
-  EXPECT_EQ(refusal(head + "a.png,1,2,3,nan\n"), ": line 2: 'phi_v' is 'nan'; it must be a number.");
-  EXPECT_EQ(refusal(head + "a.png,1,2,3,4 5\n"), ": line 2: 'phi_v' is '4 5'; it must be a number.");
+  EXPECT_EQ(refusal(head + "a.png,1,2,3,4\n#\nb.png,1,two,3,4\n"),
+            ": line 4: 'phi_l' is 'two'; it must be a number from -1000000 to 1000000, such as 15.5.");
+  EXPECT_EQ(refusal(head + "a.png,1,2,3,nan\n"),
+            ": line 2: 'phi_v' is 'nan'; it must be a number from -1000000 to 1000000, such as 15.5.");
+  EXPECT_EQ(refusal(head + "a.png,1,2,3,4 5\n"),
+            ": line 2: 'phi_v' is '4 5'; it must be a number from -1000000 to 1000000, such as 15.5.");
+  EXPECT_EQ(refusal(head + "a.png,1,2,3,1e400\n"),
+            ": line 2: 'phi_v' is '1e400'; it must be a number from -1000000 to 1000000, such as 15.5.");
+  EXPECT_EQ(refusal(head + "a.png,1,2,3,\"1,5\"\n"),
+            ": line 2: 'phi_v' is '1,5'; it must be a number from -1000000 to 1000000, such as 15.5.");
   EXPECT_EQ(refusal(head + "a.png,-1,2,3,4\n"), ": line 2: 'theta_l' is negative; it must be at least 0.");
   EXPECT_EQ(refusal(head + ",1,2,3,4\n"), ": line 2: 'file' is empty.");
   EXPECT_EQ(refusal(head + "a.png,1,2,3,4\nb.png,1,2,3,4\n"),

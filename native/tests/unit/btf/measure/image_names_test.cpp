@@ -6,6 +6,7 @@
 #include <fstream>
 
 #include "btf_support.h"
+#include "support/inputs.h"
 #include "support/test_data.h"
 
 namespace velour::image_names_test {
@@ -42,9 +43,21 @@ TEST(ImageNames, MayLackAnIndexAndHaveFractions) {
   EXPECT_FALSE(angles_of_name("wool256 tl015 pl000 tv000 pv000")->index);  // no number of its own
 }
 
+TEST(ImageNames, CommasBetweenDigitsAreAskedFor) {
+  test::record_input("BTF images named by angles", "decimal commas", "refused with the name to choose");
+  const auto folder = test::scratch_folder();
+  touch(folder / "tl15,5 pl0 tv0 pv0.exr");
+  EXPECT_EQ(message_of([&] { find_named_pictures(folder); }),
+            (folder / "tl15,5 pl0 tv0 pv0.exr").string() +
+                ": the file name has a comma between digits, which may be a decimal comma or separate two numbers. "
+                "Rename the file, as 'tl15.5 pl0 tv0 pv0.exr' if the angle has a fraction.");
+  EXPECT_FALSE(angles_of_name("tl0,pl0,tv0,pv0,00081"));
+  EXPECT_EQ(angles_of_name("1,5 tl15,pl0,tv0,pv0")->light, (PolarAngles{15, 0})) << "control: other commas";
+}
+
 TEST(ImageNames, OthersAreNone) {
   for (const char* name : {"", "preview", "tl015 pl000 tv000", "tl pl tv pv", "tl015 tl016 pl000 tv000 pv000",
-                           "atl015 pl000 tv000 pv000", "15 0 0 0"}) {
+                           "atl015 pl000 tv000 pv000", "15 0 0 0", "tl0 pl0 tv0 pv99999999999999999999999"}) {
     EXPECT_FALSE(angles_of_name(name)) << name;
   }
 }

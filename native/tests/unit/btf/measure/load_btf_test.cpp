@@ -11,7 +11,9 @@
 #include "btf_support.h"
 #include "image/formats/exr_picture.h"
 #include "image/picture.h"
+#include "support/inputs.h"
 #include "support/test_data.h"
+#include "support/warnings.h"
 #include "ubo_support.h"
 
 namespace velour::load_btf_test {
@@ -193,6 +195,61 @@ TEST(LoadBtf, AnglesThatAreNoDirectionsAreRefused) {
   const auto folder = test::scratch_folder();
   write_bytes(folder / "tl090 pl000 tv000 pv000.png", 9);
   EXPECT_NE(message_of([&] { load_btf(folder); }).find("differ from 90 by at least 0.1"), std::string::npos);
+}
+
+/// Channels beside R, G and B, of 2 x 2 pixels.
+void write_passes(const fs::path& file, const std::vector<std::string>& channels) {
+  const auto output = OIIO::ImageOutput::create(file.string());
+  OIIO::ImageSpec spec(2, 2, static_cast<int>(channels.size()), OIIO::TypeDesc::HALF);
+  spec.channelnames = channels;
+  const std::vector<float> pixels(channels.size() * 4, 0.5f);
+  ASSERT_TRUE(output && output->open(file.string(), spec) &&
+              output->write_image(OIIO::TypeDesc::FLOAT, pixels.data()) && output->close());
+}
+
+TEST(LoadBtf, ChannelsLeftOutAreToldOfOnce) {
+  test::record_input("BTF images named by angles", "OpenEXR with further channels, layers or parts, or without G or B",
+                     "read as without the rest; a warning counts the images");
+  const auto folder = test::scratch_folder();
+  write_passes(folder / "tl000 pl000 tv000 pv000.exr", {"R", "G", "B"});
+  write_passes(folder / "tl010 pl000 tv000 pv000.exr", {"R", "G", "B", "Z"});
+  write_passes(folder / "tl020 pl000 tv000 pv000.exr", {"R", "G", "B", "AO.R", "depth"});
+  write_passes(folder / "tl030 pl000 tv000 pv000.exr", {"R"});
+  const auto btf = load_btf(folder);
+  const std::vector<Warning> expected = {
+      warning<WarningCode::images_channels_ignored>({{"images", uint64_t{2}},
+                                                     {"all", uint64_t{4}},
+                                                     {"first", (folder / "tl010 pl000 tv000 pv000.exr").string()},
+                                                     {"layer", ""},
+                                                     {"channels", std::vector<std::string>{"Z"}}}),
+      warning<WarningCode::images_channel_missing>({{"images", uint64_t{1}},
+                                                    {"all", uint64_t{4}},
+                                                    {"first", (folder / "tl030 pl000 tv000 pv000.exr").string()}})};
+  EXPECT_EQ(btf->warnings(), expected);
+  nlohmann::ordered_json record;
+  put_warnings(btf->warnings(), record);
+  EXPECT_EQ(parse_warnings(record, "record"), expected);
+}
+
+TEST(LoadBtf, PartsLeftOutAreToldOfOnce) {
+  const auto folder = test::scratch_folder();
+  for (const char* name : {"tl000 pl000 tv000 pv000.exr", "tl010 pl000 tv000 pv000.exr"}) {
+    const auto output = OIIO::ImageOutput::create((folder / name).string());
+    std::vector<OIIO::ImageSpec> parts(2, OIIO::ImageSpec(2, 2, 3, OIIO::TypeDesc::HALF));
+    parts[0].attribute("oiio:subimagename", "beauty");
+    parts[1].attribute("oiio:subimagename", "normal");
+    const std::vector<float> pixels(12, 0.5f);
+    ASSERT_TRUE(output->open((folder / name).string(), 2, parts.data()));
+    ASSERT_TRUE(output->write_image(OIIO::TypeDesc::FLOAT, pixels.data()));
+    ASSERT_TRUE(output->open((folder / name).string(), parts[1], OIIO::ImageOutput::AppendSubimage));
+    ASSERT_TRUE(output->write_image(OIIO::TypeDesc::FLOAT, pixels.data()) && output->close());
+  }
+  const std::vector<Warning> told = load_btf(folder)->warnings();
+  ASSERT_EQ(told.size(), 1u);
+  EXPECT_EQ(told[0].code, WarningCode::images_parts_ignored);
+  EXPECT_EQ(test::value_of<uint64_t>(told[0], "images"), 2u);
+  EXPECT_EQ(test::value_of<uint64_t>(told[0], "parts"), 2u);
+  EXPECT_EQ(test::value_of<std::string>(told[0], "part"), "beauty");
 }
 
 TEST(LoadBtf, OtherFilesAreRefused) {
