@@ -99,6 +99,49 @@ class Notes(NotesTest):
         obj.data.attributes.new("paint", "FLOAT_COLOR", "POINT")
         self.assertEqual(self.notes(), [])
 
+    def test_attribute_of_edges(self):
+        obj, _ = self._shows_attribute("paint")
+        obj.data.attributes.new("paint", "FLOAT", "EDGE")
+        self.assert_said("attribute 'paint'", "is stored on edges", "0 is used instead")
+
+    def test_generated_image_needs_no_uv_map(self):
+        _, image = self._linked("ShaderNodeTexImage", socket="Color")
+        image.image = bpy.data.images.new("texels", 4, 4)
+        tree = image.id_data
+        place = tree.nodes.new("ShaderNodeTexCoord")
+        tree.links.new(place.outputs["Generated"], image.inputs["Vector"])
+        layers = bpy.context.object.data.uv_layers
+        while layers:
+            layers.remove(layers[0])
+        self.assertEqual(self.notes(), [])
+        tree.links.new(place.outputs["UV"], image.inputs["Vector"])
+        self.assert_said("UV map")
+
+    def test_cubic_interpolation(self):
+        _, image = self._linked("ShaderNodeTexImage", socket="Color")
+        image.image, image.interpolation = bpy.data.images.new("texels", 4, 4), "Cubic"
+        self.assert_said("Material 'Glass'", image.name, "cubic interpolation is not supported")
+
+    def test_normals_without_unit_length(self):
+        if bpy.app.version >= (4, 0):
+            self.skipTest("Cycles normalizes them")
+        _, mixed = self._linked("ShaderNodeMixRGB")
+        self.assert_said("Material 'Glass'", mixed.name, "may not have unit length")
+
+    def test_values_beyond_the_range_of_principled(self):
+        if bpy.app.version >= (4, 0):
+            self.skipTest("Cycles clamps them")
+        tree = self._material("ShaderNodeBsdfPrincipled").node_tree
+        node = next(n for n in tree.nodes if "Metallic" in n.inputs and n.outputs[0].is_linked)
+        node.distribution = "GGX"
+        value = tree.nodes.new("ShaderNodeValue")
+        value.outputs[0].default_value = 1.5
+        for name in ("Metallic", "Roughness", "Clearcoat"):
+            with self.subTest(name):
+                link = tree.links.new(value.outputs[0], node.inputs[name])
+                self.assert_said("Material 'Glass'", node.name, f"'{name}' is 1.5; 1 is used instead")
+                tree.links.remove(link)
+
     def test_missing_color_attribute(self):
         obj, _ = self._shows_attribute("", "ShaderNodeVertexColor")
         self.assert_said(f"Object '{obj.name}'", "no color attribute", "material 'Glass'")

@@ -10,7 +10,7 @@ import bpy
 import numpy as np
 
 from support import inputs, scenes
-from support.blender import BlenderTest
+from support.blender import BlenderTest, printed
 
 
 def _insert_key(tree, path, value, frame):
@@ -106,6 +106,14 @@ class PersistentData(BlenderTest):
         self.assertEqual(added[1], ["Bending"])
         self.assertEqual(sorted(added[2]), ["Bending", "Late"])
         self.assertGreater(np.abs(pictures[0] - pictures[2]).max(), 0.1)
+
+    def test_the_render_result_is_not_read(self):
+        """Blender prints a warning if its color space is read."""
+        bpy.ops.render.render()  # creates it
+        self.scene.render.use_persistent_data = True
+        with printed() as said:
+            bpy.ops.render.render()
+            self.assertNotIn("ColorManagedInput", said())
 
     def test_nothing_is_left_of_geometry_that_changes(self):
         self._animate()

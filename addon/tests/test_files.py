@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import json
+import os
 
 import pytest
 from velour.core import files
+from velour.core.mesh_memory import mesh_memory
 
 
 def test_a_failing_writer_leaves_the_old_file_and_nothing_else(tmp_path):
@@ -34,3 +36,12 @@ def test_json_is_standard_json(tmp_path):
     assert json.loads((tmp_path / "r.json").read_text()) == {"a": None, "b": 0.5}
     with pytest.raises(ValueError, match="not JSON compliant"):
         files.json_text({"a": float("nan")})
+
+
+@pytest.mark.parametrize("read", [files.read_bytes, files.sha256, mesh_memory])
+def test_pipes_and_devices_are_refused_without_waiting(read, tmp_path):
+    os.mkfifo(tmp_path / "pipe.obj")
+    for path in (tmp_path / "pipe.obj", "/dev/zero"):
+        with pytest.raises(OSError, match="is not a regular file; choose a file") as raised:
+            read(path)
+        assert raised.value.filename == str(path)

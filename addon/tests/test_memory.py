@@ -65,6 +65,24 @@ end_header
         (tmp_path / "grid.ply").write_bytes(head.encode() + points.tobytes() + faces.tobytes())
         return {"mesh": tmp_path / "grid.ply"}
 
+    def strips():
+        """4 bytes a triangle."""
+        n = 400000
+        points = np.random.default_rng(0).random((1000, 3), np.float32)
+        strip = np.r_[n, np.arange(n) % 1000].astype("<i4")
+        head = f"""ply
+format binary_little_endian 1.0
+element vertex {len(points)}
+property float x
+property float y
+property float z
+element tristrips 1
+property list int int vertex_indices
+end_header
+"""
+        (tmp_path / "strips.ply").write_bytes(head.encode() + points.tobytes() + strip.tobytes())
+        return {"mesh": tmp_path / "strips.ply"}
+
     def dense():
         """Short numbers, relative corners and smoothing groups: 10 bytes a triangle."""
         with open(tmp_path / "dense.obj", "wb") as file:
@@ -89,6 +107,7 @@ end_header
     return {
         "mesh": mesh,
         "ply": ply,
+        "strips": strips,
         "dense": dense,
         "ascii_ply": ascii_ply,
         "material": lambda: {"material": measurement_file},
@@ -97,7 +116,9 @@ end_header
     }
 
 
-@pytest.mark.parametrize("what", ["mesh", "ply", "dense", "ascii_ply", "material", "world", "picture"])
+@pytest.mark.parametrize(
+    "what", ["mesh", "ply", "strips", "dense", "ascii_ply", "material", "world", "picture"]
+)
 def test_the_estimate_is_no_less_than_the_peak_and_not_much_more(what, small, large):
     told = program(*render(small | large[what](), "--json")).json["memory"]
     part = what if what in told["parts"] else "mesh"

@@ -2,8 +2,11 @@
 
 import math
 
+import bpy
+
 from parity import stage
 from parity.case import BoxTest
+from parity.shaders import Tree
 
 
 class AreaLights(BoxTest):
@@ -31,6 +34,17 @@ class AreaLights(BoxTest):
     def test_narrow_spread(self):
         stage.lamp("AREA", 100, (0, 0, 3), shape="DISK", size=1.5, spread=math.radians(25))
         self.assert_parity("Area: spread 25 degrees", samples=4, seen=12)  # few blocks have its light
+
+    def test_multiple_importance(self):
+        """Without it, clear glass does not show the light, but a rough surface does."""
+        lamp = stage.lamp("AREA", 100, (1, 0.5, 3), (0.3, 0.2, 0), shape="SQUARE", size=1.0)
+        lamp.data.cycles.use_multiple_importance_sampling = False
+        tree = Tree(bpy.data.objects["Ground"].data.materials[0])
+        glass = tree.node("ShaderNodeBsdfGlass", settings={"distribution": "GGX"}, Roughness=0.0)
+        for name, shader in (("clear glass", glass), ("rough metal", tree.glossy(0.5))):
+            with self.subTest(name):
+                tree.end(tree.add(tree.diffuse((0.1, 0.2, 0.1)), shader))
+                self.assert_parity(f"Area: no Multiple Importance, {name}", samples=2)
 
     def test_sheared_square(self):
         lamp = stage.lamp("AREA", 100, (0, 0, 2), (0, math.radians(45), 0), shape="SQUARE", size=1.0)

@@ -7,6 +7,7 @@ import numpy as np
 
 from parity import stage
 from parity.case import ALWAYS, NEVER, ParityTest
+from parity.shaders import image
 
 _SQUARE = [(-2, 0, -1), (2, 0, -1), (2, 0, 1), (-2, 0, 1)]
 
@@ -168,11 +169,32 @@ class Visibility(ParityTest):
         self.assert_parity("Object: hidden from the camera")
 
     def test_shadow(self):
-        """Under a sky Cycles mixes rays that see the object with such that do not."""
+        """Cycles finds a sky of one color by rays that see the object."""
         self.sphere.visible_shadow = False
-        self.assert_approximate("Object: casts no shadow, under a sky", 12.0)
+        self.assert_parity("Object: casts no shadow, under a sky of one color")
         self.scene.world = None
         self.assert_parity("Object: casts no shadow")
+
+    def _image_sky(self):
+        tree = self.scene.world.node_tree
+        picture = tree.nodes.new("ShaderNodeTexEnvironment")
+        picture.image = image(4, 16)
+        tree.links.new(picture.outputs["Color"], tree.nodes["Background"].inputs["Color"])
+
+    def test_shadow_under_an_image(self):
+        """Cycles mixes rays that see the object with such that do not."""
+        self._image_sky()
+        self.sphere.visible_shadow = False
+        self.assert_approximate("Object: casts no shadow, under an image", 30)
+
+    def test_bounces_under_a_sky(self):
+        self.sphere.visible_diffuse = self.sphere.visible_glossy = False
+        self.assert_parity("Object: hidden from diffuse and glossy rays, under a sky of one color")
+        self._image_sky()
+        self.assert_ignored(
+            "Object: hidden from diffuse and glossy rays, its shadow under an image",
+            "it is hidden from diffuse and glossy rays but blocks light of the world",
+        )
 
     def test_bounces(self):
         self.sphere.visible_diffuse = self.sphere.visible_glossy = False

@@ -76,7 +76,7 @@ class Angles(Plates):
         self._assert_principled("MULTI_GGX", Roughness=0.6, IOR=1.45)
 
 
-class Scenes(ParityTest):
+class GlassTest(ParityTest):
     """Glass on a ground before a wall, under an even sky and a broad lamp."""
 
     bounces = 8
@@ -98,16 +98,18 @@ class Scenes(ParityTest):
         ball.data.materials.append(material or self.material)
         return ball
 
+    def _glass(self, roughness=0.0, index=1.45, color=(1, 1, 1), idname="BsdfGlass", tree=None):
+        settings = {"distribution": "GGX"}
+        inputs = {"Color": (*color, 1), "Roughness": roughness, "IOR": index}
+        return (tree or self.tree).node(f"ShaderNode{idname}", settings=settings, **inputs)
+
+
+class Scenes(GlassTest):
     def _pane(self, thickness=0.1):
         low, high = (-1.2, -0.6, 0.3), (1.2, -0.6 + thickness, 1.7)
         pane = stage.box(low, high, 0.5)
         pane.data.materials.clear()
         pane.data.materials.append(self.material)
-
-    def _glass(self, roughness=0.0, index=1.45, color=(1, 1, 1), idname="BsdfGlass", tree=None):
-        settings = {"distribution": "GGX"}
-        inputs = {"Color": (*color, 1), "Roughness": roughness, "IOR": index}
-        return (tree or self.tree).node(f"ShaderNode{idname}", settings=settings, **inputs)
 
     def test_smooth_ball(self):
         self._ball()
@@ -208,7 +210,7 @@ class Scenes(ParityTest):
         self.assert_parity("Principled BSDF: transmission 0.8, smooth")
 
 
-class Hidden(Scenes):
+class Hidden(GlassTest):
     """What transmitted rays see is told apart from what reflected ones see."""
 
     bounces = 4

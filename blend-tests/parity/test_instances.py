@@ -63,7 +63,7 @@ class Instancers(KindTest):
         small = self.small()
         self.scene.collection.objects.unlink(small)
         self.kit.objects.link(small)
-        small.location, small.scale = (-1.2, 0, 0), (4, 4, 4)
+        small.location, small.scale = (-1.2, 0, 0.2), (4, 4, 4)
         self.instancer = bpy.data.objects.new("Instancer", None)
         self.instancer.instance_type, self.instancer.instance_collection = "COLLECTION", self.kit
         self.instancer.location = (2.4, 0, 0)

@@ -11,6 +11,7 @@ import secrets
 import stat
 from collections.abc import Callable, Iterator
 from pathlib import Path
+from typing import BinaryIO
 
 from .read_job import check
 
@@ -81,13 +82,20 @@ def read_bytes(path: str | os.PathLike) -> bytes:
 
 
 def _blocks(path: str | os.PathLike) -> Iterator[bytes]:
-    """Raises OSError unless it is a regular file: pipes wait for a writer, devices may never end."""
+    with open_regular(path) as file:
+        while block := file.read(_BLOCK):
+            check()
+            yield block
+
+
+@contextlib.contextmanager
+def open_regular(path: str | os.PathLike) -> Iterator[BinaryIO]:
+    """Opens a file for reading. Raises OSError unless it is a regular file: pipes wait for a writer, devices
+    may never end."""
     # O_NONBLOCK: opening does not wait either.
     with open(
         path, "rb", opener=lambda name, flags: os.open(name, flags | getattr(os, "O_NONBLOCK", 0))
     ) as file:
         if not stat.S_ISREG(os.fstat(file.fileno()).st_mode):
-            raise OSError(errno.EINVAL, "not a regular file", str(path))
-        while block := file.read(_BLOCK):
-            check()
-            yield block
+            raise OSError(errno.EINVAL, "is not a regular file; choose a file", str(path))
+        yield file

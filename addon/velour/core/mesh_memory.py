@@ -12,6 +12,8 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import BinaryIO
 
+from .files import open_regular
+
 # Bytes per vertex: its position as read and as kept; per corner: its vertex; per triangle: its corners twice,
 # three normals, the BVH; per corner and vertex, where there are any: normal and texture coordinates.
 _VERTEX, _CORNER, _TRIANGLE = 24, 4, 132
@@ -50,13 +52,13 @@ class _Counts:
 
 def mesh_memory(path: str) -> int:
     """Peak memory in bytes, in addition to what the process had before."""
-    size = os.path.getsize(path)
-    with open(path, "rb") as file:
-        head = file.read(_HEAD)
-        count = _ply if head.startswith(b"ply") else _obj
+    with open_regular(path) as file:
+        size = os.fstat(file.fileno()).st_size
         try:
+            head = file.read(_HEAD)
+            count = _ply if head.startswith(b"ply") else _obj
             return size + count(file, head, size).bytes
-        except (ValueError, KeyError, IndexError, StopIteration):
+        except (OSError, ValueError, KeyError, IndexError, StopIteration):
             return round(_TEXT * size)
 
 
@@ -77,16 +79,20 @@ def _ply(file: BinaryIO, head: bytes, size: int) -> _Counts:
     if not found:
         raise ValueError
     elements = _ply_elements(text.decode("latin-1"))
-    (vertices, of_vertex), (faces, of_face) = elements["vertex"], elements["face"]
-    lists = [words for words in of_face if words[0] == "list"]
+    vertices, of_vertex = elements["vertex"]
+    faces, of_face = elements.get("face", (0, []))
+    strips, of_strip = elements.get("tristrips", (0, []))
+    lists = [words for words in of_face + of_strip if words[0] == "list"]
     begin = len(text) + len(found)
     if b"format ascii" in text:
         values = sum(_totals(file, begin, (*_BLANKS, b"\n")))
-        corners = values - vertices * len(of_vertex) - faces * len(of_face)
+        corners = values - vertices * len(of_vertex) - faces * len(of_face) - strips * len(of_strip)
     else:
-        count, index = _SIZES[lists[0][1]], _SIZES[lists[0][2]]
+        count, index = _SIZES[lists[0][1]], min(_SIZES[words[2]] for words in lists)
         in_faces = size - begin - vertices * sum(_SIZES[words[0]] for words in of_vertex)
         corners = (in_faces - faces * count) // index
+    if strips:
+        faces, corners = max(corners, 0), 3 * corners  # up to a triangle per index
     names = {words[-1] for words in of_vertex + of_face}
     has_texcoords = bool(names & {"s", "u", "texture_u", "texcoord"})
     return _Counts(vertices, faces, max(corners, 0), "nx" in names, has_texcoords, b"format ascii" in text)

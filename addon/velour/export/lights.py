@@ -127,7 +127,7 @@ _DESCRIBE = {"SUN": _sun, "POINT": _point, "SPOT": _spot, "AREA": _area}
 
 
 def _is_mirrored(lamp):
-    """Without Multiple Importance, Cycles finds its light only by rays toward it, never in perfect mirrors."""
+    """Without Multiple Importance, Cycles finds its light only by rays toward it: not in perfect mirrors."""
     return int(getattr(getattr(lamp, "cycles", None), "use_multiple_importance_sampling", True))
 
 

@@ -136,10 +136,10 @@ class ObjectExport:
         self.owners += self._groups.add_to_scene(numbers)
 
     def note_shadows_of_sky(self):
-        """Notes objects that block light of the world, which Cycles also finds by rays that pass through them."""
+        """Notes objects that block light of the world, which Cycles also finds by rays that pass through."""
         for name in self._shading:
             self._notes.add(
-                f"Object '{name}': it is hidden from diffuse and glossy rays but blocks the light of the world,"
+                f"Object '{name}': it is hidden from diffuse and glossy rays but blocks light of the world,"
                 " which Cycles finds through it in part; disable Shadow in its Ray Visibility to let it pass."
             )
 

@@ -110,7 +110,7 @@ class SceneExport:
             motion=motion,
         )
         objects.add_all(depsgraph)
-        if self._world_shines:
+        if self._world_shines and not self._world.is_even:
             objects.note_shadows_of_sky()
         self._world.add_suns()
         if self._changes is not None:

@@ -160,8 +160,7 @@ class Scene(Handle):
         self._lib.vlr_scene_set_gain(self.pointer, material, (c_float * 3)(*gain))
 
     def hide_backs(self, material: int, hidden) -> None:
-        """hidden: which rays ("camera", "bounces", "transmission", "shadows") pass through the material's back
-        faces."""
+        """hidden: rays ("camera", "bounces", "transmission", "shadows") that pass through its back faces."""
         self._lib.vlr_scene_hide_backs(self.pointer, material, _hidden_from(hidden))
 
     def set_shell_softness(self, material: int, widths: float) -> None:
@@ -228,7 +227,7 @@ class Scene(Handle):
         angle into which a rectangle or disk emits, radians. sphere: whether a point or spot is a sphere, or a
         disk facing each point it lights. cosine: whether a spot's light falls off with the cosine to its
         axis. cone_scale [2]: factors on the width of a spot's cone along its x and y. mirrored: whether
-        perfect mirrors and clear glass show it. hidden: rays ("bounces", "transmission") that it does not
+        clear glass shows it. hidden: rays ("bounces", "transmission") that it does not
         light.
         """
         values = {"type": choice("light", kind, table.LIGHTS), "color": color, **values}

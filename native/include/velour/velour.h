@@ -563,12 +563,12 @@ typedef struct vlr_light_desc {
   float size[2];            /* point, spot: radius, -; rectangle: sides; disk: diameters (an ellipse if they differ) */
   float angle;              /* sun: angular diameter; spot: angle of its cone; radians */
   int32_t casts_shadow;
-  float blend;         /* spot: share of the cone over which its light fades out, 0..1; 0 */
-  float spread;        /* rectangle, disk: full angle of emission, radians; pi: the same radiance in all directions */
-  int32_t sphere;      /* point, spot: 1: a ball; 0: a disk that faces each lit point, like Cycles' soft falloff */
-  int32_t cosine;      /* spot: 1: its light also falls off with the cosine to the axis, as in Blender before 3.5 */
-  float cone_scale[2]; /* spot: factors by which its cone is wider along its x and y; 1, 1 */
-  int32_t mirrored;    /* 0: perfect mirrors and clear glass do not show it; 1 */
+  float blend;          /* spot: share of the cone over which its light fades out, 0..1; 0 */
+  float spread;         /* rectangle, disk: full angle of emission, radians; pi: the same radiance in all directions */
+  int32_t sphere;       /* point, spot: 1: a ball; 0: a disk that faces each lit point, like Cycles' soft falloff */
+  int32_t cosine;       /* spot: 1: its light also falls off with the cosine to the axis, as in Blender before 3.5 */
+  float cone_scale[2];  /* spot: factors by which its cone is wider along its x and y; 1, 1 */
+  int32_t mirrored;     /* 0: clear glass does not show it; 1 */
   uint32_t hidden_from; /* VLR_HIDDEN_FROM_BOUNCES, _TRANSMISSION: rays that it does not light; 0 */
 } vlr_light_desc;
 VLR_API void vlr_light_desc_init(vlr_light_desc* desc);

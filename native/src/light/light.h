@@ -6,7 +6,7 @@
 namespace velour {
 
 /// A light shines along its -z axis: a sun and a spot only in that direction, a rectangle and a disk only from that
-/// side.
+/// side. A negative color takes light away.
 struct Light {
   enum class Type : int { sun = 0, point = 1, rectangle = 2, disk = 3, spot = 4 };  // values of velour.h
   Type type = Type::sun;
@@ -24,7 +24,7 @@ struct Light {
   float spread = kPi;
   bool sphere = true;  // point, spot: a sphere; false: a disk that faces each point that it lights
   bool casts_shadow = true;
-  bool is_mirrored = true;  // whether perfect mirrors and clear glass show it
+  bool is_mirrored = true;  // whether lobes without width (DeltaLobes) show it
   uint8_t hidden_from = 0;  // bits of `hidden` (scene.h): bounces, transmission
 };
 

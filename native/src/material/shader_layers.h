@@ -14,7 +14,7 @@ namespace velour {
 
 /// One factor of a layer's weight.
 struct LayerFactor {
-  /// share: factor of a mix, in [0, 1]; rest: 1 minus that; gain: any non-negative number.
+  /// share: factor of a mix, in [0, 1]; rest: 1 minus that; gain: any number, below 0 only for emission.
   enum class Kind : int { share = 0, rest = 1, gain = 2 };  // values of velour.h
   Kind kind = Kind::share;
   float value = 1;

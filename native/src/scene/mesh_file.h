@@ -14,9 +14,9 @@ namespace velour {
 
 /// Reads all shapes of the file as one mesh. Polygons are cut into triangles; each face keeps the normals and texture
 /// coordinates that it names. As in Blender's importer, a face without normals is smooth if the file has no normals and
-/// the face is in a smoothing group, else flat. Materials, curves and points are not read. The mesh's warnings count
-/// faces without the normals or texture coordinates that others have. Throws Error(io, bad_data) with the file's name
-/// and the line at fault.
+/// the face is in a smoothing group, else flat; each object ("o") begins flat. Materials, curves and points are not
+/// read. The mesh's warnings count faces without the normals or texture coordinates that others have. Throws Error(io,
+/// bad_data) with the file's name and the line at fault.
 Mesh read_obj(const std::string& path);
 
 // Triangulation of polygons.
@@ -52,12 +52,13 @@ class PolygonTriangles {
 // Stanford PLY files, ASCII and binary in both byte orders.
 
 /// Reads vertices (x, y, z), with normals (nx, ny, nz) and texture coordinates (s, t or u, v) if present, and polygons
-/// (vertex_indices or vertex_index), cut into triangles, with texture coordinates of corners (texcoord) if present.
-/// Elements may come in any order; other elements and properties are skipped.
+/// (vertex_indices or vertex_index), cut into triangles, with texture coordinates of corners (texcoord) if present, and
+/// triangle strips (tristrips). Elements may come in any order; other elements and properties are skipped.
 /// Throws Error(io, bad_data) with the file's name; never reads or allocates more than the file's size justifies.
 Mesh read_ply(const std::string& path);
 
-/// Reads PLY if the extension is .ply (in any case), else Wavefront OBJ. Throws Error with the file's name.
+/// Reads PLY if the file begins with "ply" or the extension is .ply (in any case), else Wavefront OBJ. Throws Error
+/// with the file's name; for other formats, it names the format.
 Mesh read_mesh(const std::string& path);
 
 // Builds many meshes at once.

@@ -9,6 +9,7 @@
 #include <string_view>
 #include "base/error.h"
 #include "base/file.h"
+#include "base/text_number.h"
 
 namespace velour {
 
@@ -56,6 +57,8 @@ class ObjReader {
         read_face();
       else if (keyword == "s")
         read_smoothing();
+      else if (keyword == "o" && !line_.empty())
+        smooth_ = false;  // as in Blender's importer
     }
     check_indices();
     return std::move(content_);
@@ -122,16 +125,19 @@ class ObjReader {
   float number(const char* keyword) {
     const std::string_view found = word();
     if (found.empty()) refuse("'" + std::string(keyword) + "' has too few numbers.");
-    const std::string_view digits = found.starts_with('+') ? found.substr(1) : found;
-    double value = 0;
-    const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
-    if (error == std::errc::result_out_of_range) return static_cast<float>(value);
-    if (error != std::errc() || end != digits.data() + digits.size()) {
+    const auto value = number_from(found);
+    const auto refuse_it = [&](const char* why) {
+      refuse(std::string("'").append(found.substr(0, 40)).append("' ").append(why));
+    };
+    if (!value) {
       const bool comma = found.find(',') != std::string_view::npos;
-      refuse("'" + std::string(found.substr(0, 40)) + "' is not a number" +
-             (comma ? "; use a point as the decimal separator." : "."));
+      refuse_it(comma ? "is not a number; use a point as the decimal separator." : "is not a number.");
     }
-    return static_cast<float>(value);
+    const auto rounded = static_cast<float>(*value);
+    // The words inf and nan stand for missing values; Mesh leaves out triangles that have them.
+    if (std::isinf(rounded) && found.find_first_of("123456789") != std::string_view::npos)
+      refuse_it("is too large; use smaller units.");
+    return rounded;
   }
 
   Vec3 vector(const char* keyword) {
@@ -147,9 +153,14 @@ class ObjReader {
     content_.uvs.push_back({u, has_v ? number("vt") : 0.0f});
   }
 
+  /// As Blender's importer: names that are no number ("on", "null") also turn smoothing off.
   void read_smoothing() {
     const std::string_view group = word();
-    smooth_ = !group.empty() && group != "off" && group != "0";
+    if (group.empty()) return;
+    const size_t plus = group.starts_with('+') ? 1 : 0;
+    int number = 0;
+    std::from_chars(group.data() + plus, group.data() + group.size(), number);
+    smooth_ = number != 0;
   }
 
   /// Converts an index of the file, counted from 1 or, if negative, from the end of the `count` entries so far, to one

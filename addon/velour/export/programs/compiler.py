@@ -10,7 +10,7 @@ _MOST_DEPTH = 100  # links of a broken file may be cyclic
 
 
 class Compiler:
-    """Compiles inputs of one material's shaders to one Draft. `unit`: length of Blender's unit in the scene."""
+    """Compiles inputs of one material's shaders to one Draft. `unit`: length of Blender's in the scene."""
 
     def __init__(self, reader, unit):
         self.reader = reader

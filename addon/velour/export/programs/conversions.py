@@ -1,5 +1,7 @@
 """Conversion of values between types of sockets, as Cycles converts them."""
 
+from itertools import pairwise
+
 from ..color import luminance_weights
 from ..plugs import followed, is_passed_through, types_between
 
@@ -14,7 +16,7 @@ def is_number(kind):
 
 def converted(draft, value, types):
     """The Value of a socket of the first type after conversion to each type in turn."""
-    for given, asked in zip(types, types[1:], strict=False):
+    for given, asked in pairwise(types):
         if is_number(given) == is_number(asked):
             continue
         if value.first < 0:
@@ -49,7 +51,7 @@ def own_numbers(plug):
     source = followed(plug)
     types = types_between(plug) if source else [plug.socket.type]
     numbers = numbers_of((source or plug).socket)
-    for given, asked in zip(types, types[1:], strict=False):
+    for given, asked in pairwise(types):
         numbers = _converted(numbers, given, asked)
     return numbers
 

@@ -34,7 +34,7 @@ def _bump(c, plug):
 
 
 def bumped(c, plug, normal, heights, distance):
-    """A normal bent by the height at the point and beside it; `distance`: length of a unit of height in the scene."""
+    """A normal bent by the height at the point and beside it. `distance`: scene length per unit of height."""
     width = plug.input("Filter Width")  # newer Blenders
     if width:
         c.draft.width = min(c.draft.width, max(width.socket.default_value, 1e-3))
@@ -61,7 +61,7 @@ def _displacement(c, plug, shift):
 
 
 def _length_of(c, space):
-    """Length of a unit of displacement in the scene; in object space it scales with the object, along the surface."""
+    """Length of a unit of displacement; in object space it scales with the object, along the surface."""
     if space == "WORLD":
         return c.draft.number(c.unit)
     here, beside = (c.draft.source("object_position", 0, shift) for shift in ("none", "x"))

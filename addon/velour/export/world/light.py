@@ -29,12 +29,13 @@ class WorldLight:
         self.waits = waits
         self._scene = scene
         self._hidden = ()
+        self.is_even = True  # a color
         self.suns = []  # SunLights of the sky
         self._picture = None  # key of the current image; None: a color, or an image that may change unnoticed
         self._textures = {}  # of the nodes, by image and use
 
     def set_color(self, color):
-        self._picture, self.suns = None, []
+        self._picture, self.suns, self.is_even = None, [], True
         self._scene.set_world_color(color)
 
     def set_file(self, path, strength, rotation, layer=""):
@@ -71,7 +72,7 @@ class WorldLight:
                 self._textures[key] = found
             return found
 
-        self._picture = None
+        self._picture, self.is_even = None, False
         program = finished(emitted.draft, None, (), texture)
         self._scene.set_world_program(program, emitted.output, *emitted.size)
         self.suns = [_sun_light(program, emitted.output, sun) for sun in emitted.suns]
@@ -85,10 +86,12 @@ class WorldLight:
         """Adds the suns to the scene's lights."""
         for sun in self.suns:
             matrix = np.column_stack((Vector(sun.direction).to_track_quat("Z", "Y").to_matrix(), np.zeros(3)))
-            self._scene.add_light("sun", sun.irradiance, matrix.astype(np.float32), hidden=self._hidden, angle=sun.angle)
+            self._scene.add_light(
+                "sun", sun.irradiance, matrix.astype(np.float32), hidden=self._hidden, angle=sun.angle
+            )
 
     def _show(self, key, strength, rotation, read):
-        self.suns = []
+        self.suns, self.is_even = [], False
         if key is not None and key == self._picture:
             self._scene.place_world(strength, rotation)
             return

@@ -22,7 +22,7 @@ class Lamp {
   bool distant() const { return type_ == Light::Type::sun; }
   Bounds bounds() const;
   LightCone cone_of_light() const;
-  /// Luminance along the cone's axis, W/sr; for a sun, the irradiance on a plane that faces it.
+  /// Absolute luminance along the cone's axis, W/sr; for a sun, the irradiance on a plane that faces it.
   float intensity() const;
   /// Direction toward a sun.
   const Vec3& axis() const { return axis_; }
@@ -77,7 +77,7 @@ class Lamp {
   Light::Type type_;
   bool sharp_ = false, casts_shadow_ = true, is_mirrored_ = true, sphere_ = true, cosine_ = false;
   uint8_t hidden_from_ = 0;
-  float power_ = 0;      // luminance; for a sun, per square meter
+  float power_ = 0;      // absolute luminance; for a sun, per square meter
   Rgb radiance_{0.0f};   // lights with extent, before falloff
   Rgb intensity_{0.0f};  // delta lights: irradiance of a sun, W/sr of a point
   Vec3 center_{0.0f};    // not for suns

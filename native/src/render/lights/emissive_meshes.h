@@ -13,8 +13,9 @@ namespace velour {
 /// Whether the material emits light from the mesh itself, i.e. without a shell.
 bool emits(const SurfaceMaterial& material);
 
-/// Luminance that a triangle emits to either side: about its mean if the material varies, and above 0 wherever the
-/// material emits at all, so that rounding in the mean of texels loses no light. Programs are evaluated on `instance`.
+/// Absolute luminance that a triangle emits to either side: about its mean if the material varies, and above 0 wherever
+/// the material emits at all, so that rounding in the mean of texels loses no light. Programs are evaluated on
+/// `instance`.
 float mean_emission(const SurfaceMaterial& material, const Scene& scene, const Scene::Instance& instance,
                     uint32_t triangle, const TextureMap* placed);
 

@@ -231,10 +231,10 @@ void DirectLight::settle(std::span<const Receiver> receivers, Output output) {
   terms_.look_up(lighting_, views_, options_.heuristic);
   const auto add = [&](int i, const Rgb& light, float far, bool casts_shadow, bool of_smooth) {
     const Receiver& receiver = receivers[terms_.receiver[i]];
-    settle_term(
-        receivers, i,
-        {terms_.world.get(i), light, limit_of_term(receiver), far, casts_shadow, terms_.light_pdf.v[i], of_smooth},
-        output);
+    settle_term(receivers, i,
+                {terms_.world.get(i), light, limit_of_term(receiver), far, casts_shadow, terms_.light_pdf.v[i],
+                 of_smooth, along_deltas_ || !of_smooth},
+                output);
   };
   for (int i = 0; i < terms_.world.count; ++i) {
     // Cycles finds a sky of one color by bounces, which start on the mesh.
@@ -279,7 +279,8 @@ void DirectLight::settle_emissive(std::span<const Receiver> receivers, Output ou
     const auto [radiance, far] = lighting_.emissive().light(rays[g.direction], g.hit, receiver.vertex.cone);
     const Rgb light = g.weight * radiance * terms_.reflected.get(g.direction);
     settle_term(receivers, g.direction,
-                {terms_.world.get(g.direction), light, limit_of_term(receiver), far, true, g.pdf}, output);
+                {terms_.world.get(g.direction), light, limit_of_term(receiver), far, true, g.pdf, true, along_deltas_},
+                output);
   }
 }
 
@@ -308,7 +309,7 @@ void DirectLight::queue(const Receiver& receiver, const Contribution& c, Output 
   if (!waits(receiver, c, output)) return;
   const Vertex& vertex = receiver.vertex;
   output.shadows->add(c.of_smooth ? vertex.shadow_ray(c.wl_world, c.far) : vertex.ray(c.wl_world, c.far), c.light,
-                      receiver.sample, c.limit);
+                      receiver.sample, c.limit, c.by_bounces ? vertex.kind_along(c.wl_world) : hidden::kFromShadows);
 }
 
 void DirectLight::add_incident(const Vertex& vertex, int term, const Contribution& c, IncidentLight& incident) {

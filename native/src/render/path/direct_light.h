@@ -244,6 +244,8 @@ class DirectLight {
     bool casts_shadow;
     float density;          // of Lighting::sample; infinite for delta lights
     bool of_smooth = true;  // its shadow ray is Vertex::shadow_ray(), not ray()
+    /// Cycles finds it only by continued rays: what these pass through does not block it.
+    bool by_bounces = false;
   };
   /// Queues the contribution of term `term`, makes it wait for the ray of its path, or adds it to the incident light.
   void settle_term(std::span<const Receiver> receivers, int term, const Contribution& contribution, Output output);

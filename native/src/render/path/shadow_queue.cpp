@@ -14,11 +14,18 @@ size_t ShadowQueue::resolve(const VisibleRays& visible, std::vector<CameraSample
   if (log != nullptr) log->add(rays_, RayLog::Kind::occlusion);
   passed_.resize(visible.dims() ? count : 0);
   visible.occluded(rays_, blocked_.data(), visible.dims() ? passed_.data() : nullptr);
+  for (size_t i = 0; i < count; ++i) {
+    if (!visible.tells_apart(kinds_[i])) continue;
+    Hit hit;
+    visible.intersect({&rays_[i], 1}, &hit, {kinds_[i]}, visible.dims() ? &passed_[i] : nullptr);
+    blocked_[i] = hit.instance != kNoHit;
+  }
   for (size_t i = 0; i < passed_.size(); ++i) light_[i] *= passed_[i];
   for (size_t i = 0; i < count; ++i) {
     if (blocked_[i] == 0) samples[sample_[i]].radiance += clamped(light_[i], limit_[i]);
   }
   rays_.clear();
+  kinds_.clear();
   light_.clear();
   sample_.clear();
   limit_.clear();
@@ -110,7 +117,13 @@ VisibleRays::VisibleRays(const Scene& scene)
                                   scene.materials(),
                                   [](const SurfaceMaterial& m) { return m.material->opaque() && !m.hides_backs(); })),
       dims_(std::ranges::any_of(scene.materials(), [](const SurfaceMaterial& m) { return !m.material->opaque(); })) {
-  for (const Scene::Instance& i : scene.instances()) hidden_ |= i.hidden;
+  for (const Scene::Instance& i : scene.instances()) {
+    hidden_ |= i.hidden;
+    const bool from_shadows = (i.hidden & hidden::kFromShadows) != 0;
+    for (const uint8_t kind : {hidden::kFromBounces, hidden::kFromTransmission}) {
+      if (((i.hidden & kind) != 0) != from_shadows) apart_ |= kind;
+    }
+  }
 }
 
 void VisibleRays::intersect(std::span<const Ray> rays, Hit* hits, const RayKinds& kinds, Rgb* passed,

@@ -44,6 +44,8 @@ class VisibleRays {
   /// Batch version, as in EmbreeScene::occluded.
   void occluded(std::span<const Ray> rays, uint8_t* blocked, Rgb* passed = nullptr) const;
 
+  /// Whether an instance is hidden from rays of `kind` or from shadow rays, but not from both.
+  bool tells_apart(uint8_t kind) const { return (apart_ & kind) != 0; }
   /// Whether rays may pass through surfaces. Otherwise `passed` is always 1, and there is nothing to decide.
   bool dims() const { return dims_; }
   /// Whether shadow and bounce rays simply hit the nearest surface.
@@ -69,6 +71,7 @@ class VisibleRays {
   const bool all_opaque_;
   const bool dims_;
   uint8_t hidden_ = 0;  // union over all instances
+  uint8_t apart_ = 0;   // kinds that tells_apart()
 };
 
 class RayLog;
@@ -76,8 +79,10 @@ class RayLog;
 class ShadowQueue {
  public:
   /// Adds `light` to sample `sample` unless something blocks `ray`, clamped to the sum `limit` of its channels.
-  void add(const Ray& ray, const Rgb& light, uint32_t sample, float limit) {
+  /// `kind`: a bit of `hidden`.
+  void add(const Ray& ray, const Rgb& light, uint32_t sample, float limit, uint8_t kind) {
     rays_.push_back(ray);
+    kinds_.push_back(kind);
     light_.push_back(light);
     sample_.push_back(sample);
     limit_.push_back(limit);
@@ -88,6 +93,7 @@ class ShadowQueue {
 
  private:
   std::vector<Ray> rays_;
+  std::vector<uint8_t> kinds_;
   std::vector<Rgb> light_;
   std::vector<uint32_t> sample_;
   std::vector<float> limit_;

@@ -74,6 +74,40 @@ TEST(GlassRender, EmissionIsSeenOnceThroughAPane) {
   }
 }
 
+/// A wall that emits 1 below a pane that transmits 0.96 of it.
+TEST(GlassRender, TransmittedRaysHaveTheirOwnVisibility) {
+  const auto seen = [](uint8_t hidden_from, Strategy strategy) {
+    Scene scene;
+    const uint32_t wall_number = scene.add_material(wall(0, 1)), clear = scene.add_material({.material = glass(0)});
+    scene.add_instance(scene.add_mesh(test::square(3)), test::shift({0, 0, -1}), {wall_number}, {}, hidden_from);
+    scene.add_instance(scene.add_mesh(test::square(1)), test::shift({0, 0, 1}), {clear});
+    scene.set_camera(test::camera_above(0.3f));
+    scene.commit(2);
+    return mean(scene, strategy, 1, 256);
+  };
+  for (const Strategy strategy : {Strategy::mis, Strategy::srbf, Strategy::light}) {
+    EXPECT_EQ(seen(hidden::kFromTransmission, strategy), 0);
+    EXPECT_NEAR(seen(hidden::kFromBounces, strategy), 0.96, 0.02);
+  }
+}
+
+/// A pane beneath and above which the sky is 1: it transmits 0.96 and mirrors 0.04.
+TEST(GlassRender, EnvironmentHiddenFromTransmissionIsOnlyMirrored) {
+  const auto seen = [](uint8_t hidden_from) {
+    Scene scene;
+    const uint32_t clear = scene.add_material({.material = glass(0)});
+    scene.add_instance(scene.add_mesh(test::square(1)), test::shift({0, 0, 1}), {clear});
+    scene.set_environment(Environment::constant(Rgb(1.0f)));
+    scene.hide_environment(hidden_from);
+    scene.set_camera(test::camera_above(0.3f));
+    scene.commit(2);
+    return mean(scene, Strategy::mis, 1);
+  };
+  EXPECT_NEAR(seen(0), 1, 1e-3);
+  EXPECT_NEAR(seen(hidden::kFromTransmission), 0.04, 1e-3);
+  EXPECT_NEAR(seen(hidden::kFromBounces), 0.96, 1e-3);
+}
+
 TEST(GlassRender, MixesShowBothLobesAndLayers) {
   ShaderLayers layers;
   layers.reflecting.push_back({glass(0), {{{.value = 0.5f}}, {}}});

@@ -1,4 +1,4 @@
-// Wavefront OBJ as other programs write it, and polygons cut into triangles.
+// Wavefront OBJ as other programs write it.
 #include "scene/mesh_file.h"
 
 #include <gtest/gtest.h>
@@ -105,43 +105,6 @@ TEST(ObjFile, ConcaveQuads) {
   }
 }
 
-/// Stars of many corners in any plane: the areas of the triangles add up to the polygon's.
-TEST(PolygonTriangles, CoverStars) {
-  PolygonTriangles cutter;
-  for (const int corners : {5, 14, 101, 1000}) {
-    for (const Vec3d& axis : {Vec3d(0, 0, 1), Vec3d(1, 0, 0), Vec3d(-1, 2, 0.3)}) {
-      const Vec3d n = glm::normalize(axis), u = glm::normalize(glm::cross(n, Vec3d(0.3, 0.2, 0.9))),
-                  v = glm::cross(n, u);
-      std::vector<Vec3> polygon;
-      double expected = 0;
-      const auto radius = [&](int i) { return i % 2 == 0 ? 1.0 : 0.4; };
-      for (int i = 0; i < 2 * corners; ++i) {
-        const double angle = kPiD * i / corners;
-        polygon.push_back(Vec3(100.0 * n + radius(i) * (std::cos(angle) * u + std::sin(angle) * v)));
-        expected += radius(i) * radius(i + 1) * std::sin(kPiD / corners) / 2;
-      }
-      const auto triangles = cutter.cut(polygon);
-      ASSERT_EQ(triangles.size(), polygon.size() - 2);
-      double signed_area = 0, area = 0;
-      for (const glm::uvec3& t : triangles) {
-        const Vec3d a(polygon[t[0]]), normal = glm::cross(Vec3d(polygon[t[1]]) - a, Vec3d(polygon[t[2]]) - a);
-        signed_area += glm::dot(normal, n) / 2;
-        area += glm::length(normal) / 2;
-      }
-      EXPECT_NEAR(signed_area, expected, 1e-4 * expected) << corners;
-      EXPECT_NEAR(area, expected, 1e-4 * expected) << corners;
-    }
-  }
-}
-
-TEST(PolygonTriangles, EndForPolygonsThatAreNone) {
-  PolygonTriangles cutter;
-  const std::vector<Vec3> line{{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {1.5f, 0, 0}, {0.5f, 0, 0}};
-  const std::vector<Vec3> eight{{0, 0, 0}, {1, 1, 0}, {1, 0, 0}, {0, 1, 0}, {-1, 0.5f, 0}};
-  const std::vector<Vec3> point(7, Vec3(3, 3, 3));
-  for (const auto& polygon : {line, eight, point}) EXPECT_EQ(cutter.cut(polygon).size(), polygon.size() - 2);
-}
-
 const std::string kTwoSquares = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 2 0 0\nv 2 1 0\n";
 
 TEST(ObjFile, FacesKeepWhatTheyName) {
@@ -189,6 +152,12 @@ TEST(ObjFile, SmoothingGroups) {
   EXPECT_FALSE(bends(read_obj(write_text(roof + "s 0\n" + faces))));
   EXPECT_TRUE(bends(read_obj(write_text(roof + "s 1\n" + faces))));
   EXPECT_FALSE(bends(read_obj(write_text(roof + "s 1\ns off\n" + faces))));
+  EXPECT_TRUE(bends(read_obj(write_text(roof + "g a\ns 1\ng b\nusemtl c\n" + faces))));
+  test::record_input("OBJ", "s on, s null; s 1 before the next o", "flat, as in Blender");
+  for (const char* flat : {"s on\n", "s null\n", "s 00\n", "s 99999999999\n", "s 1\no b\n"})
+    EXPECT_FALSE(bends(read_obj(write_text(roof + flat + faces)))) << flat;
+  for (const char* smooth : {"s +1\n", "s 1.5\n", "s 2 off\n", "s 1\ns\n", "s 1\no\n"})
+    EXPECT_TRUE(bends(read_obj(write_text(roof + smooth + faces)))) << smooth;
 }
 
 TEST(ObjFile, LineEndsMarksAndSigns) {
@@ -203,10 +172,13 @@ TEST(ObjFile, LineEndsMarksAndSigns) {
 }
 
 TEST(ObjFile, NamesTheLineOfAFault) {
-  test::record_input("OBJ", "decimal commas, indices of nothing", "refused with the line");
+  test::record_input("OBJ", "decimal commas, indices of nothing, numbers beyond float32", "refused with the line");
   const std::pair<const char*, const char*> faults[] = {
       {"v 0 0 0\nv 1,5 0 0\n", "line 2: '1,5' is not a number"},
       {"v 0 0\n", "line 1: 'v' has too few"},
+      {"v 0 0 0\nv 1e400 0 0\n", "line 2: '1e400' is too large; use smaller units"},
+      {"v 0 -1e39 0\n", "line 1: '-1e39' is too large"},
+      {"v 1 1e-400 0\nvt 1 1e999\n", "line 2: '1e999' is too large"},
       {"v 0 0 0\n\nf 1 0 1\n", "line 3: '0' is not a valid vertex index"},
       {"v 0 0 0\nf 1 1.5 1\n", "line 2: '1.5' is not a valid vertex index"},
       {"v 0 0 0\r\nf 1 2 1\r\n", "line 2: a face has vertex index 2, but the file has only 1"},

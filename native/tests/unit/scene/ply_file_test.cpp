@@ -127,6 +127,45 @@ TEST(PlyFile, ConcaveQuadsAndCoordinatesOfCorners) {
   EXPECT_EQ(mesh.corner_uvs(2)[1], Vec2(0));
 }
 
+TEST(PlyFile, TriangleStrips) {
+  test::record_input("PLY", "triangle strips (tristrips), alone or beside faces", "read");
+  const std::string head =
+      "ply\nformat ascii 1.0\nelement vertex 6\nproperty float x\nproperty float y\nproperty float z\n";
+  const std::string strips = "element tristrips 1\nproperty list int int vertex_indices\n";
+  const std::string points = "0 0 0\n1 0 0\n0 1 0\n1 1 0\n0 2 0\n1 2 0\n";
+  // Two triangles, a new strip, and two triangles behind two that connect them.
+  const std::string strip = "12 0 1 2 3 -1 2 3 4 4 4 3 5\n";
+  const Mesh alone = read_ply(written(head + strips + "end_header\n" + points + strip));
+  ASSERT_EQ(alone.triangles().size(), 4u);
+  EXPECT_EQ(alone.dropped(), 0u);
+  for (uint32_t t = 0; t < 4; ++t) EXPECT_GT(alone.shading_normal(t, {0.3f, 0.3f}).z, 0.9f) << t;
+  const std::string face =
+      "element face 1\nproperty list uchar int vertex_indices\nproperty list uchar float texcoord\n";
+  const Mesh mixed =
+      read_ply(written(head + strips + face + "end_header\n" + points + "4 0 1 2 3\n3 2 3 5 6 0 0.5 0 0.5 0 0.5\n"));
+  ASSERT_EQ(mixed.triangles().size(), 3u);
+  EXPECT_EQ(mixed.corner_uvs(1)[0], Vec2(0));
+  EXPECT_EQ(mixed.corner_uvs(2)[0], Vec2(0, 0.5f));
+  EXPECT_THROW(read_ply(written(head + strips + "end_header\n" + points + "4 0 1 2 -2\n")), Error);
+}
+
+TEST(PlyFile, RefusesNumbersBeyondDouble) {
+  test::record_input("PLY", "numbers beyond float64", "refused with the byte");
+  std::string bytes = kAscii;
+  const size_t at = bytes.find("1 0 0 1 0\n");
+  bytes.replace(at, 1, "1e400");
+  const std::string path = written(bytes);
+  try {
+    read_ply(path);
+    ADD_FAILURE();
+  } catch (const Error& error) {
+    EXPECT_EQ(error.what(),
+              path + ": the number '1e400' at byte " + std::to_string(at) + " is too large; use smaller units.");
+  }
+  bytes.replace(at, 5, "1e-400");
+  EXPECT_EQ(read_ply(written(bytes)).positions()[1], Vec3(0));
+}
+
 // The corners of a second list would look for normals and uvs that only the first has.
 TEST(PlyFile, RefusesTwoElementsOfOneName) {
   const std::string more_vertices = "element vertex 1\nproperty float x\nproperty float y\nproperty float z\n";
