@@ -537,7 +537,8 @@ VLR_API vlr_status vlr_scene_move_instances(vlr_scene* scene, uint32_t steps);
 VLR_API vlr_status vlr_scene_clear_instances(vlr_scene* scene);
 
 /* Bits: rays that pass through an instance as if it were not there. _BOUNCES: reflected rays; _TRANSMISSION: rays that
- * surfaces have transmitted. VLR_HOLDOUT: the camera sees neither the instance
+ * surfaces have transmitted. They also find the light of a world of one color, whose light _SHADOWS does not let pass,
+ * and all light along the lobes of clear glass. VLR_HOLDOUT: the camera sees neither the instance
  * nor anything behind it: black, alpha 0. */
 enum {
   VLR_HIDDEN_FROM_CAMERA = 1,

@@ -61,7 +61,9 @@ TEST(Hidden, RaysPassWhatIsHiddenFromTheirKind) {
   EXPECT_NEAR(seen_of_two(0, alpha), 0.8, 5e-3);
   EXPECT_NEAR(seen_of_two(hidden::kFromShadows, alpha), 0.8, 5e-3);
   EXPECT_NEAR(seen_of_two(hidden::kFromCamera, alpha), 0, 5e-3);  // in the shadow of what is not seen
-  EXPECT_NEAR(seen_of_two(hidden::kFromCamera | hidden::kFromShadows, alpha), 0.4, 5e-3);
+  // Light of an even sky is found by bounces.
+  EXPECT_NEAR(seen_of_two(hidden::kFromCamera | hidden::kFromShadows, alpha), 0, 5e-3);
+  EXPECT_NEAR(seen_of_two(hidden::kFromCamera | hidden::kFromBounces, alpha), 0.4, 5e-3);
   EXPECT_EQ(alpha, 1);
   EXPECT_EQ(seen_of_two(hidden::kHoldout, alpha), 0);
   EXPECT_EQ(alpha, 0);
