@@ -73,7 +73,7 @@ class UnknownEnumerations(BlenderTest):
     def test_a_lamp_is_a_point(self):
         lamp = bpy.data.objects.new("Lamp", bpy.data.lights.new("Lamp", "SPOT"))
         lights = _Lights()
-        obj = types.SimpleNamespace(name="Lamp", data=_Newer(lamp.data))
+        obj = types.SimpleNamespace(name="Lamp", data=_Newer(lamp.data), visible_transmission=True)
         _module("lights").add_light(lights, obj, lamp.matrix_world, self.notes)
         self.assertEqual(lights.kinds, ["point"])
         self._assert_noted("Light 'Lamp'", "type", "'POINT' is used")

@@ -1,12 +1,13 @@
 """Colors between linear Rec. 709 and a working space that is another one."""
 
-from types import SimpleNamespace
 from unittest import mock
 
 import numpy as np
 from velour.export import color
+from velour.export.plugs import Plug
 from velour.export.shaders.values import own_value
 
+from support import scenes
 from support.blender import BlenderTest
 
 _REC2020 = np.array(((0.6274, 0.3293, 0.0433), (0.0691, 0.9195, 0.0114), (0.0164, 0.0880, 0.8956)))
@@ -35,6 +36,9 @@ class WorkingSpace(BlenderTest):
     def test_a_color_at_a_number(self):
         """A link from a color to a number gives its luminance, the same in every working space."""
         orange = np.array((0.9, 0.4, 0.1))
-        color_socket = SimpleNamespace(default_value=(*(_REC2020 @ orange), 1.0))
-        number = own_value(color_socket, SimpleNamespace(default_value=0.0))
+        tree = scenes.diffuse_material().node_tree
+        rgb, value = tree.nodes.new("ShaderNodeRGB"), tree.nodes.new("ShaderNodeMath")
+        rgb.outputs[0].default_value = (*(_REC2020 @ orange), 1.0)
+        tree.links.new(rgb.outputs[0], value.inputs[0])
+        number = own_value(Plug(value.inputs[0]))
         self.assert_close(number, np.dot((0.2126, 0.7152, 0.0722), orange), 1e-5)

@@ -179,11 +179,10 @@ def test_what_no_picture_can_be_written_as_is_said_before_the_work(
 
 
 def test_devices_and_pipes_are_not_replaced(tmp_path, model_file):
-    pipe = tmp_path / "pipe"
+    pipe = tmp_path / "pipe.gltf"
     os.mkfifo(pipe)
-    for option in ("--json-file", "-o"):
-        verb = ["info", model_file] if option == "--json-file" else ["export", model_file, "--to", "gltf"]
-        assert "pipe is not a regular file; choose another name" in refused(*verb, option, pipe)
+    for verb in (["info", model_file, "--json-file"], ["export", model_file, "--to", "gltf", "-o"]):
+        assert "pipe.gltf is not a regular file; choose another name" in refused(*verb, pipe)
         assert pipe.is_fifo()
 
 

@@ -587,8 +587,6 @@ VLR_API void vlr_picture_options_init(vlr_picture_options* options);
 /* The world is +z up. Image: equirectangular, row 0 at the top (+z), in Blender's convention: the middle column looks
  * along +x; u = 1/2 - atan2(y, x) / (2 pi) from the left, v = 1/2 + asin(z) / pi from the bottom. world_to_image [9,
  * row-major] transforms a world direction before that look-up (NULL: identity). */
-/* Rays that the world does not light: VLR_HIDDEN_FROM_BOUNCES, _TRANSMISSION; 0 (initially): none. */
-VLR_API vlr_status vlr_scene_hide_world(vlr_scene* scene, uint32_t hidden_from);
 VLR_API vlr_status vlr_scene_set_world_color(vlr_scene* scene, const float* color);
 VLR_API vlr_status vlr_scene_set_world_pixels(vlr_scene* scene, uint32_t width, uint32_t height, uint32_t channels,
                                               const float* pixels, float strength, const float* world_to_image);
@@ -598,6 +596,8 @@ VLR_API vlr_status vlr_scene_load_world(vlr_scene* scene, const char* path, floa
  * warning_codes of vlr_scene_info_json. */
 VLR_API vlr_status vlr_scene_load_world_picture(vlr_scene* scene, const char* path, const vlr_picture_options* options,
                                                 float strength, const float* world_to_image);
+/* Rays that the world does not light: VLR_HIDDEN_FROM_BOUNCES, _TRANSMISSION; 0 (initially): none. */
+VLR_API vlr_status vlr_scene_hide_world(vlr_scene* scene, uint32_t hidden_from);
 /* An output of a program that is a color: radiance by the direction in which a ray leaves the scene, as
  * vlr_program_radiance() returns it. Camera rays see the program itself; all others see an image of width x height
  * texels, at most 16384 each, that is made of it (a color if it depends on no direction). */
