@@ -246,10 +246,12 @@ class Hidden(GlassTest):
         self.assert_parity("World: hidden from transmission rays")
 
     def test_lamps(self):
-        """A broad lamp and a sharp sun before rough glass."""
+        """A broad lamp and a sharp sun before rough glass, where Cycles 4 leaves a part of their light."""
         self.tree.end(self._glass(0.3))
         stage.world((0, 0, 0))
         broad = stage.lamp("AREA", 200, (0, 1.5, 3), (-0.7, 0, 0), size=1.5)
         for lamp in (broad, stage.sharp_sun()):
             lamp.visible_transmission = False
-        self.assert_parity("Lights: hidden from transmission rays", samples=2)
+        self.assert_approximate(
+            "Lights: hidden from transmission rays", 60, samples=2, exact=((3, 4, 0), (4, 0, 0))
+        )

@@ -348,27 +348,57 @@ class Conversions(BoardTest):
         def vector(nodes):
             return nodes.add("CombineXYZ", {"X": nodes.ramp(), "Y": 0.7, "Z": 0.1}).outputs[0]
 
+        def constant(nodes):
+            """5.0 and newer convert constants alone; colors with rounded weights, 0.01 % off Cycles'."""
+            return nodes.add("CombineXYZ", {"X": 2.7, "Y": 0.4, "Z": 0.1}).outputs[0]
+
         def own(given, asked, value):
             return through(given, asked, lambda _nodes: value)
 
-        pairs = (("Float", "Color"), ("Color", "Float"), ("Vector", "Float"), ("Float", "Vector"))
+        pairs = (
+            ("Float", "Color"),
+            ("Color", "Float"),
+            ("Vector", "Float"),
+            ("Int", "Color"),
+            ("Bool", "Color"),
+        )
+        colors = ("Color", "Float")
         self.show(
             [through(*pair, source) for pair in pairs for source in (Nodes.color, vector)]
-            + [own("Vector", "Float", (0.9, 0.2, 0.4)), own("Float", "Color", 0.4)]
+            + [through(*pair, constant) for pair in pairs if pair != colors]
+            + [
+                own("Vector", "Float", (0.9, 0.2, 0.4)),
+                own("Float", "Color", 0.4),
+                own("Color", "Int", (4, 2, 1, 1)),
+            ]
         )
         self.assert_parity("Node groups: sockets of other types")
 
     def test_muted(self):
-        """The unlinked input of a muted node is 0."""
+        """Unlinked inputs of muted nodes and reroutes are 0; from 5.0 on, the fed input has its own value."""
 
         def muted(nodes):
             node = nodes.add("Gamma", {"Color": (0.3, 0.6, 0.9, 1)})
             node.mute = True
-            return nodes.add(
-                "Mix", {"Factor_Float": 0.5, "A_Color": node, "B_Color": nodes.color()}, data_type="RGBA"
-            ).outputs[2]
+            return node
 
-        self.show([muted])
+        def loose(nodes):
+            return nodes.tree.nodes.new("NodeReroute")
+
+        def grouped(nodes):
+            return nodes.add("Group", {0: muted(nodes)}, node_tree=self._group("Color", "Color"))
+
+        def shown(source):
+            def built(nodes):
+                mixed = nodes.add(
+                    "Mix", {"A_Color": (0.4, 0.2, 0.1, 1), "B_Color": nodes.color()}, data_type="RGBA"
+                )
+                nodes.set(mixed, "A_Color", source(nodes))
+                return mixed.outputs[2]
+
+            return built
+
+        self.show([shown(source) for source in (muted, loose, grouped)])
         self.assert_parity("Muted node without a link")
 
 

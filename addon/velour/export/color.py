@@ -1,13 +1,17 @@
 """Color conversion between Blender's scene-linear space and the library's Rec. 709."""
 
+import bpy
 import numpy as np
 from mathutils import Color
 
-from ..core.luminance import LUMINANCE
 from ..core.srgb import decoded
 
 _LINEAR_REC709 = {"Linear", "Linear Rec.709", "linear", "scene_linear", "Utility - Linear - sRGB"}
 _DATA = {"Non-Color", "Raw", "Generic Data"}
+# Weights of linear Rec. 709 in Cycles; those of 5.0 are of other primaries in its configuration of colors.
+_LUMINANCE = np.array(
+    (0.212639, 0.715169, 0.072192) if bpy.app.version >= (5, 0) else (0.212673, 0.715152, 0.072175)
+)
 
 
 def rec709_to_working():
@@ -39,7 +43,7 @@ def set_working_space(scene):
 
 def luminance_weights():
     """[3] float32 weights of the luminance of a working-space color."""
-    return (LUMINANCE @ np.linalg.inv(rec709_to_working())).astype(np.float32)
+    return (_LUMINANCE @ np.linalg.inv(rec709_to_working())).astype(np.float32)
 
 
 def is_linear_rec709(space_name):

@@ -2,8 +2,28 @@
 
 from typing import Any, NamedTuple
 
+import bpy
+
 from .nodes import first_input, model_texture
 
+# Whether Cycles sees a tree without groups, reroutes and muted nodes: 5.0 and newer.
+INLINES = hasattr(bpy.types.Material, "inline_shader_nodes")
+# Nodes that are then replaced by their values if all their inputs are constant.
+_FOLDED = (
+    "ShaderNodeValue",
+    "ShaderNodeMath",
+    "ShaderNodeVectorMath",
+    "ShaderNodeMix",
+    "ShaderNodeCombineXYZ",
+    "ShaderNodeSeparateXYZ",
+    "ShaderNodeClamp",
+    "ShaderNodeMapRange",
+    "ShaderNodeVectorRotate",
+    "ShaderNodeValToRGB",
+    "ShaderNodeRGBCurve",
+    "ShaderNodeVectorCurve",
+    "ShaderNodeFloatCurve",
+)
 _MOST_STEPS = 1000  # links of a broken file may be cyclic
 
 
@@ -37,12 +57,34 @@ def followed(plug):
 
 
 def types_between(plug):
-    """Types of the sockets that a value passes on its way to an input, from its source to the input.
+    """Types of the sockets that convert a value on its way to an input, from its source to the input.
 
-    Each converts it, as in Cycles; inputs of muted nodes do not.
+    Like Cycles: inputs of muted nodes do not. Where it sees no groups, they convert only constants.
     """
     passed = [each for each in _path(plug) if each and (each.socket.is_output or not each.node.mute)]
-    return [each.socket.type for each in reversed(passed)]
+    types = [each.socket.type for each in reversed(passed)]
+    source = passed[-1]
+    if INLINES and source.socket.is_output and not set(types) <= {types[0], types[-1]}:
+        return types if _is_folded(source) else [types[0], types[-1]]
+    return types
+
+
+def _is_folded(plug):
+    """Whether an output is replaced by its value before Cycles sees it."""
+    waiting, seen = [plug], set()
+    while waiting:
+        node, groups = (found := waiting.pop()).node, found.groups
+        if node.bl_idname not in _FOLDED:
+            return False
+        feeding = {fed_by(Plug(each, groups)) for each in node.inputs if each.enabled and each.is_linked}
+        waiting += feeding - seen - {None}
+        seen |= feeding
+    return True
+
+
+def is_within_tree(plug):
+    """Whether links lead to the value of an input without leaving its tree or entering a group."""
+    return all(each is None or each.groups == plug.groups for each in _path(plug))
 
 
 def _path(plug):
@@ -60,7 +102,7 @@ def _path(plug):
 
 
 def is_passed_through(node):
-    """Whether links pass through a node; its unlinked inputs are 0, as in Cycles."""
+    """Whether links pass through a node."""
     return node.mute or node.bl_idname == "NodeReroute"
 
 
