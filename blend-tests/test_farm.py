@@ -129,6 +129,13 @@ class Farm(FarmTest):
         said = self.save_and_make("noisy", "--parts", "2", status=1)
         self.assertIn("has a noise threshold, which looks at a whole picture", said)
 
+    def test_more_parts_than_camera_rays(self):
+        bpy.ops.wm.open_mainfile(filepath=str(self.blend))
+        settings = bpy.context.scene.velour
+        settings.samples, settings.split = 32, 8
+        self.assertIn("too few for 5 parts", self.save_and_make("many", "--parts", "5", status=1))
+        self.save_and_make("enough", "--parts", "4")
+
     def test_linked_libraries(self):
         """Also what a library links: frames of another state of them are refused, and jobs without them."""
         inner, outer = self.shots / "sets/inner.blend", self.shots / "outer.blend"

@@ -58,7 +58,8 @@ def holdouts_and_backs(folder):
     cube.is_holdout, cube.location = True, (1.5, -1.5, 1.0)
     with window.override():
         scenes.add_plane(scenes.diffuse_material((0.8, 0.3, 0.1)), size=7.0)
-        culled = scenes.diffuse_material((0.1, 0.3, 0.8))
+        culled = scenes.measured_material((_DATA / "paint.velour").read_bytes())
+        scenes.set_look(culled, tint=(0.1, 0.3, 1.0))
         culled.use_backface_culling = True
         for x, scale in ((-2.5, 1.0), (0.0, -1.0)):
             for turn in (0.0, np.pi):

@@ -259,6 +259,23 @@ def test_depth_of_field_is_named():
     assert str(found[0]) == "geometry: only one of both has depth of field or motion blur"
 
 
+def test_camera_is_named_where_a_plane_slides_along_itself():
+    scene = Scene()
+    scene.coordinates[scene.where("Floor")] += 0.02
+    for name in ("Ball", "Box"):
+        scene.shape[scene.where(name)] *= 1.02
+    _, found = judged(scene)
+    assert [str(cause) for cause in found] == ["geometry: all visible objects, or the camera"]
+
+
+def test_world_that_is_all_light_is_named_so():
+    scene = Scene()
+    _brighter_world(scene)
+    _, found = judged(scene)
+    assert [cause.kind for cause in found] == ["world"]
+    assert str(found[0]).endswith("and all light of the scene with it")
+
+
 def test_camera_is_named_where_everything_moves():
     scene = Scene()
     scene.shape[scene.objects > 0] *= 1.02

@@ -186,6 +186,18 @@ def test_devices_and_pipes_are_not_replaced(tmp_path, model_file):
         assert pipe.is_fifo()
 
 
+def test_inputs_are_not_replaced(tmp_path, model_file, mesh_file, world_file):
+    before = world_file.read_bytes()
+    scene = ["--mesh", mesh_file, "--material", model_file, "--world", world_file]
+    assert "would replace the input" in refused("render", *scene, "-o", world_file)
+    assert world_file.read_bytes() == before
+    folder = tmp_path / "set"
+    folder.mkdir()
+    (folder / "btf.json").write_text("{}")
+    assert "would replace a file of the input" in refused("compress", folder, "-o", folder / "btf.json")
+    assert (folder / "btf.json").read_text() == "{}"
+
+
 def test_a_full_disk_is_named_with_the_file(tmp_path):
     def full(_path):
         raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))

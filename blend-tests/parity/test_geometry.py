@@ -6,7 +6,7 @@ import bpy
 import numpy as np
 
 from parity import stage
-from parity.case import ALWAYS, NEVER, ParityTest
+from parity.case import ParityTest
 from parity.shaders import image
 
 _SQUARE = [(-2, 0, -1), (2, 0, -1), (2, 0, 1), (-2, 0, 1)]
@@ -137,9 +137,21 @@ class Sheet(ParityTest):
 
     def test_mixed(self):
         self.sheet.polygons.foreach_set("use_smooth", [i % 2 == 0 for i in range(36)])
-        # Cycles 4 goes on to take normals of vertices, where Blender since 4.1, and Cycles 5, split them.
-        exact = (ALWAYS, (4, 1)) if bpy.app.version < (4, 1) else ((5, 0), NEVER)
-        self.assert_approximate("Normals: flat and smooth faces", 15, exact=exact)
+        self.assert_parity("Normals: flat and smooth faces")
+
+    def test_sharp_edges_alone(self):
+        """Cycles asks faces whether they are flat, not their edges."""
+        self.sheet.polygons.foreach_set("use_smooth", [True] * 36)
+        self.sheet.edges.foreach_set("use_edge_sharp", [True] * len(self.sheet.edges))
+        self.assert_parity("Normals: smooth faces, all edges sharp")
+
+    def test_normals_of_faces(self):
+        """Cycles does not use them, and Blender before 4.5 does not either."""
+        self.sheet.polygons.foreach_set("use_smooth", [i % 3 > 0 for i in range(36)])
+        normals = self.sheet.attributes.new("custom_normal", "FLOAT_VECTOR", "FACE")
+        values = np.random.default_rng(4).normal((0, 0, 1), 0.3, (36, 3)).astype(np.float32)
+        normals.data.foreach_set("vector", values.ravel())
+        self.assert_parity("Normals: custom normals of faces")
 
     def test_auto_smooth(self):
         auto_smooth(self.sheet, 0.6)
@@ -201,6 +213,15 @@ class Visibility(ParityTest):
         self.scene.cycles.max_bounces = self.scene.cycles.diffuse_bounces = self.scene.velour.bounces = 2
         self.scene.world = None
         self.assert_parity("Object: hidden from diffuse and glossy rays")
+
+    def test_bounces_under_wide_lights(self):
+        self.scene.world = None
+        self.sphere.visible_diffuse = self.sphere.visible_glossy = False
+        stage.lamp("AREA", 200, (0, 0, 2.2), size=2.0)
+        self.assert_ignored(
+            "Object: hidden from diffuse and glossy rays, its shadow under an area light",
+            "but blocks light of lights with a size, which",
+        )
 
     def test_holdout(self):
         self.sphere.is_holdout = True

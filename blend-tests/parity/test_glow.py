@@ -45,6 +45,23 @@ class Glow(ParityTest):
         self._square()
         self.assert_parity("Glowing surface: negative strength")
 
+    def test_below_coat_and_sheen(self):
+        """Since 4.0 they dim the emission of a Principled BSDF."""
+        shader = self.tree.nodes.new("ShaderNodeBsdfPrincipled")
+        if "Coat Weight" not in shader.inputs:
+            self.skipTest("before 4.0 coat and sheen do not dim emission")
+        shader.inputs["Emission Strength"].default_value = 5.0
+        self.tree.end(shader.outputs[0])
+        self._square(scale=1.2, rotation=(-0.6, 0, 0))
+        for name in ("Coat", "Sheen"):
+            with self.subTest(name):
+                shader.inputs[f"{name} Weight"].default_value = 1.0
+                self.assert_ignored(
+                    f"Principled BSDF: emission below its {name.lower()}",
+                    f"its {name.lower()} does not dim its emission",
+                )
+                shader.inputs[f"{name} Weight"].default_value = 0.0
+
     def test_bounce(self):
         scene = bpy.context.scene
         scene.velour.bounces = scene.cycles.max_bounces = scene.cycles.diffuse_bounces = 1

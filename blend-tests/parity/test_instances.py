@@ -2,6 +2,7 @@
 
 import bpy
 
+from parity import stage
 from parity.ground import KindTest
 from parity.shaders import Tree, geometry_nodes
 
@@ -108,6 +109,23 @@ class Instancers(KindTest):
                 setattr(self._layer(self.kit), name, True)
                 self.assert_parity(f"Instanced collection: {name.replace('_', ' ')}")
                 setattr(self._layer(self.kit), name, False)
+
+    def test_light(self):
+        """Since 4.4, lights follow what instances them."""
+        for obj in self.kit.objects:
+            bpy.data.objects.remove(obj)
+        lamp = stage.lamp("AREA", 300, (0, 0, 3), size=0.5)
+        self.scene.collection.objects.unlink(lamp)
+        self.kit.objects.link(lamp)
+        self.scene.view_layers[0].layer_collection.children[self.kit.name].exclude = True
+        self.instancer.visible_diffuse = False
+        if bpy.app.version < (4, 4):
+            self.assert_parity("Instanced light, its instancer hidden from diffuse rays")
+        else:
+            self.assert_ignored(
+                "Instanced light, its instancer hidden from diffuse rays",
+                f"Light '{lamp.name}': hiding it from diffuse rays is not supported",
+            )
 
     def test_shadow_catcher(self):
         self.instancer.is_shadow_catcher = True

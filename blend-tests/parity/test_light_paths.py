@@ -99,6 +99,20 @@ class LightPaths(BoxTest):
         self._assert_seen("Reflective Caustics: off, Principled BSDF", samples=4)
 
 
+class Transparent(BoxTest):
+    def test_most_bounces(self):
+        """Cycles shows nothing behind more surfaces than it may pass."""
+        stage.sharp_sun()
+        for height in (1.2, 1.3, 1.4):
+            material = bpy.data.materials.new("Clear")
+            tree = Tree(material)
+            tree.end(tree.transparent((0.9, 0.8, 0.7)))
+            corners = [(x, y, height) for x, y in ((-1, -1), (1, -1), (1, 1), (-1, 1))]
+            stage.mesh(corners, [(0, 1, 2, 3)], material, "Clear")
+        self.scene.cycles.transparent_max_bounces = 2
+        self.assert_ignored("Transparent bounces", "Transparent Max Bounces of Cycles: not supported")
+
+
 class Copied(BoxTest):
     def test_all_settings(self):
         cycles, settings = self.scene.cycles, self.scene.velour

@@ -53,6 +53,11 @@ class Lights(BoxTest):
         lamp.data.use_nodes = True
         return lamp.data.node_tree
 
+    def test_shown(self):
+        lamp = stage.lamp("POINT", 60, (0.8, 0.6, 2), shadow_soft_size=0.3)
+        lamp.visible_camera = True
+        self.assert_ignored("Light: shown to the camera", "Light 'Lamp': showing it to the camera is not")
+
     def test_negative(self):
         """Lights of less than no power take away light of others."""
         stage.world((0.5, 0.5, 0.5))

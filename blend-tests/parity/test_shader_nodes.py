@@ -301,6 +301,31 @@ class Places(BoardTest):
         self.show([built])
         self.assert_parity("Image Texture: computed coordinates")
 
+    def test_mappings_of_textures(self):
+        """Texture nodes map their coordinates by settings that only their sidebar shows."""
+        image = bpy.data.images.new("colors", 4, 4, float_buffer=True)
+        image.pixels = [0.1 + 0.8 * ((7 * i) % 16) / 16 for i in range(64)]
+        image.pack()
+
+        def texture(idname, kind, axes="XYZ", **properties):
+            def built(nodes):
+                node = nodes.add(idname, **properties)
+                mapping = node.texture_mapping
+                mapping.vector_type, mapping.translation = kind, (0.3, 0.1, -0.2)
+                mapping.rotation, mapping.scale = (0.4, 0.2, 0.9), (1.7, -0.6, 1.2)
+                mapping.mapping_x, mapping.mapping_y, mapping.mapping_z = axes
+                return node.outputs[0]
+
+            return built
+
+        kinds = ("POINT", "TEXTURE", "VECTOR", "NORMAL")
+        self.show(
+            [texture("TexImage", kind, image=image) for kind in kinds]
+            + [texture("TexChecker", kind) for kind in kinds]
+            + [texture("TexImage", "POINT", ("Y", "X", "NONE"), image=image)]
+        )
+        self.assert_parity("Textures: mapping among their own settings")
+
     def test_units(self):
         """Places are in Blender's units whatever their size in meters."""
         empty = stage.link(bpy.data.objects.new("Empty", None))

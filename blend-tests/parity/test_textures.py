@@ -256,5 +256,20 @@ class AlphaModes(BoardTest):
     def test_exr(self):
         self._assert_all("OpenEXR", lambda: self._file(".exr", "32"))
 
+    def test_tone_mapped(self):
+        """Color spaces with sRGB in their names are not sRGB for that."""
+        image = self._packed(False)
+        found = None
+        for name in ("AgX Base sRGB", "Filmic sRGB"):
+            try:
+                image.colorspace_settings.name = found = name
+                break
+            except TypeError:
+                continue
+        if found is None:
+            self.skipTest("this Blender has no such color space")
+        self.show([lambda nodes: nodes.add("TexImage", image=image, interpolation="Closest").outputs[0]])
+        self.assert_ignored(f"Image Texture: {found}", f"its color space '{found}' is not supported")
+
     def test_encoded_exr(self):
         self._assert_all("OpenEXR in sRGB", lambda: self._file(".exr", "32", "sRGB"))

@@ -60,6 +60,10 @@ class World(ParityTest):
                 self._mapping(self._environment(), (0.3, -0.4, 1.1), kind)
                 self.assert_parity(f"World: rotated environment, {kind.lower()} mapping")
 
+    def test_mapping_of_texture(self):
+        self._environment().texture_mapping.rotation = (0.3, -0.4, 1.1)
+        self.assert_parity("World: environment rotated by the settings of its node")
+
     def test_closest(self):
         self._environment(interpolation="Closest")
         self.assert_approximate("World: environment, closest texel", 0.6)

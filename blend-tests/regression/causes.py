@@ -45,7 +45,10 @@ def _in_passes(sides: Sides) -> list[Cause]:
     explained |= of_shape
     materials, of_materials = _materials(sides, ~explained)
     materials += thinned
-    causes += materials + _world(passes)
+    world = _world(passes)
+    if world and not causes + materials and _exposure(sides, np.ones(explained.shape, bool)):
+        world = [world[0]._replace(sentence=f"{world[0].sentence}, and all light of the scene with it")]
+    causes += materials + world
     if not any(cause.kind == "geometry" for cause in causes):
         causes += _blur(passes)
     if materials and len(causes) == len(materials):
@@ -78,18 +81,24 @@ def _geometry(sides: Sides, usable: np.ndarray) -> tuple[list[Cause], np.ndarray
     if not names and usable.all():
         names = _on_edges(sides)
     if names:
-        seen = {name for name in sides.known.objects.names if sides.known.objects.where(name).any()}
-        all_of_them = len(seen) > 1 and seen <= set(names)
-        sentence = f"shape or place of {_listed('object', names)}"
-        if all_of_them:
-            sentence = "all visible objects, or the camera"
-        causes.append(Cause("geometry", sentence, tuple(names)))
         explained |= relabeled
     shifted = changed(sides, "objects", "coordinates", stays & ~explained)
+    if _are_all_visible(sides, {*names, *shifted}) and names:  # a plane stays in place along itself
+        causes.append(Cause("geometry", "all visible objects, or the camera", (*names, *shifted)))
+        return causes, explained | covered(sides, "objects", shifted)
+    if names:
+        sentence = f"shape or place of {_listed('object', names)}"
+        causes.append(Cause("geometry", sentence, tuple(names)))
     if shifted:
         causes.append(Cause("geometry", f"UV map of {_listed('object', shifted)}", tuple(shifted)))
         explained |= covered(sides, "objects", shifted)
     return causes, explained
+
+
+def _are_all_visible(sides: Sides, names: set[str]) -> bool:
+    """Whether these are all of the two or more objects that the reference shows."""
+    seen = {name for name in sides.known.objects.names if sides.known.objects.where(name).any()}
+    return len(seen) > 1 and seen <= names
 
 
 def _in_front(sides: Sides, relabeled: np.ndarray) -> list[str]:

@@ -126,6 +126,10 @@ SENTENCES = {
         "{images} of {all} images of the BTF lack one of the channels R, G and B, which is treated as 0. The"
         " first is {first}. Save the images with all three channels, or choose another layer."
     ),
+    "images_color_space_ignored": (
+        "{images} of {all} images of the BTF have a color profile other than sRGB, which is not applied. The"
+        " first is {first}, with the profile {space}. Convert the images to sRGB for the right colors."
+    ),
     "values_not_finite": (
         "{values} values of the BTF are not finite and were replaced by the mean of their image. If spots are"
         " visible, capture it again."
@@ -246,6 +250,10 @@ SENTENCES = {
     ),
     "parts_ignored": "{file}: part{part:name} of {parts} is used; the other parts are ignored.",
     "channel_missing": "{file}: one of the channels R, G and B is missing and is treated as 0.",
+    "xyz_as_rgb": (
+        "{file}: its channels X, Y and Z are used as red, green and blue. If they are CIE XYZ, save the image"
+        " as RGB or with its chromaticities."
+    ),
     "orientation_ignored": (
         f"{{file}}: according to its header, the image is stored {{orientation:{_ORIENTATIONS}}}. {_IGNORED}"
     ),
@@ -253,6 +261,10 @@ SENTENCES = {
         f"{{file}}: according to its header, its values must be divided by an exposure. {_IGNORED}"
     ),
     "primaries_ignored": f"{{file}}: according to its header, its colors are not in Rec. 709. {_IGNORED}",
+    "color_space_ignored": (
+        "{file}: its color profile {space} is not applied; its values are treated as sRGB. Convert the image"
+        " to sRGB for the right colors."
+    ),
     "window_ignored": (
         "{file}: according to its header, it is a part of an image of {width} x {height} pixels."
         f" {_IGNORED}"

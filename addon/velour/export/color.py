@@ -7,6 +7,8 @@ from mathutils import Color
 from ..core.srgb import decoded
 
 _LINEAR_REC709 = {"Linear", "Linear Rec.709", "linear", "scene_linear", "Utility - Linear - sRGB"}
+# Names that contain sRGB may as well be of tone-mapped spaces, such as Filmic sRGB.
+_SRGB = {"sRGB", "sRGB - Texture", "Utility - sRGB - Texture", "sRGB OETF", "sRGB Encoded Rec.709 (sRGB)"}
 _DATA = {"Non-Color", "Raw", "Generic Data"}
 # Weights of linear Rec. 709 in Cycles; those of 5.0 are of other primaries in its configuration of colors.
 _LUMINANCE = np.array(
@@ -72,7 +74,7 @@ def bytes_to_working(pixels, space_name):
     if space_name not in _LINEAR_REC709:
         rgb = decoded(rgb)
     pixels[..., :3] = rec709_pixels_to_working(rgb)
-    return pixels, space_name in _LINEAR_REC709 or "sRGB" in space_name
+    return pixels, space_name in _LINEAR_REC709 | _SRGB
 
 
 def _to_scene_linear(primary):

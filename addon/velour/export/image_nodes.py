@@ -14,6 +14,7 @@ _SOURCES = ("FILE", "GENERATED")
 _NODES = ("ShaderNodeTexImage", "ShaderNodeTexEnvironment")
 _CUBIC = ("Cubic", "Smart")
 _IDENTITY = np.eye(2, 3, dtype=np.float32)
+MAPPED_AXES = ("mapping_x", "mapping_y", "mapping_z")
 
 
 class Picture(NamedTuple):
@@ -41,7 +42,7 @@ class UnsupportedError(Exception):
 def picture_of(plug, owner, notes):
     """The Picture at an Image Texture's output; raises UnsupportedError unless it is on a UV map."""
     picture = unplaced_picture(plug, owner, notes)
-    uv_map, coordinates = uv_placement(plug.input("Vector"))
+    uv_map, coordinates = uv_placement(plug)
     return picture._replace(uv_map=uv_map, coordinates=coordinates)
 
 
@@ -85,10 +86,24 @@ def is_identity(uv_map):
     return bool((uv_map == _IDENTITY).all())
 
 
-def uv_placement(vector):
-    """`uv_map` and `coordinates` of an Image Texture's Vector input; unlinked: the mesh's own."""
-    matrix, name = uv_map_of(vector)
+def uv_placement(plug):
+    """`uv_map` and `coordinates` of an Image Texture; without a link, the mesh's own.
+
+    Raises UnsupportedError for other coordinates.
+    """
+    if maps_coordinates(plug.node):
+        raise UnsupportedError(f"'{plug.node.name}' maps its coordinates")
+    matrix, name = uv_map_of(plug.input("Vector"))
     return matrix, name or ""
+
+
+def maps_coordinates(node):
+    """Whether a texture node maps its coordinates by settings of its own, which only its sidebar shows."""
+    mapping = getattr(node, "texture_mapping", None)
+    if mapping is None:
+        return False
+    values = (*mapping.translation, *mapping.rotation, *(factor - 1.0 for factor in mapping.scale))
+    return any(values) or [getattr(mapping, name) for name in MAPPED_AXES] != ["X", "Y", "Z"]
 
 
 def uv_map_of(vector):

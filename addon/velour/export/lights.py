@@ -20,10 +20,13 @@ _AREA_POWER = math.pi / 4 if _OLDER_LAMPS else 1.0
 _FACTORS = ("diffuse_factor", "specular_factor", "volume_factor")
 
 
-def add_light(scene, obj, matrix, notes):
-    """Adds a light; returns whether it emits. `obj`: evaluated object, `matrix`: its instance's transform."""
+def add_light(scene, obj, matrix, notes, hidden=()):
+    """Adds a light; returns whether it emits.
+
+    obj: evaluated object. matrix: transform of its instance. hidden: rays that do not see it.
+    """
     lamp = obj.data
-    if lamp.type == "AREA" and getattr(getattr(lamp, "cycles", None), "is_portal", False):
+    if is_portal(lamp):
         return False  # not a light: portals only guide Cycles' environment sampling
     owner = f"Light '{obj.name}'"
     emission = emission_factor(lamp)
@@ -40,13 +43,16 @@ def add_light(scene, obj, matrix, notes):
     watts = power(lamp, matrix) * factor
     color = tuple(watts * c * e for c, e in zip(tinted(lamp), emission, strict=True))
     _note_shape(lamp, matrix, owner, notes)
-    hidden = () if obj.visible_transmission else ("transmission",)
     values.update(casts_shadow=_casts_shadow(lamp), mirrored=_is_mirrored(lamp))
     try:
         scene.add_light(kind, color, unscaled(matrix), hidden=hidden, **values)
     except VelourError as error:
         raise ExportError(f"{owner}: {error}") from error
     return any(c != 0.0 for c in color) and not _is_flat(lamp, matrix)
+
+
+def is_portal(lamp):
+    return lamp.type == "AREA" and getattr(getattr(lamp, "cycles", None), "is_portal", False)
 
 
 def power(lamp, matrix):

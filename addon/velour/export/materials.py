@@ -177,12 +177,14 @@ class MaterialTable:
         if plain:
             values = plain.values | {"surface_correction": correction(material)}
             number = self._scene.add_textured_material(self._slots(plain, material), **values)
-            return self._with_rays(number, material)
+            return self._with_light_sampling(number, material)
         with Shader.new() as shader:
             for layer in layers:
                 for part in split(layer):
                     self._add_layer(shader, part, material)
-            number = self._with_rays(self._scene.add_shader_material(shader), material)
+            number = self._with_light_sampling(self._scene.add_shader_material(shader), material)
+        if any(layer.measured for layer in layers):
+            self._scene.hide_backs(number, hidden_backs(material))
         for shell in self._shells(material, layers):
             self._measured.set_shell(number, shell.node.velour)
         return number
@@ -234,9 +236,8 @@ class MaterialTable:
 
         return finished(draft, self._uv_maps[key], self._colors[key], texture)
 
-    def _with_rays(self, number, material):
-        """Sets backface culling and light sampling of a material; returns its number."""
-        self._scene.hide_backs(number, hidden_backs(material))
+    def _with_light_sampling(self, number, material):
+        """Sets the light sampling of a material; returns its number."""
         if not draws_rays(material):
             self._scene.set_drawn_to(number, False)
         return number

@@ -13,6 +13,8 @@ from .corner_colors import corner_colors, has_attribute
 
 # Looking up a missing attribute on every mesh is slow.
 _HAS_DOMAINS = "normals_domain" in bpy.types.Mesh.bl_rna.properties  # 4.1 and newer
+# No property reveals it: whether Cycles takes normals of corners where smooth faces meet flat ones.
+_SPLITS_AT_FACES = bpy.app.version >= (5, 0)
 
 
 def _own(_name, count, dtype):
@@ -155,11 +157,11 @@ def _normals(mesh, count, empty):
     Blender passes normals to Python one by one, and there are many more corners than vertices. Flat faces are
     shaded with the normals of their triangles, as in Cycles, except with auto smooth.
     """
-    domain = mesh.normals_domain if _HAS_DOMAINS else None
+    domain = _normals_domain(mesh)
     if domain == "CORNER":
+        if not _HAS_DOMAINS:
+            return _split_normals(mesh), None, None
         return _read(mesh.corner_normals, "vector", (len(mesh.loops), 3)), None, None
-    if domain is None and mesh.use_auto_smooth:
-        return _split_normals(mesh), None, None
     some_smooth, some_flat, faces = _smooth_faces(mesh, domain)
     of_vertices = smooth = None
     if some_smooth:
@@ -172,6 +174,25 @@ def _normals(mesh, count, empty):
         else:
             smooth.fill(0)
     return None, of_vertices, smooth
+
+
+def _normals_domain(mesh):
+    """Where Cycles reads normals: CORNER, POINT, FACE; None: each face is smooth or flat.
+
+    Cycles does not use custom normals of faces.
+    """
+    if not _HAS_DOMAINS:
+        return "CORNER" if mesh.use_auto_smooth else None
+    domain, is_custom = mesh.normals_domain, mesh.has_custom_normals
+    if domain == "CORNER":
+        return domain if is_custom or _SPLITS_AT_FACES or _has_sharp_edges(mesh) else None
+    # Smooth faces may have custom normals of another kind, or only sharp edges.
+    return None if (is_custom or domain == "FACE") and "sharp_face" in mesh.attributes else domain
+
+
+def _has_sharp_edges(mesh):
+    sharp = mesh.attributes.get("sharp_edge")
+    return sharp is not None and bool(_read(sharp.data, "value", (len(mesh.edges),), bool).any())
 
 
 def _smooth_faces(mesh, domain):

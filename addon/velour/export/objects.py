@@ -10,11 +10,12 @@ from .instances import InstanceGroups
 from .kept_meshes import KeptMeshes
 from .lights import add_light
 from .meshes import has_colors, has_uv_map, has_uv_maps, object_arrays
+from .notes import listed
 from .placement import Placements, missing_coordinates, projected_onto
 from .units import metres_per_unit
 from .unused_settings import note_pencil
 from .uv_maps import maps_of_slots, missing_map
-from .visibility import Visibility, hidden, note_light_visibility
+from .visibility import Visibility, has_extent, hidden, hidden_light
 
 _FLAT = 1e-36  # the library skips instances up to this determinant, and does not count them
 _TERMINATOR = {"geometry": 0.1, "shading": 0.0}  # Cycles' defaults, without its add-on
@@ -99,6 +100,7 @@ class ObjectExport:
         self._seen = []  # queue indices of meshes that are not hidden from the camera
         self.is_seen = False  # whether any of them has triangles
         self._shading = []  # names of objects that only shadow rays see
+        self._some_are_wide = False  # whether some lights have a size, besides suns
 
     def add_all(self, depsgraph):
         self.add_shown(depsgraph, lambda instance: instance.show_self)
@@ -125,8 +127,10 @@ class ObjectExport:
             obj = instance.object
             kind = obj.type
             if kind == "LIGHT" and not geometry_alone:
-                note_light_visibility(obj, self._notes)
-                self.shines |= add_light(self._scene, obj, instance.matrix_world, self._notes)
+                instancer = instance.parent if instance.is_instance else None
+                rays = hidden_light(obj, instancer, self._notes)
+                self.shines |= add_light(self._scene, obj, instance.matrix_world, self._notes, rays)
+                self._some_are_wide |= obj.data.type != "SUN" and has_extent(obj.data)
                 continue
             shown = self._look_once(instance, obj, override, visibility)
             if shown:
@@ -135,12 +139,16 @@ class ObjectExport:
         self.is_seen = any(numbers[place] is not None for place in self._seen)
         self.owners += self._groups.add_to_scene(numbers)
 
-    def note_shadows_of_sky(self):
-        """Notes objects that block light of the world, which Cycles also finds by rays that pass through."""
-        for name in self._shading:
+    def note_partial_shadows(self, sky_shines, surfaces_glow):
+        """Notes objects that block light which Cycles also finds by rays that pass through them."""
+        sources = ["the world"] if sky_shines else []
+        sources += ["lights with a size"] if self._some_are_wide else []
+        sources += ["emissive surfaces"] if surfaces_glow else []
+        for name in self._shading if sources else ():
             self._notes.add(
-                f"Object '{name}': it is hidden from diffuse and glossy rays but blocks light of the world,"
-                " which Cycles finds through it in part; disable Shadow in its Ray Visibility to let it pass."
+                f"Object '{name}': it is hidden from diffuse and glossy rays but blocks light of"
+                f" {listed(sources)}, which Cycles finds through it in part; disable Shadow in its Ray"
+                " Visibility to let it pass."
             )
 
     def owner(self, instance):

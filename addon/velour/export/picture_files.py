@@ -60,7 +60,9 @@ def note_header(image, notes):
         found = images.picture_warnings(path, as_stored=True)
     except VelourError:
         return  # reported when the pixels are read, unless Blender can read them
-    for sentence in sentences(found):
+    is_read_as_srgb = is_srgb(image.colorspace_settings.name)
+    noted = [each for each in found if is_read_as_srgb or each["code"] != "color_space_ignored"]
+    for sentence in sentences(noted):
         notes.add(f"Image '{image.name}': {sentence}")
 
 

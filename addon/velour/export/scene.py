@@ -110,8 +110,8 @@ class SceneExport:
             motion=motion,
         )
         objects.add_all(depsgraph)
-        if self._world_shines and not self._world.is_even:
-            objects.note_shadows_of_sky()
+        sky_shines = self._world_shines and not self._world.is_even
+        objects.note_partial_shadows(sky_shines, self.materials.glows)
         self._world.add_suns()
         if self._changes is not None:
             self._meshes.remove_unused(self.scene)

@@ -9,6 +9,7 @@ import bpy
 from .notes import listed
 
 _BOUNCES = 1024  # default for the light of a light or a world: no limit
+_TRANSPARENT = 8  # default of the scene; Velour has no limit
 
 
 def note_scene(scene, notes):
@@ -51,6 +52,7 @@ _OF_CYCLES = {
     "Pixel Filter": lambda cycles: not _is_usual_filter(cycles),
     "Refractive Caustics off": lambda cycles: not cycles.caustics_refractive,
     "Transparent Glass": lambda cycles: cycles.film_transparent_glass,
+    "Transparent Max Bounces": lambda cycles: cycles.transparent_max_bounces < _TRANSPARENT,
 }
 _OF_SIMPLIFY = {
     "Culling": lambda cycles: cycles.use_camera_cull or cycles.use_distance_cull,

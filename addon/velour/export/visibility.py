@@ -4,10 +4,13 @@ from typing import NamedTuple
 
 import bpy
 
+from .lights import is_portal
 from .notes import listed
 
 # Looking up a missing attribute on every object is slow.
 _LINKS_LIGHT = "light_linking" in bpy.types.Object.bl_rna.properties  # 4.0 and newer
+# No property reveals it: since 4.4, lights follow the ray visibility of what instances them.
+_INSTANCERS_HIDE_LIGHTS = bpy.app.version >= (4, 4)
 _BOUNCES = {"visible_diffuse": "diffuse rays", "visible_glossy": "glossy rays"}
 _RAYS = {"visible_camera": "camera", "visible_transmission": "transmission", "visible_shadow": "shadows"}
 
@@ -86,7 +89,10 @@ def _all_collections(root):
 
 
 def hidden_backs(material):
-    """Rays that pass through a material's back faces: the argument of Scene.hide_backs."""
+    """Rays that pass through back faces of a measured material: the argument of Scene.hide_backs.
+
+    Cycles has no backface culling, and importers set it: other materials have two sides.
+    """
     found = []
     if material and material.use_backface_culling:
         found += ["camera", "bounces", "transmission"]
@@ -95,12 +101,35 @@ def hidden_backs(material):
     return tuple(found)
 
 
-def note_light_visibility(obj, notes):
-    """Notes unsupported visibility settings of an evaluated light."""
-    bounces = _hidden_bounces(obj)
+def hidden_light(obj, instancer, notes):
+    """The keyword `hidden` of Scene.add_light for an evaluated light; notes unsupported visibility settings.
+
+    instancer: the evaluated object that instances it, or None.
+    """
+    _note_linking(obj, "Light", notes)
+    if is_portal(obj.data):
+        return ()
+    obeyed = [obj, instancer] if instancer and _INSTANCERS_HIDE_LIGHTS else [obj]
+    bounces = list(dict.fromkeys(rays for each in obeyed for rays in _hidden_bounces(each)))
     if bounces:
         notes.add(f"Light '{obj.name}': hiding it from {listed(bounces)} is not supported; ignored.")
-    _note_linking(obj, "Light", notes)
+    if all(each.visible_camera for each in obeyed) and has_extent(obj.data):
+        notes.add(
+            f"Light '{obj.name}': showing it to the camera is not supported; left out of the image. Disable"
+            " Camera in its Ray Visibility, or use an emissive mesh."
+        )
+    return () if all(each.visible_transmission for each in obeyed) else ("transmission",)
+
+
+def has_extent(lamp):
+    """Whether rays can hit a light in Cycles."""
+    if is_portal(lamp) or not getattr(
+        getattr(lamp, "cycles", None), "use_multiple_importance_sampling", True
+    ):
+        return False
+    if lamp.type == "SUN":
+        return lamp.angle > 0.0
+    return lamp.type == "AREA" or getattr(lamp, "shadow_soft_size", 0.0) > 0.0
 
 
 def _note_linking(obj, kind, notes):

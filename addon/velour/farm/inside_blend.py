@@ -18,6 +18,10 @@ _NOISE = (
     "scene '{scene}' has a noise threshold, which looks at a whole picture; switch it off, and save the"
     " .blend, or leave --parts out."
 )
+_TOO_MANY = (
+    "scene '{scene}' has {rays} camera rays a pixel ({samples} samples, {split} per ray), too few for {parts}"
+    " parts; use fewer parts."
+)
 _FILE_OUTPUT = "the compositor's node '{node}' writes pictures of its own"
 
 
@@ -32,6 +36,8 @@ def look(addon, parts):
         return {"error": _SEQUENCER.format(scene=scene.name, strip=strip.name)}
     if parts > 1 and scene.velour.use_noise_target:
         return {"error": _NOISE.format(scene=scene.name)}
+    if too_few := too_few_rays(scene, parts):
+        return {"error": too_few}
     node = file_output(scene)
     if parts > 1 and node:
         wrong = _FILE_OUTPUT.format(node=node.name)
@@ -48,6 +54,17 @@ def look(addon, parts):
         ],
         "notes": notes(scene.velour, node),
     }
+
+
+def too_few_rays(scene, parts):
+    """Why a frame cannot be rendered in so many parts, each of which takes whole camera rays; else None."""
+    for layer in scene.view_layers:
+        samples = layer.samples or scene.velour.samples
+        split = min(scene.velour.split, samples)
+        rays = -(-samples // split)
+        if layer.use and rays < parts:
+            return _TOO_MANY.format(scene=scene.name, rays=rays, samples=samples, split=split, parts=parts)
+    return None
 
 
 def output_strip(scene):

@@ -40,6 +40,7 @@ namespace velour {
   X(images_channels_ignored, "images all first layer channels") /* layer and channels: of the first image */          \
   X(images_parts_ignored, "images all first part parts")                                                              \
   X(images_channel_missing, "images all first")                                                                       \
+  X(images_color_space_ignored, "images all first space")                                                             \
   X(values_not_finite, "values")                                                                                      \
   /* Fits and models */                                                                                               \
   X(views_exceed_tolerance, "views errors tolerance") /* reported views; the tolerance is twice as large beyond 75 */ \
@@ -80,9 +81,11 @@ namespace velour {
   X(channels_ignored, "file layer channels")                                                                          \
   X(parts_ignored, "file part parts")                                                                                 \
   X(channel_missing, "file")                                                                                          \
+  X(xyz_as_rgb, "file")                                                                                               \
   X(orientation_ignored, "file orientation") /* EXIF tag 274 */                                                       \
   X(exposure_ignored, "file")                                                                                         \
   X(primaries_ignored, "file")                                                                                        \
+  X(color_space_ignored, "file space")                                                                                \
   X(window_ignored, "file width height")                                                                              \
   X(infinite_values, "file values replacement")                                                                       \
   X(nan_values, "file values")                                                                                        \

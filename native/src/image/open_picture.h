@@ -55,6 +55,15 @@ Orientation exif_orientation(PictureFormat format, const std::string& path);
 /// of a chunk before they read it. Returns the bits per sample; 1 if the header does not state them validly.
 int check_png_chunks(const std::string& path);
 
+// The color space that a file of integers states. Velour treats all of them as sRGB.
+
+/// Name of the color space of an ICC profile (ICC.1:2022); empty if it is sRGB or its grays, also under another name:
+/// primaries within 0.01 in XYZ, and half of the largest value within 0.02. A damaged profile is empty, too.
+std::string other_color_space(std::span<const uint8_t> icc_profile);
+/// The same for a JPEG (APP2 segments) or PNG file (chunks cICP, iCCP, sRGB, gAMA, cHRM, the first of which counts).
+/// Empty for other formats.
+std::string other_color_space(PictureFormat format, const std::string& path);
+
 // A picture file opened for reading by the library for its format. Internal to image/.
 
 /// A byte of a DEFLATE stream expands to at most 1032 bytes.
@@ -65,12 +74,16 @@ struct PictureHeader {
   int width = 0, height = 0, depth = 1, channels = 0;  // as stored
   bool integers = false;                               // the values are fractions of the largest integer
   int alpha_channel = -1;                              // -1: none
+  bool is_xyz = false;                                 // channels named X, Y and Z stand for colors
 
   Orientation orientation = Orientation::normal;
   std::array<float, 3> scale{1, 1, 1};      // radiance is the stored value times this
   std::optional<ColorPrimaries> primaries;  // empty: Rec. 709 or unknown
   std::optional<PictureFrame> frame;        // set if the stored pixels do not fill the picture exactly
   std::vector<Warning> warnings;            // about what is left out
+
+  /// Adds the warning about a color space (other_color_space), unless it is empty.
+  void note_color_space(const std::string& path, const std::string& space);
 };
 
 class OpenPicture {

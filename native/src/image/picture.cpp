@@ -97,7 +97,11 @@ const std::optional<ColorPrimaries>& primaries_of(const PictureHeader& header, c
 /// Warnings about the header and, for options.as_stored, about what Blender ignores in it.
 std::vector<Warning> warnings_of(const std::string& path, const PictureHeader& header, const PictureOptions& options) {
   std::vector<Warning> warnings = header.warnings;
-  if (!options.as_stored) return warnings;
+  if (!options.as_stored) {
+    const bool is_guess = header.is_xyz && !primaries_of(header, options);
+    if (is_guess) warnings.push_back(warning<WarningCode::xyz_as_rgb>({{"file", path}}));
+    return warnings;
+  }
   if (header.orientation != Orientation::normal) {
     warnings.push_back(warning<WarningCode::orientation_ignored>(
         {{"file", path}, {"orientation", static_cast<uint64_t>(header.orientation)}}));

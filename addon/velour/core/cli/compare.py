@@ -6,7 +6,6 @@ import argparse
 import contextlib
 
 from ...native import (
-    Btf,
     Job,
     Measurement,
     Model,
@@ -16,7 +15,7 @@ from ...native import (
     library,
 )
 from ...native.errors import refuse
-from . import output
+from . import btf_options, output
 
 KEYS = (
     "relative_l2",
@@ -44,11 +43,14 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "--principled", dest="peer", action="store_const", const="principled",
         help="evaluate the best-fitting Principled material, and print its values",
     )  # fmt: skip
+    btf_options.add_arguments(parser)
 
 
 def run(args: argparse.Namespace) -> dict:
     if library.file_info(args.input)["kind"] == "btf":
         return _compare_btf(args)
+    if btf_options.given(args):
+        raise refuse(f"{args.input} is not a BTF; leave out the options for measured BTFs.")
     with contextlib.ExitStack() as handles:
         measurement = handles.enter_context(Measurement.load(args.input))
         report = handles.enter_context(_job(args, measurement, handles)).run(output.progress_of(args))
@@ -63,9 +65,10 @@ def _compare_btf(args: argparse.Namespace) -> dict:
             " instead."
         )
     with contextlib.ExitStack() as handles:
-        btf = handles.enter_context(Btf.load(args.input))
+        btf = handles.enter_context(btf_options.load(args.input, args))
         kind = library.file_info(args.model)["kind"]
-        judged = handles.enter_context((Btf if kind == "btf" else Model).load(args.model))
+        judged = btf_options.load(args.model, args) if kind == "btf" else Model.load(args.model)
+        handles.enter_context(judged)
         return handles.enter_context(compare_btf_job(btf, judged)).run(output.progress_of(args))
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 import contextlib
 
-from ...native import Btf, compress_job, table
+from ...native import compress_job, table
 from . import btf_options, numbers, output, scene_options
 
 
@@ -90,7 +90,7 @@ def run(args: argparse.Namespace) -> dict:
         if args.ratio:
             options["bytes"] = max(1, int(btf.info()["raw_bytes"] / args.ratio))
         if args.held_out:
-            options["held_out"] = handles.enter_context(Btf.load(args.held_out))
+            options["held_out"] = handles.enter_context(btf_options.load(args.held_out, args))
         options |= scene_options.load(args, handles)
         job = handles.enter_context(compress_job(btf, **options))
         report = job.run(output.progress_of(args))

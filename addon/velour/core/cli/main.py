@@ -38,6 +38,8 @@ def main(arguments: list[str] | None = None) -> int:
         output.set_up_log("error" if args.quiet else args.log_level)
         if args.simd:
             library.select_simd(args.simd)
+        if args.verb != "votf":  # which may add to a model in place
+            output.check_inputs_remain(args)
         if args.json_file:
             output.check_writable(args.json_file)
         output.deliver(args, args.run(args))
@@ -86,7 +88,7 @@ def _add_options(verb: argparse.ArgumentParser, name: str) -> None:
     module = importlib.import_module(f".{name}", __package__)
     module.add_arguments(verb)
     _add_common(verb)
-    verb.set_defaults(run=module.run)
+    verb.set_defaults(run=module.run, verb=name)
 
 
 def _add_common(verb: argparse.ArgumentParser) -> None:

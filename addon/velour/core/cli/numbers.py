@@ -101,6 +101,8 @@ def camera(text: str) -> Camera:
         raise argparse.ArgumentTypeError(
             f"the field of view is {values[6]:g} degrees; it must be between 0 and 180"
         )
+    if values[:3] == values[3:6]:
+        raise argparse.ArgumentTypeError("the camera is at its target; move one of them")
     return Camera(values[:3], values[3:6], math.radians(values[6]))
 
 

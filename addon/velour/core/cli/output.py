@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import logging
+import os
 import sys
 import tempfile
 from pathlib import Path
@@ -99,6 +100,35 @@ def _shown(value) -> str:
     if isinstance(value, list):
         return ", ".join(map(_shown, value))
     return str(value)
+
+
+_OUTPUTS = ("output", "noisy_image", "json_file")
+
+
+def check_inputs_remain(args: argparse.Namespace) -> None:
+    """Raises OSError if an output would replace an input or, except models, a file in the folder of one."""
+    given = {name: value if isinstance(value, list) else [value] for name, value in vars(args).items()}
+    outputs = [
+        Path(path) for name in _OUTPUTS for path in given.get(name, []) if path and Path(path).exists()
+    ]
+    inputs = [
+        Path(path)
+        for name, values in given.items()
+        for path in values
+        if name not in _OUTPUTS and isinstance(path, str) and path and os.path.exists(path)
+    ]
+    for written in outputs:
+        for read in inputs:
+            inside = read.is_dir() and written.suffix != ".velour" and _is_inside(written, read)
+            if inside or written.samefile(read):
+                raise OSError(
+                    f"The output {written} would replace {'a file of ' if inside else ''}the input {read};"
+                    " choose another name."
+                )
+
+
+def _is_inside(path: Path, folder: Path) -> bool:
+    return folder.resolve() in path.resolve().parents
 
 
 def check_writable(path: str) -> None:

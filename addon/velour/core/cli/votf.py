@@ -6,9 +6,9 @@ import argparse
 import contextlib
 from pathlib import Path
 
-from ...native import Btf, Model, Scene, votf_data_job, votf_job
+from ...native import Model, Scene, votf_data_job, votf_job
 from ...native.errors import refuse
-from . import numbers, output, subject
+from . import btf_options, numbers, output, subject
 
 _OF_GEOMETRY = ("period", "origin", "up", "metres_per_unit", "seed")
 
@@ -46,6 +46,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         " (default: 64; 0: none)",
     )
     numbers.add_job_arguments(parser)
+    btf_options.add_arguments(parser)
     subject.add_place_arguments(parser.add_argument_group("meshes"))
 
 
@@ -72,7 +73,7 @@ def _job(args: argparse.Namespace, model: Model, handles: contextlib.ExitStack):
                     f"--{name.replace('_', '-')} applies to tiles and meshes only; leave it out for the BTF"
                     f" {args.subject}."
                 )
-        return votf_data_job(handles.enter_context(Btf.load(args.subject)), model, **given)
+        return votf_data_job(handles.enter_context(btf_options.load(args.subject, args)), model, **given)
     scene = handles.enter_context(Scene())
     place = subject.add_to(scene, args)
     scene.commit()

@@ -1,9 +1,10 @@
 """Coordinates, geometry, attributes and kinds of rays."""
 
 import numpy as np
+from mathutils import Euler, Matrix
 
 from ..corner_colors import GENERATED, corner_colors_of
-from ..image_nodes import UnsupportedError
+from ..image_nodes import MAPPED_AXES, UnsupportedError, maps_coordinates
 from .draft import CornerSet, UvSet
 
 
@@ -16,6 +17,43 @@ def position(c):
     """World-space position in Blender's units; of a world, the direction."""
     place = c.source("position")
     return place if c.unit == 1.0 else c.draft.vector_math("scale", place, scale=1.0 / c.unit)[0]
+
+
+def mapped(c, node, vector):
+    """Coordinates of a texture node after the mapping among its own settings."""
+    if not maps_coordinates(node):
+        return vector
+    mapping = node.texture_mapping
+    matrix = _texture_matrix(mapping)
+    found = c.draft.one("transform", (vector,), 3, (), tuple(matrix[:3].ravel().tolist()))
+    if mapping.vector_type == "NORMAL":
+        return c.draft.vector_math("normalize", found)[0]
+    return found
+
+
+def _texture_matrix(mapping):
+    """[4 x 4] of a texture node's own mapping: its axes are chosen first."""
+    axes = np.zeros((4, 4))
+    axes[3, 3] = 1.0
+    for row, name in enumerate(MAPPED_AXES):
+        axis = getattr(mapping, name)
+        if axis != "NONE":
+            axes[row, "XYZ".index(axis)] = 1.0
+    inverts = mapping.vector_type in ("TEXTURE", "NORMAL")
+    factors = [_invertible(factor) if inverts else factor for factor in mapping.scale]
+    turned = np.array(Euler(mapping.rotation).to_matrix().to_4x4() @ Matrix.Diagonal((*factors, 1.0)))
+    placed = np.array(Matrix.Translation(mapping.translation)) @ turned
+    found = {
+        "POINT": lambda: placed,
+        "TEXTURE": lambda: np.linalg.inv(placed),
+        "VECTOR": lambda: turned,
+        "NORMAL": lambda: np.linalg.inv(turned).T,
+    }
+    return found[mapping.vector_type]() @ axes
+
+
+def _invertible(factor):
+    return factor if abs(factor) >= 1e-5 else (-1e-5 if factor < 0.0 else 1e-5)
 
 
 def _object(c, plug):

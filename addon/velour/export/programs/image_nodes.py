@@ -3,7 +3,7 @@
 import math
 
 from ..image_nodes import UnsupportedError, is_identity, unplaced_picture, uv_placement
-from .coordinate_nodes import position
+from .coordinate_nodes import mapped, position
 from .draft import ImageNumber, UvSet, Value
 from .math_nodes import known
 
@@ -24,9 +24,10 @@ def _looked_up(c, plug, place):
 
 def _place(c, plug):
     try:
-        uv_map, coordinates = uv_placement(plug.input("Vector"))
+        uv_map, coordinates = uv_placement(plug)
     except UnsupportedError:
-        return c.input(plug.input("Vector"))
+        vector = c.linked(plug.input("Vector"))
+        return mapped(c, plug.node, c.source("uv", UvSet("")) if vector is None else vector)
     place = c.source("uv", UvSet(coordinates))
     if is_identity(uv_map):
         return place
@@ -35,7 +36,7 @@ def _place(c, plug):
 
 
 def _place_in_environment(c, plug):
-    vector = c.linked(plug.input("Vector")) or position(c)
+    vector = mapped(c, plug.node, c.linked(plug.input("Vector")) or position(c))
     if known(plug.node, "projection", ("equirectangular", "mirror_ball")) == "equirectangular":
         return place_on_sphere(c.draft, vector)
     draft = c.draft

@@ -3,7 +3,7 @@
 import bpy
 
 from ...native import table
-from .coordinate_nodes import generated
+from .coordinate_nodes import generated, mapped
 from .math_nodes import known
 
 # No property reveals these changes of the formulas.
@@ -16,7 +16,7 @@ _USUAL = {"Detail": 0.0, "Roughness": 0.5, "Lacunarity": 2.0, "Offset": 0.0, "Ga
 def place(c, plug):
     """The Vector of a texture; unlinked: generated coordinates."""
     vector = c.linked(plug.input("Vector"))
-    return generated(c) if vector is None else vector
+    return mapped(c, plug.node, generated(c) if vector is None else vector)
 
 
 def _number(c, plug, name):

@@ -78,8 +78,9 @@ def _read_principled(plug, reader):
         _read_disney(found)
     _read_transmission(found)
     glow = _glow(plug.input("Emission Color", "Emission"), plug.input("Emission Strength"), reader)
-    if glow and "coat" in found.values:
-        reader.note(plug, "its coat does not dim its emission.")
+    dimming = [name for name in ("coat", "sheen") if glow and _is_layered(plug) and name in found.values]
+    for name in dimming:
+        reader.note(plug, f"its {name} does not dim its emission.")
     _note_ignored(plug, reader)
     layer = Layer("principled", found.values, found.pictures, relief=read_relief(plug, reader), glow=glow)
     if "coat" in found.values:
@@ -132,7 +133,7 @@ def _read_disney(found):
 
 
 def _note_beyond_range(found, name, socket):
-    """Notes a constant that Cycles does not clamp before 4.0, and clamps it."""
+    """Notes a constant that Cycles does not clamp, and clamps it."""
     value = found.values[name]
     if name not in found.pictures and not 0.0 <= value <= 1.0:
         found.values[name] = min(max(value, 0.0), 1.0)
@@ -158,7 +159,8 @@ def _read_layered(found):
     found.read("specular_tint", "Specular Tint")
     if "specular_tint" not in found.pictures and set(found.values["specular_tint"]) == {1.0}:
         found.drop("specular_tint")
-    found.read("coat", "Coat Weight", largest=1.0)
+    found.read("coat", "Coat Weight", least=0.0)
+    _note_beyond_range(found, "coat", "Coat Weight")
     if found.has("coat"):
         found.read("coat_roughness", "Coat Roughness")
         found.read("coat_index", "Coat IOR", least=1.0)

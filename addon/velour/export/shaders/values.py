@@ -60,7 +60,7 @@ class Reader:
     def _is_on_uv_map(fed):
         """Whether an Image Texture needs no program."""
         try:
-            uv_placement(fed.input("Vector"))
+            uv_placement(fed)
         except UnsupportedError:
             return False
         return True

@@ -8,6 +8,7 @@ from mathutils import Matrix
 
 from ..color import is_linear_rec709, luminance_weights
 from ..files import absolute_path
+from ..image_nodes import maps_coordinates
 from ..newer import has_nodes
 from ..nodes import active_output
 from ..notes import ExportError
@@ -117,7 +118,7 @@ def _lone_environment(surface):
     if color is None or color.node.bl_idname != "ShaderNodeTexEnvironment":
         return None
     rotation = _rotation(fed_by(color.input("Vector")))
-    if rotation is None or color.node.projection != "EQUIRECTANGULAR":
+    if rotation is None or color.node.projection != "EQUIRECTANGULAR" or maps_coordinates(color.node):
         return None
     return color.node, rotation
 

@@ -6,9 +6,9 @@ from typing import NamedTuple
 import numpy as np
 
 from ..color import rec709_to_working
-from ..image_nodes import UnsupportedError
+from ..image_nodes import UnsupportedError, maps_coordinates
 from ..programs import Draft, ImageNumber
-from ..programs.coordinate_nodes import position
+from ..programs.coordinate_nodes import mapped, position
 from ..programs.image_nodes import place_on_sphere
 from ..shaders.emission import radiance_of
 from ..shaders.values import Reader
@@ -55,13 +55,15 @@ def _sky(c, plug, waits, suns):
         raise UnsupportedError(f"output '{plug.socket.name}' of '{plug.node.name}' is not supported")
     sky, draft = sky_of(plug.node, waits), c.draft
     vector = c.linked(plug.input("Vector")) if plug.input("Vector") else None
+    if vector is not None or maps_coordinates(plug.node):
+        vector = mapped(c, plug.node, vector or position(c))
     u, v = map(place_on_sphere(draft, vector or position(c)).component, range(2))
     place = draft.joined(draft.math("add", u, -sky.turn / (2 * math.pi)), v, draft.number(0.0))
     color = draft.one("image", (place,), 3, (ImageNumber(sky.picture, True),))
     if sky.sun is None:
         return color
     if vector is not None:
-        c.reader.note(plug, "the disk of its sun is left out, because its Vector is linked.")
+        c.reader.note(plug, "the disk of its sun is left out, because its coordinates are mapped.")
         return color
     suns.append(sky.sun)
     cosine = draft.vector_math("dot_product", position(c), draft.vector(sky.sun.direction))[1]

@@ -68,10 +68,11 @@ bool is_poor(const Measurement& measurement, const FitRecord& record) {
 }
 
 /// Whether a larger model is worth its size.
-bool is_better(const FitRecord& larger, const FitRecord& smaller) {
+bool is_better(const Measurement& measurement, const FitRecord& larger, const FitRecord& smaller) {
   const bool is_closer = larger.relative_l2 < smaller.relative_l2;
   if (!larger.verdict || !smaller.verdict) return kWorthIt * larger.relative_l2 < smaller.relative_l2;
-  if (larger.relative_l2 > kWorthIt * smaller.relative_l2) return false;
+  const bool is_table = measurement.samples().empty();  // errors of irregular samples are mostly noise
+  if (is_table && larger.relative_l2 > kWorthIt * smaller.relative_l2) return false;
   if (larger.verdict->quality != smaller.verdict->quality) return larger.verdict->quality < smaller.verdict->quality;
   return kWorthIt * larger.relative_l2 < smaller.relative_l2 ||
          (is_closer && kWorthSeeing * larger.verdict->flip_mean < smaller.verdict->flip_mean);
@@ -97,7 +98,7 @@ Model fit_automatically(const Measurement& measurement, const FitOptions& option
     best = judged(fit_parametric(measurement, options, progress));
   }
   const auto replace_if_better = [&](Model other) {
-    if (is_better(other.fit, best.fit)) best = std::move(other);
+    if (is_better(measurement, other.fit, best.fit)) best = std::move(other);
   };
   const auto& coarse = std::get<ParametricBrdf>(best.body);
   const bool table = measurement.samples().empty();  // irregular samples are too few for more cells

@@ -251,6 +251,8 @@ void warn_of_fitted_views(const std::vector<FittedView>& fitted, const FitOption
                                                            {"tolerance", options.tolerance}}));
 }
 
+constexpr double kVisibleExcess = 0.005;  // of a model's albedo over 1
+
 void warn_of_albedo(const Measurement& measurement, const Vec3& wv, FitRecord& record) {
   const double albedo = record.albedo_max, view = polar_degrees(wv);
   const std::vector<double> azimuth = azimuth_degrees(wv, measurement.isotropic());
@@ -261,7 +263,7 @@ void warn_of_albedo(const Measurement& measurement, const Vec3& wv, FitRecord& r
   } else if (measured > 1) {
     record.warnings.push_back(
         warning<WarningCode::measured_albedo_above_one>({{"albedo", albedo}, {"view", view}, {"azimuth", azimuth}}));
-  } else {
+  } else if (albedo > 1 + kVisibleExcess) {
     record.warnings.push_back(warning<WarningCode::model_albedo_above_one>(
         {{"albedo", albedo}, {"view", view}, {"azimuth", azimuth}, {"measured", measured}}));
   }

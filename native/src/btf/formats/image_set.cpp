@@ -126,6 +126,8 @@ std::optional<WarningCode> code_for_sets(WarningCode code) {
       return WarningCode::images_parts_ignored;
     case WarningCode::channel_missing:
       return WarningCode::images_channel_missing;
+    case WarningCode::color_space_ignored:
+      return WarningCode::images_color_space_ignored;
     default:
       return std::nullopt;
   }

@@ -198,6 +198,7 @@ class ExrPicture : public OpenExr {
     }
     header_.channels = static_cast<int>(names_.size());
     if (!colors_.alpha.empty()) header_.alpha_channel = header_.channels - 1;
+    header_.is_xyz = colors_.kind == ExrColors::Kind::rgb && rank_of(colors_) == 0;
     if (Imf::hasChromaticities(exr_header())) {
       const ColorPrimaries primaries = primaries_of(Imf::chromaticities(exr_header()));
       if (is_stated(primaries)) header_.primaries = primaries;

@@ -48,6 +48,7 @@ class ByOpenImageIo : public OpenPicture {
     if (file_ == nullptr) throw Error(Status::bad_data, input_error(path, error));
     header_ = module_.header(*file_);
     header_.orientation = exif_orientation(format, path);
+    header_.note_color_space(path, other_color_space(format, path));
   }
   ~ByOpenImageIo() override { module_.close(file_); }
   ByOpenImageIo(const ByOpenImageIo&) = delete;

@@ -272,6 +272,11 @@ class ByLibtiff : public OpenPicture {
     header_.integers = storage_.by_rgba || !Samples(storage_).is_float();
     const auto orientation = tag<uint16_t>(tiff_.get(), TIFFTAG_ORIENTATION, ORIENTATION_TOPLEFT);
     if (orientation >= 1 && orientation <= 8) header_.orientation = static_cast<Orientation>(orientation);
+    uint32_t bytes = 0;
+    uint8_t* profile = nullptr;
+    if (header_.integers && TIFFGetField(tiff_.get(), TIFFTAG_ICCPROFILE, &bytes, &profile) == 1) {
+      header_.note_color_space(path_, other_color_space({profile, bytes}));
+    }
   }
 
   void note_extra_samples() {

@@ -6,12 +6,13 @@
 namespace velour {
 namespace {
 
-/// Adds the orientation, which the libraries do not report.
+/// Adds the orientation and the warning about the color space, which the libraries do not report.
 class WithOrientation : public OpenPicture {
  public:
-  WithOrientation(std::unique_ptr<OpenPicture> picture, Orientation orientation)
+  WithOrientation(std::unique_ptr<OpenPicture> picture, PictureFormat format, const std::string& path)
       : picture_(std::move(picture)), header_(picture_->header()) {
-    header_.orientation = orientation;
+    header_.orientation = exif_orientation(format, path);
+    header_.note_color_space(path, other_color_space(format, path));
   }
   const PictureHeader& header() const override { return header_; }
   std::optional<std::string> text(const std::string& name) const override { return picture_->text(name); }
@@ -40,7 +41,7 @@ std::unique_ptr<OpenPicture> open_format(const std::string& path, PictureFormat 
 }  // namespace
 
 std::unique_ptr<OpenPicture> open_integers(const std::string& path, PictureFormat format) {
-  return std::make_unique<WithOrientation>(open_format(path, format), exif_orientation(format, path));
+  return std::make_unique<WithOrientation>(open_format(path, format), format, path);
 }
 
 }  // namespace velour

@@ -203,6 +203,16 @@ void write_parts(const std::string& path, const std::vector<std::pair<std::strin
   }
 }
 
+TEST_F(ForeignExr, ChannelsXyzAreColorsWithAWarning) {
+  test::record_input("OpenEXR", "only channels X, Y and Z", "used as red, green and blue, with a warning");
+  write_parts(path_, {{"light", {{"X", 7}, {"Y", 8}, {"Z", 9}}}});
+  const Picture picture = read_picture(path_);
+  EXPECT_EQ(pixel_of(picture, 1, 1), (std::vector<float>{7, 8, 9}));
+  ASSERT_EQ(picture.warnings.size(), 1u);
+  EXPECT_EQ(picture.warnings[0], warning<WarningCode::xyz_as_rgb>({{"file", path_}}));
+  EXPECT_TRUE(read_picture(path_, {.primaries = kCieXyz}).warnings.empty());
+}
+
 const Channels kColor{{"B", 3}, {"G", 2}, {"R", 1}}, kOther{{"B", 6}, {"G", 5}, {"R", 4}};
 
 TEST_F(ForeignExr, TheFirstPartWithColors) {

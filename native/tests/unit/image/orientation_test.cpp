@@ -8,17 +8,14 @@
 #include "image/open_picture.h"
 #include "image/picture.h"
 #include "support/inputs.h"
+#include "support/picture_bytes.h"
 #include "support/test_data.h"
 
 namespace velour::orientation_test {
 namespace {
 
-using Bytes = std::vector<uint8_t>;
-
-void append(Bytes& to, uint64_t value, size_t count, bool big_endian) {
-  for (size_t i = 0; i < count; ++i)
-    to.push_back(static_cast<uint8_t>(value >> (8 * (big_endian ? count - 1 - i : i))));
-}
+using test::append;
+using test::Bytes;
 
 /// A directory of two entries, the second of which is the orientation.
 Bytes exif_of(int orientation, bool big) {
@@ -38,27 +35,6 @@ Bytes exif_of(int orientation, bool big) {
   return bytes;
 }
 
-uint32_t crc_of(std::span<const uint8_t> bytes) {
-  uint32_t crc = ~0u;
-  for (const uint8_t byte : bytes) {
-    crc ^= byte;
-    for (int bit = 0; bit < 8; ++bit) crc = (crc >> 1) ^ (crc & 1 ? 0xedb88320u : 0);
-  }
-  return ~crc;
-}
-
-/// `png` with a chunk of EXIF data after its header.
-Bytes with_exif(const Bytes& png, const Bytes& exif) {
-  constexpr std::ptrdiff_t kHeaderEnd = 8 + 12 + 13;
-  Bytes chunk{'e', 'X', 'I', 'f'}, result(png.begin(), png.begin() + kHeaderEnd);
-  chunk.insert(chunk.end(), exif.begin(), exif.end());
-  append(result, exif.size(), 4, true);
-  result.insert(result.end(), chunk.begin(), chunk.end());
-  append(result, crc_of(chunk), 4, true);
-  result.insert(result.end(), png.begin() + kHeaderEnd, png.end());
-  return result;
-}
-
 /// Pixel (0, 0) of the stored rows is where the orientation says (EXIF 2.3, 4.6.4 A), one is beside it along the row.
 TEST(PictureOrientation, FollowsExif) {
   test::record_input("PNG", "EXIF orientation", "turned upright");
@@ -76,7 +52,8 @@ TEST(PictureOrientation, FollowsExif) {
   write_picture(plain, picture);
   for (const Ends& ends : all) {
     SCOPED_TRACE(ends.orientation);
-    write_file(turned, with_exif(read_file(plain), exif_of(ends.orientation, ends.orientation % 2 == 0)));
+    write_file(turned,
+               test::with_chunk(read_file(plain), "eXIf", exif_of(ends.orientation, ends.orientation % 2 == 0)));
     const Picture found = read_picture(turned), header = read_picture_header(turned);
     const bool swapped = ends.orientation > 4;
     ASSERT_EQ(found.width, swapped ? kStoredHeight : kStoredWidth);

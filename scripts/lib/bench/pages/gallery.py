@@ -14,7 +14,7 @@ SCENES = {
 }
 SETTINGS = {
     "size": ((1600, 900), (320, 180)),
-    "samples": (4096, 64),  # maximum number of light directions per pixel
+    "samples": (1024, 64),  # maximum number of light directions per pixel
     "noise": (0.012, 0.1),
 }
 PAGES = {"gallery.md": "gallery"}

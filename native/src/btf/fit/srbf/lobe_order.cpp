@@ -211,6 +211,9 @@ MultivariateLobe random_lobe(RandomStream& random, bool texel) {
 class OrderSearch {
  public:
   OrderSearch(const std::vector<RowMatrix>& columns, const std::vector<SurfacePoint>& points, int threads) {
+    size_t pairs = 0;
+    for (const SurfacePoint& point : points) pairs = std::max(pairs, point.pair.size());
+    most_of_axis_ = std::min<size_t>(SrbfBtf::kMaxLobes, pairs);
     for (size_t a = 0; a < 3; ++a) {
       pursuit_.emplace_back(columns, point_values(points, columns, a), threads);
       all_ += pursuit_[a].choice().all;
@@ -252,8 +255,7 @@ class OrderSearch {
  private:
   double left(size_t a, size_t n) const { return n == 0 ? pursuit_[a].choice().all : pursuit_[a].choice().left[n - 1]; }
   bool looks_ahead(size_t a, const Progress& progress) {
-    return pursuit_[a].choice().order.size() > share_[a] ||
-           (share_[a] < SrbfBtf::kMaxLobes && pursuit_[a].step(progress));
+    return pursuit_[a].choice().order.size() > share_[a] || (share_[a] < most_of_axis_ && pursuit_[a].step(progress));
   }
   /// A model needs at least one lobe.
   void need_one() {
@@ -263,6 +265,7 @@ class OrderSearch {
   }
 
   std::vector<Pursuit> pursuit_;
+  size_t most_of_axis_ = 0;  // more lobes than pairs would cancel each other
   std::array<size_t, 3> share_{};
   double all_ = 0, rest_ = 0;
   LobeOrder order_;

@@ -37,7 +37,10 @@ uint64_t bytes_of(const BtfMeasurement& measurement, const BtfFitOptions& option
   if (options.bytes > 0) return options.bytes;
   const uint64_t one = component_bytes(measurement, by_view);
   if (options.tolerance > 0) return most_ever(by_view) * one;
-  return std::max(measurement.raw_bytes() / kDefaultFactoredRatio, kDefaultMinComponents * one);
+  // By view, a view without a component would be black.
+  const uint64_t least =
+      by_view ? std::max<uint64_t>(kDefaultMinComponents, measurement.layout().views().size()) : kDefaultMinComponents;
+  return std::max(measurement.raw_bytes() / kDefaultFactoredRatio, least * one);
 }
 
 /// Extent with the number of components that is computed if memory allows.
