@@ -2,13 +2,13 @@
 
 import bpy
 import numpy as np
+from velour.export.color import luminance_weights
 
 from support import inputs, scenes
 from support.blender import BlenderTest
 
 COLOR, VECTOR, BYTES = (0.9, 0.5, 0.2, 0.3), (0.1, 0.4, 0.8), (51, 128, 230, 77)
 DECODED = [((c / 255 + 0.055) / 1.055) ** 2.4 for c in BYTES[:3]]
-LUMINANCE = (0.2126, 0.7152, 0.0722)
 
 
 def _export(name):
@@ -48,7 +48,7 @@ class CornerColors(BlenderTest):
         self._assert_shown(COLOR[:3], "Vector")
         self._assert_shown(np.mean(COLOR[:3]), "Fac")
         self._assert_shown(COLOR[3], "Alpha")
-        self._assert_shown(np.dot(COLOR[:3], LUMINANCE), "Color", True)
+        self._assert_shown(np.dot(COLOR[:3], luminance_weights()), "Color", True)
         self._assert_shown(np.mean(COLOR[:3]), "Vector", True)
 
     def test_bytes_are_decoded(self):
@@ -60,12 +60,13 @@ class CornerColors(BlenderTest):
                 self.mesh.attributes.remove(self.mesh.attributes["shown"])
 
     def test_numbers_and_vectors(self):
+        weights = luminance_weights()
         cases = (
             ("FLOAT", "value", 0.7, (0.7,) * 3, 0.7, 0.7),
             ("INT", "value", 2, (2, 2, 2), 2, 2),
             ("BOOLEAN", "value", True, (1, 1, 1), 1, 1),
-            ("FLOAT_VECTOR", "vector", VECTOR, VECTOR, np.mean(VECTOR), np.dot(VECTOR, LUMINANCE)),
-            ("FLOAT2", "vector", (0.3, 0.6), (0.3, 0.6, 0), 0.3, 0.3 * LUMINANCE[0] + 0.6 * LUMINANCE[1]),
+            ("FLOAT_VECTOR", "vector", VECTOR, VECTOR, np.mean(VECTOR), np.dot(VECTOR, weights)),
+            ("FLOAT2", "vector", (0.3, 0.6), (0.3, 0.6, 0), 0.3, 0.3 * weights[0] + 0.6 * weights[1]),
         )
         for kind, field, value, color, factor, number in cases:
             with self.subTest(kind):
