@@ -38,7 +38,7 @@ class Motion(ParityTest):
         self.assert_parity("Motion blur: focal length")
 
     def _assert_sharp(self, feature, block, name, values):
-        """What is animated is not blurred: the picture is that of the frame."""
+        """Animates a property of the camera that does not blur: the image is that of the frame."""
         move(block, name, values)
         blur(self.scene)
         self.assert_parity(f"Motion blur: {feature}, which stays sharp")

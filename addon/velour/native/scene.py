@@ -227,8 +227,7 @@ class Scene(Handle):
         angle into which a rectangle or disk emits, radians. sphere: whether a point or spot is a sphere, or a
         disk facing each point it lights. cosine: whether a spot's light falls off with the cosine to its
         axis. cone_scale [2]: factors on the width of a spot's cone along its x and y. mirrored: whether
-        clear glass shows it. hidden: rays ("bounces", "transmission") that it does not
-        light.
+        clear glass shows it. hidden: rays ("bounces", "transmission") that it does not light.
         """
         values = {"type": choice("light", kind, table.LIGHTS), "color": color, **values}
         values["hidden_from"] = _hidden_from(hidden)
