@@ -269,11 +269,33 @@ def test_camera_is_named_where_a_plane_slides_along_itself():
 
 
 def test_world_that_is_all_light_is_named_so():
+    for seed in range(2, 12):
+        scene = Scene()
+        _brighter_world(scene)
+        _, found = judged(scene, seed)
+        assert [cause.kind for cause in found] == ["world"]
+        assert str(found[0]).endswith("and all light of the scene with it")
+
+
+def test_world_and_exposure_of_other_factors_are_both_named():
+    """0.5 % apart, which is 17 standard errors."""
+    for seed in range(2, 12):
+        scene = Scene()
+        _brighter_world(scene)
+        scene.picture[..., :3] *= 1.005
+        _, found = judged(scene, seed)
+        assert [cause.kind for cause in found] == ["world", "exposure"], found
+        assert "its light times 1.0" in str(found[0])
+        assert not str(found[0]).endswith("with it")
+        assert "unlike the world" in str(found[1])
+
+
+def test_turned_world_is_not_said_to_scale_all_light():
     scene = Scene()
-    _brighter_world(scene)
+    scene.world = np.roll(scene.world, 1, axis=1)
+    _exposure(scene)
     _, found = judged(scene)
-    assert [cause.kind for cause in found] == ["world"]
-    assert str(found[0]).endswith("and all light of the scene with it")
+    assert [str(cause) for cause in found] == ["world: its directions or colors (turned, or another picture)"]
 
 
 def test_camera_is_named_where_everything_moves():

@@ -45,10 +45,7 @@ def _in_passes(sides: Sides) -> list[Cause]:
     explained |= of_shape
     materials, of_materials = _materials(sides, ~explained)
     materials += thinned
-    world = _world(passes)
-    if world and not causes + materials and _exposure(sides, np.ones(explained.shape, bool)):
-        world = [world[0]._replace(sentence=f"{world[0].sentence}, and all light of the scene with it")]
-    causes += materials + world
+    causes += materials + _world(sides, alone=not (causes or materials))
     if not any(cause.kind == "geometry" for cause in causes):
         causes += _blur(passes)
     if materials and len(causes) == len(materials):
@@ -151,7 +148,9 @@ def _albedo(sides: Sides, name: str, stays: np.ndarray) -> str:
     return f"its texture or model: albedo differs by place, times {mean:.4f} on average"
 
 
-def _world(passes: tuple[Passes, Passes]) -> list[Cause]:
+def _world(sides: Sides, alone: bool) -> list[Cause]:
+    """`alone`: no other cause is known, so a common factor of the picture is due to the world or exposure."""
+    passes = sides.ours, sides.known
     ours, known = (side.world for side in passes)
     if (ours is None) != (known is None):
         return [Cause("world", "only one of both has a world")]
@@ -161,9 +160,16 @@ def _world(passes: tuple[Passes, Passes]) -> list[Cause]:
     if max(blocks.z.max(), whole.z.max()) <= z_limit(blocks.z.size + whole.z.size, LEVEL):
         return []
     factor = Factor.of([blocks])
-    if factor.differs and factor.explains:
-        return [Cause("world", f"its light times {factor}")]
-    return [Cause("world", "its directions or colors (turned, or another picture)")]
+    if not (factor.differs and factor.explains):
+        return [Cause("world", "its directions or colors (turned, or another picture)")]
+    sentence = f"its light times {factor}"
+    common = _common_factor(sides, _everywhere(sides)) if alone else None
+    if common is None:
+        return [Cause("world", sentence)]
+    if common.agrees(factor):
+        return [Cause("world", f"{sentence}, and all light of the scene with it")]
+    exposure = f"all colors times {common}, unlike the world (or the world is a part of the light)"
+    return [Cause("world", sentence), Cause("exposure", exposure)]
 
 
 def _blur(passes: tuple[Passes, Passes]) -> list[Cause]:
@@ -181,8 +187,7 @@ def _blur(passes: tuple[Passes, Passes]) -> list[Cause]:
 
 def _light(sides: Sides) -> list[Cause]:
     """The picture alone differs: by a common factor, on one material, on the background, or anywhere."""
-    everything = np.ones(sides.known.objects.numbers.shape, bool)
-    found = _exposure(sides, everything)
+    found = _exposure(sides, _everywhere(sides))
     if found:
         return found
     tested = {name: both(sides.picture, mask) for name, mask in regions(sides).items()}
@@ -202,12 +207,22 @@ def _light(sides: Sides) -> list[Cause]:
 
 def _exposure(sides: Sides, mask: np.ndarray, least: float = 0.0) -> list[Cause]:
     """`least`: difference of the factor from 1."""
-    if np.count_nonzero(mask) < FEWEST:
-        return []
-    factor = Factor.of([scores(*sides.picture, BLOCK, mask)])
-    if factor.differs and factor.explains and abs(factor.value - 1) >= least:
+    factor = _common_factor(sides, mask)
+    if factor and abs(factor.value - 1) >= least:
         return [Cause("exposure", f"all colors times {factor} (or the power of all lights alike)")]
     return []
+
+
+def _common_factor(sides: Sides, mask: np.ndarray) -> Factor | None:
+    """The factor that explains how the picture differs; None if there is none."""
+    if np.count_nonzero(mask) < FEWEST:
+        return None
+    factor = Factor.of([scores(*sides.picture, BLOCK, mask)])
+    return factor if factor.differs and factor.explains else None
+
+
+def _everywhere(sides: Sides) -> np.ndarray:
+    return np.ones(sides.known.objects.numbers.shape, bool)
 
 
 def _materials_in(sides: Sides, mask: np.ndarray) -> list[str]:

@@ -58,6 +58,13 @@ class Factor(NamedTuple):
     def differs(self) -> bool:
         return abs(self.value - 1) > z_limit(1, LEVEL) * self.error
 
+    def agrees(self, other: Factor) -> bool:
+        """Whether both may be one factor: their difference is within the noise of independent renders.
+
+        The limit is that of `differs`, so that equal factors are named as two in one of a thousand cases.
+        """
+        return abs(self.value - other.value) <= z_limit(1, LEVEL) * np.hypot(self.error, other.error)
+
     def __str__(self) -> str:
         return f"{self.value:.4f} +- {self.error:.4f}"
 
