@@ -5,6 +5,9 @@
 #include <cmath>
 
 #include "base/error.h"
+#include "brdf/measure/held_out.h"
+#include "math/sphere/random.h"
+#include "math/sphere/warp.h"
 #include "support/analytic_measurement.h"
 
 namespace velour::fit_model_test {
@@ -50,6 +53,53 @@ TEST(FitModel, TheAutomaticChoiceIsLargerWhereParametricFails) {
   const auto* finer = std::get_if<ParametricBrdf>(&chosen.body);
   EXPECT_TRUE(!finer || finer->cells == 20);
   EXPECT_LT(1.3 * chosen.fit.relative_l2, parametric);
+}
+
+/// Samples between which the measurement interpolates far too brightly. Parametric models read the samples, per-view
+/// models the interpolation.
+class BadlyInterpolated final : public AnalyticMeasurement {
+ public:
+  explicit BadlyInterpolated(std::vector<IrregularSample> samples)
+      : AnalyticMeasurement([f = test::ggx(0.3f, 0.3f)](const DirectionPair& p) { return 3.0f * f(p); }),
+        samples_(std::move(samples)) {}
+  std::span<const IrregularSample> samples() const override { return samples_; }
+  std::shared_ptr<const Measurement> without_held_out(const Progress& /*progress*/) const override {
+    std::vector<IrregularSample> kept;
+    for (size_t i = 0; i < samples_.size(); ++i) {
+      if (!held_out_sample(i)) kept.push_back(samples_[i]);
+    }
+    return std::make_shared<BadlyInterpolated>(kept);
+  }
+
+ private:
+  std::vector<IrregularSample> samples_;
+};
+
+std::vector<IrregularSample> glossy_samples(uint64_t count) {
+  const auto f = test::ggx(0.3f, 0.3f);
+  std::vector<IrregularSample> samples;
+  for (uint64_t i = 0; i < count; ++i) {
+    RandomStream random(5, i, 0);
+    const Vec3 wl = sample_cosine_hemisphere(random.next2()), wv = sample_cosine_hemisphere(random.next2());
+    samples.push_back({wl, wv, f({wl, wv})});
+  }
+  return samples;
+}
+
+/// Retro-reflective materials given as samples got models that look nothing like them, whose errors were smaller.
+TEST(FitModel, PicturesOutweighErrorsOfIrregularSamples) {
+  FitOptions options;
+  options.tolerance = 0.3;  // few lobes
+  Progress progress;
+  const BadlyInterpolated measurement(glossy_samples(400));
+  const double parametric = fit_model(ModelKind::parametric, measurement, options, progress).fit.relative_l2;
+  options.verdict_on = [](const Model& model, Progress&) {
+    const bool is_good = std::string(model_kind(model)) == "scattered";
+    return std::optional(is_good ? Verdict{LookQuality::good, 0.01, 0.02} : Verdict{LookQuality::poor, 0.2, 0.4});
+  };
+  const Model chosen = fit_model(ModelKind::automatic, measurement, options, progress);
+  EXPECT_EQ(std::string(model_kind(chosen)), "scattered");
+  EXPECT_GT(chosen.fit.relative_l2, 2 * parametric);
 }
 
 TEST(FitModel, OptionsOfOneKindDecide) {

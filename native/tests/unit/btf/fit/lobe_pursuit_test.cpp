@@ -6,6 +6,7 @@
 #include <set>
 
 #include "math/sphere/random.h"
+#include "math/sphere/warp.h"
 
 namespace velour::lobe_pursuit_test {
 namespace {
@@ -99,6 +100,30 @@ TEST(LobePursuit, PassesColumnsOfZeros) {
   auto points = sparse_points(0.1f);
   for (PursuitPoint& point : points) point.column.leftCols(10).setZero();
   for (const size_t k : choice_of(points, 6).order) EXPECT_GE(k, 10u);
+}
+
+/// Points with random values at random pairs, the same number of pairs each.
+std::vector<SurfacePoint> points_of_pairs(size_t pairs) {
+  std::vector<SurfacePoint> points(8);
+  for (size_t i = 0; i < points.size(); ++i) {
+    RandomStream random(9, i, 0);
+    points[i].to_normal = Mat3(1.0f);
+    for (size_t pair = 0; pair < pairs; ++pair) {
+      const Vec3 wl = sample_cosine_hemisphere(random.next2());
+      points[i].pair.emplace_back(DirectionPair{wl, sample_cosine_hemisphere(random.next2())});
+      for (auto& axis : points[i].value) axis.push_back(random.next());
+    }
+  }
+  return points;
+}
+
+TEST(OrderLobes, TakesNoMoreLobesThanThereArePairs) {
+  for (const size_t pairs : {1, 6}) {
+    Progress progress;
+    const LobeOrder order = order_lobes(points_of_pairs(pairs), {.most = 100, .threads = 2}, progress);
+    for (const auto& candidates : order.candidate) EXPECT_LE(candidates.size(), pairs);
+    EXPECT_GE(order.candidate[0].size(), 1u);
+  }
 }
 
 TEST(LobePursuit, IsTheSameForAnyNumberOfThreads) {
