@@ -40,6 +40,7 @@ struct EmbreeApi {
   VELOUR_EMBREE(rtcSetGeometryInstancedScene);
   VELOUR_EMBREE(rtcSetGeometryTransform);
   VELOUR_EMBREE(rtcSetGeometryTimeStepCount);
+  VELOUR_EMBREE(rtcSetGeometryMask);
 #if VELOUR_EMBREE_MAJOR >= 4
   VELOUR_EMBREE(rtcIntersect1);
   VELOUR_EMBREE(rtcOccluded1);

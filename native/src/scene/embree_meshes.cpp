@@ -115,6 +115,7 @@ class EmbreeMeshes::Build {
 EmbreeMeshes::EmbreeMeshes() : device_(api_.rtcNewDevice(nullptr)) {
   if (device_ == nullptr) throw Error(Status::unsupported, "Embree does not support this processor.");
   api_.rtcSetDeviceMemoryMonitorFunction(device_, count_bytes, &bytes_);
+  has_masks_ = api_.rtcGetDeviceProperty(device_, RTC_DEVICE_PROPERTY_RAY_MASK_SUPPORTED) != 0;
 }
 
 EmbreeMeshes::~EmbreeMeshes() {
@@ -220,6 +221,8 @@ RTCScene EmbreeMeshes::scene_of(std::span<const Vec3> positions, std::span<const
     check(api_.rtcGetDeviceError(device_));
     std::memcpy(index, triangles.data(), triangles.size_bytes());
   }
+  // Rays of all kinds hit the mesh: instances hide. The default differs between Embree 3 and 4.
+  api_.rtcSetGeometryMask(geometry, ~0u);
   RTCScene scene = new_scene();
   api_.rtcCommitGeometry(geometry);
   api_.rtcAttachGeometryByID(scene, geometry, 0);

@@ -38,6 +38,8 @@ class EmbreeMeshes {
   static void check(RTCError error);
 
   RTCDevice device() const { return device_; }
+  /// Whether Embree was built with ray masks, an option that is off by default in Embree 3.
+  bool has_masks() const { return has_masks_; }
   RTCScene scene(uint32_t number) const { return scenes_.at(number); }
   size_t size() const { return scenes_.size(); }
   int64_t bytes() const { return bytes_.load(std::memory_order_relaxed); }
@@ -58,6 +60,7 @@ class EmbreeMeshes {
   const EmbreeApi& api_ = embree();
   std::atomic<int64_t> bytes_{0};
   RTCDevice device_ = nullptr;
+  bool has_masks_ = false;
   std::vector<RTCScene> scenes_;
   std::vector<Size> sizes_;
   std::vector<uint32_t> unbuilt_;  // numbers of the meshes without a hierarchy

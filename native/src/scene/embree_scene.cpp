@@ -15,7 +15,7 @@ static_assert(RTC_INVALID_GEOMETRY_ID == kNoHit);
 /// Rays passed to Embree per call, few enough for their copies to stay in the L1 cache.
 constexpr size_t kRayBatch = 64;
 
-void to_embree(const Ray& ray, RTCRay& r) {
+void to_embree(const Ray& ray, uint8_t kind, RTCRay& r) {
   r.org_x = ray.origin.x;
   r.org_y = ray.origin.y;
   r.org_z = ray.origin.z;
@@ -25,7 +25,7 @@ void to_embree(const Ray& ray, RTCRay& r) {
   r.dir_z = ray.direction.z;
   r.time = ray.time;
   r.tfar = ray.far;
-  r.mask = ~0u;
+  r.mask = kind;
   r.id = 0;
   r.flags = 0;
 }
@@ -39,6 +39,7 @@ struct EmbreeScene::Impl {
     Mat3 normal_to_world;
     float front;  // -1 if mirrored, which reverses the winding in world space; else 1
     std::vector<Affine> steps;
+    uint8_t hidden_from;
 
     bool moves() const { return !steps.empty(); }
   };
@@ -76,6 +77,7 @@ struct EmbreeScene::Impl {
     for (uint32_t i = 0; i < instances.size(); ++i) {
       RTCGeometry geometry = is_placed(instances[i]) ? meshes->placed(instances[i].mesh, instances[i].object_to_world)
                                                      : instance(instances[i]);
+      api.rtcSetGeometryMask(geometry, ~static_cast<unsigned>(instances[i].hidden_from));
       api.rtcCommitGeometry(geometry);
       api.rtcAttachGeometryByID(scene, geometry, i);
       api.rtcReleaseGeometry(geometry);
@@ -151,14 +153,22 @@ void EmbreeScene::set_mesh(uint32_t number, std::span<const Vec3> positions, std
 
 void EmbreeScene::share_meshes(const EmbreeScene& other) { impl_->meshes = other.impl_->meshes; }
 
-uint32_t EmbreeScene::add_instance(uint32_t mesh, const Affine& object_to_world, std::span<const Affine> steps) {
+uint32_t EmbreeScene::add_instance(uint32_t mesh, const Affine& object_to_world, std::span<const Affine> steps,
+                                   uint8_t hidden_from) {
   if (mesh >= impl_->meshes->size()) {
     throw Error(Status::invalid_argument, "The instance has mesh " + std::to_string(mesh) + ", which does not exist.");
+  }
+  if (hidden_from != 0 && !impl_->meshes->has_masks()) {
+    throw Error(Status::unsupported,
+                "Embree at " + impl_->api.library.path() +
+                    " was built without ray masks (EMBREE_RAY_MASK), so that nothing can be hidden "
+                    "from kinds of rays. Install an Embree with ray masks, or make all objects "
+                    "visible to all rays.");
   }
   const Vec3 z = glm::cross(object_to_world.column(0), object_to_world.column(1));
   const float front = glm::dot(z, object_to_world.column(2)) < 0.0f ? -1.0f : 1.0f;
   impl_->instances.push_back(
-      {mesh, object_to_world, object_to_world.normal_map(), front, {steps.begin(), steps.end()}});
+      {mesh, object_to_world, object_to_world.normal_map(), front, {steps.begin(), steps.end()}, hidden_from});
   return static_cast<uint32_t>(impl_->instances.size() - 1);
 }
 
@@ -173,7 +183,7 @@ void EmbreeScene::commit(int threads, const Progress* progress, Levels levels) {
     if (!s.is_placed(instance)) built.push_back(instance.mesh);
   }
   s.meshes->build(built, threads, progress);
-  const bool is_single = s.instances.size() == 1 && !s.instances[0].moves();
+  const bool is_single = s.instances.size() == 1 && !s.instances[0].moves() && s.instances[0].hidden_from == 0;
   if (s.levels == Levels::two && is_single && s.instances[0].object_to_world == Affine{}) {
     s.levels = Levels::one;
     s.top = s.meshes->scene(s.instances[0].mesh);
@@ -201,13 +211,14 @@ bool EmbreeScene::occluded(const Ray& ray) const {
 
 namespace {
 
-/// Calls trace(rays, count) for each batch, converted to Embree's own rays.
+/// Calls trace(rays, count) for each batch, converted to Embree's own rays. `kinds` is a copy: the compiler then knows
+/// that the loops do not change it.
 template <typename Trace>
-void occluded_by_batches(std::span<const Ray> rays, uint8_t* blocked, const Trace& trace) {
+void occluded_by_batches(std::span<const Ray> rays, uint8_t* blocked, RayKinds kinds, const Trace& trace) {
   RTCRay query[kRayBatch];
   for (size_t done = 0; done < rays.size(); done += kRayBatch) {
     const size_t count = std::min(kRayBatch, rays.size() - done);
-    for (size_t i = 0; i < count; ++i) to_embree(rays[done + i], query[i]);
+    for (size_t i = 0; i < count; ++i) to_embree(rays[done + i], kinds[done + i], query[i]);
     trace(query, static_cast<unsigned>(count));
     for (size_t i = 0; i < count; ++i) blocked[done + i] = query[i].tfar < 0.0f;
   }
@@ -215,22 +226,22 @@ void occluded_by_batches(std::span<const Ray> rays, uint8_t* blocked, const Trac
 
 }  // namespace
 
-void EmbreeScene::occluded(std::span<const Ray> rays, uint8_t* blocked) const {
-  occluded_by_batches(rays, blocked,
+void EmbreeScene::occluded(std::span<const Ray> rays, uint8_t* blocked, RayKinds kinds) const {
+  occluded_by_batches(rays, blocked, kinds,
                       [&](RTCRay* query, unsigned count) { impl_->api.occluded(impl_->top, query, count); });
 }
 
 void EmbreeScene::occluded_coherent(std::span<const Ray> rays, uint8_t* blocked) const {
-  occluded_by_batches(rays, blocked,
+  occluded_by_batches(rays, blocked, {},
                       [&](RTCRay* query, unsigned count) { impl_->api.occluded_coherent(impl_->top, query, count); });
 }
 
-void EmbreeScene::intersect(std::span<const Ray> rays, Hit* hits) const {
+void EmbreeScene::intersect(std::span<const Ray> rays, Hit* hits, RayKinds kinds) const {
   RTCRayHit query[kRayBatch];
   for (size_t done = 0; done < rays.size(); done += kRayBatch) {
     const size_t count = std::min(kRayBatch, rays.size() - done);
     for (size_t i = 0; i < count; ++i) {
-      to_embree(rays[done + i], query[i].ray);
+      to_embree(rays[done + i], kinds[done + i], query[i].ray);
       query[i].hit.geomID = query[i].hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
     }
     impl_->api.intersect(impl_->top, query, static_cast<unsigned>(count));

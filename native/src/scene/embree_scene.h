@@ -24,6 +24,16 @@ struct Ray {
   float time = kMiddleTime;  // 0..1, while the shutter is open
 };
 
+/// Kinds of rays as bits, the same for all rays or one each. Which bit is which kind is up to the caller, except kAny.
+struct RayKinds {
+  static constexpr uint8_t kAny = 0x80;  // no kind in particular: a ray that no instance is hidden from
+  uint8_t all = kAny;
+  std::span<const uint8_t> each = {};
+
+  uint8_t operator[](size_t ray) const { return each.empty() ? all : each[ray]; }
+  RayKinds part(size_t first, size_t count) const { return {all, each.empty() ? each : each.subspan(first, count)}; }
+};
+
 inline constexpr uint32_t kNoHit = 0xffffffffu;
 
 struct Hit {
@@ -59,14 +69,17 @@ class EmbreeScene {
   /// Neither scene may add meshes while the other is traced.
   void share_meshes(const EmbreeScene& other);
   /// Returns the instance's number, counted from 0. `steps`: transforms of an instance that moves, at even times from 0
-  /// to 1 and linear in between (motion_steps()); none: it stays at `object_to_world`.
-  uint32_t add_instance(uint32_t mesh, const Affine& object_to_world, std::span<const Affine> steps = {});
+  /// to 1 and linear in between (motion_steps()); none: it stays at `object_to_world`. Rays of the kinds `hidden_from`,
+  /// bits other than RayKinds::kAny, do not meet the instance; with any, throws Error(unsupported) if Embree was built
+  /// without ray masks.
+  uint32_t add_instance(uint32_t mesh, const Affine& object_to_world, std::span<const Affine> steps = {},
+                        uint8_t hidden_from = 0);
   void clear_instances();
   enum class Levels { one, two };
-  /// Builds with at most `threads` threads (0: all). A scene whose only instance has the identity transform always has
-  /// one level. Otherwise there are two if instances repeat their meshes much: if they have more than kMaxRepeated
-  /// triangles per triangle of their meshes. Throws Error(cancelled) soon after `progress` is cancelled; builds of
-  /// meshes for two levels continue, and another commit() waits for them.
+  /// Builds with at most `threads` threads (0: all). A scene whose only instance has the identity transform and is not
+  /// hidden always has one level. Otherwise there are two if instances repeat their meshes much: if they have more than
+  /// kMaxRepeated triangles per triangle of their meshes. Throws Error(cancelled) soon after `progress` is cancelled;
+  /// builds of meshes for two levels continue, and another commit() waits for them.
   void commit(int threads, const Progress* progress = nullptr, Levels levels = Levels::two);
   static constexpr double kMaxRepeated = 1.5;
 
@@ -76,8 +89,8 @@ class EmbreeScene {
   void intersect(const Ray& ray, Hit& hit) const;
   bool occluded(const Ray& ray) const;
   /// Traces a batch; blocked[i] is 1 if ray i hits anything, else 0. Rays of a batch should start near each other.
-  void occluded(std::span<const Ray> rays, uint8_t* blocked) const;
-  void intersect(std::span<const Ray> rays, Hit* hits) const;
+  void occluded(std::span<const Ray> rays, uint8_t* blocked, RayKinds kinds = {}) const;
+  void intersect(std::span<const Ray> rays, Hit* hits, RayKinds kinds = {}) const;
   /// Like occluded(), but traces packets: two to three times as fast for parallel rays whose neighbors in the batch are
   /// neighbors in space, slower for others. At triangle edges, a ray's result may depend on its packet.
   void occluded_coherent(std::span<const Ray> rays, uint8_t* blocked) const;

@@ -88,7 +88,7 @@ struct SurfaceMaterial {
   std::shared_ptr<const Material> turned{};
 };
 
-/// Kinds of rays that may pass through an instance: bits of Instance::hidden, values of velour.h.
+/// Kinds of rays that instances can be hidden from: bits of Instance::hidden and RayKinds, values of velour.h.
 namespace hidden {
 /// Bounces: reflected rays. Transmission: rays that surfaces have transmitted.
 inline constexpr uint8_t kFromCamera = 1, kFromBounces = 2, kFromShadows = 4, kFromTransmission = 16;
@@ -228,6 +228,8 @@ class Scene {
     std::vector<Affine> steps = {};  // if it moves: motion_steps()
 
     bool moves() const { return !steps.empty(); }
+    /// Kinds of rays that do not meet it.
+    uint8_t hidden_from() const { return hidden & static_cast<uint8_t>(~hidden::kHoldout); }
     Affine place(float time) const { return moves() ? interpolated(steps, time) : object_to_world; }
     Mat3 normal_map(float time) const { return moves() ? interpolated(steps, time).normal_map() : normal_to_world; }
     /// Encloses everything in `box` at all times.
@@ -287,7 +289,9 @@ class Scene {
   bool has_sides(const Hit& hit) const { return instances_[hit.instance].sides != kNoHit; }
   /// Distance along the ray to the first side of the hit shell that leads into it (`inwards`) or out of it; infinite if
   /// there is none.
-  float next_side(const Hit& hit, Ray ray, bool inwards) const;
+  float next_side(const Hit& hit, const Ray& ray, bool inwards) const;
+  /// The same for the surface of the shell's instance, past `ray.near`.
+  float next_top(const Hit& hit, const Ray& ray, bool inwards) const;
   /// ShellFrame of a hit on the top, with derivatives along the tangential part of unit `direction`.
   ShellFrame shell(const Hit& hit, const Vec3& direction) const;
 

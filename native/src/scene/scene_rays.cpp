@@ -32,7 +32,7 @@ void Scene::build_rays(int threads, const Progress* progress) {
   rays_->clear_instances();
   for (Instance& i : instances_) {
     i.traced = i.top != nullptr ? i.top->number : mesh_rays_[i.mesh];
-    rays_->add_instance(i.traced, i.object_to_world, traced_steps(i));
+    rays_->add_instance(i.traced, i.object_to_world, traced_steps(i), i.hidden_from());
   }
   rays_->commit(threads, progress, stays_ ? EmbreeScene::Levels::one : EmbreeScene::Levels::two);
   stays_ = false;
@@ -69,7 +69,7 @@ void Scene::drop_tops(uint32_t mesh) {
 
 namespace {
 
-/// Maximum number of sides that a ray passes before next_side() gives up; the sides of a folded border overlap.
+/// Maximum number of surfaces that a ray passes before next_crossing() gives up; the sides of a folded border overlap.
 constexpr int kMaxAgainst = 64;
 constexpr float kStep = 0x1p-20f;  // relative to the distance: the ray tracer's own error
 
@@ -93,6 +93,19 @@ uint32_t add_sides(const Mesh& mesh, bool deforms, EmbreeScene& to) {
     for (const uint32_t vertex : vertices) positions.push_back(from[step + vertex]);
   }
   return to.add_mesh(positions, triangles, deforms ? mesh.steps() : 1);
+}
+
+/// Distance along the ray to where it first crosses instance `of` inward or outward; infinite if it does not.
+float next_crossing(const EmbreeScene& rays, uint32_t of, Ray ray, bool inwards) {
+  for (int i = 0; i < kMaxAgainst && ray.near < ray.far; ++i) {
+    Hit hit;
+    rays.intersect(ray, hit);
+    if (hit.instance == kNoHit) break;
+    const bool leads_in = glm::dot(hit.geometric_normal, ray.direction) < 0;
+    if (hit.instance == of && leads_in == inwards) return hit.distance;
+    ray.near = std::nextafter(hit.distance * (1 + kStep), std::numeric_limits<float>::infinity());
+  }
+  return std::numeric_limits<float>::infinity();
 }
 
 }  // namespace
@@ -127,17 +140,13 @@ Scene::ShellFoot Scene::shell_foot(const Hit& hit) const {
   return foot;
 }
 
-float Scene::next_side(const Hit& hit, Ray ray, bool inwards) const {
+float Scene::next_side(const Hit& hit, const Ray& ray, bool inwards) const {
   const uint32_t of = instances_[hit.instance].sides;
-  for (int i = 0; i < kMaxAgainst && of != kNoHit && ray.near < ray.far; ++i) {
-    Hit side;
-    sides_->intersect(ray, side);
-    if (side.instance == kNoHit) break;
-    const bool leads_in = glm::dot(side.geometric_normal, ray.direction) < 0;
-    if (side.instance == of && leads_in == inwards) return side.distance;
-    ray.near = std::nextafter(side.distance * (1 + kStep), std::numeric_limits<float>::infinity());
-  }
-  return std::numeric_limits<float>::infinity();
+  return of != kNoHit ? next_crossing(*sides_, of, ray, inwards) : std::numeric_limits<float>::infinity();
+}
+
+float Scene::next_top(const Hit& hit, const Ray& ray, bool inwards) const {
+  return next_crossing(*rays_, hit.instance, ray, inwards);
 }
 
 }  // namespace velour

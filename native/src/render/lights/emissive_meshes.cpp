@@ -171,7 +171,7 @@ EmissiveMeshes::EmissiveMeshes(const Scene& scene, const Progress& progress) : s
   rays_->share_meshes(scene.rays());
   for (const Place& place : places_) {
     const Scene::Instance& i = scene.instances()[place.instance];
-    rays_->add_instance(i.traced, i.object_to_world, scene.traced_steps(i));
+    rays_->add_instance(i.traced, i.object_to_world, scene.traced_steps(i), i.hidden_from());
   }
   rays_->commit(1, nullptr, scene.rays().levels());
 }
@@ -252,16 +252,18 @@ bool EmissiveMeshes::stops(const Hit& hit) const {
   return !material.shell && material.material->opaque() && !material.hides_backs();
 }
 
-void EmissiveMeshes::meet(std::span<const Ray> rays, std::vector<EmissiveHit>& found) const {
+void EmissiveMeshes::meet(std::span<const Ray> rays, std::vector<EmissiveHit>& found, const RayKinds& kinds) const {
   Ray left[kRayBatch];
   Hit hit[kRayBatch], passed[kRayBatch];
+  uint8_t kind[kRayBatch];
   size_t number[kRayBatch], count = rays.size();
   for (size_t i = 0; i < count; ++i) {
     left[i] = rays[i];
+    kind[i] = kinds[i];
     number[i] = i;
   }
   while (count > 0) {
-    rays_->intersect({left, count}, hit);
+    rays_->intersect({left, count}, hit, {.each = {kind, count}});
     size_t kept = 0;
     for (size_t i = 0; i < count; ++i) {
       if (hit[i].instance == kNoHit) continue;
@@ -270,6 +272,7 @@ void EmissiveMeshes::meet(std::span<const Ray> rays, std::vector<EmissiveHit>& f
       if (stops(hit[i])) continue;
       passed[kept] = hit[i];
       left[kept] = left[i];
+      kind[kept] = kind[i];
       number[kept] = number[i];
       go_beyond(left[kept++], hit[i]);
     }

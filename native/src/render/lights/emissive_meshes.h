@@ -80,8 +80,8 @@ class EmissiveMeshes {
   /// light it belongs to. 0 if the hit is not light-sampled.
   double pdf(const Vec3& position, const Vec3& direction, const Hit& hit, uint32_t& light) const;
 
-  /// Appends the hits of the rays, at most 64, with these surfaces, up to the first opaque one.
-  void meet(std::span<const Ray> rays, std::vector<EmissiveHit>& found) const;
+  /// Appends the hits of the rays, at most 64, with these surfaces, up to the first one that blocks their light.
+  void meet(std::span<const Ray> rays, std::vector<EmissiveHit>& found, const RayKinds& kinds = {}) const;
 
   struct Light {
     Rgb radiance;  // times the alpha of the surface

@@ -266,16 +266,19 @@ Rgb DirectLight::reflected_sky(std::span<const Receiver> receivers, int term) co
 
 void DirectLight::settle_emissive(std::span<const Receiver> receivers, Output output) {
   Ray rays[DirectionBatch::kCapacity];
-  const int count = terms_.world.count;
-  for (int i = 0; i < count; ++i) {
-    rays[i] =
-        receivers[terms_.receiver[i]].vertex.shadow_ray(terms_.world.get(i), std::numeric_limits<float>::infinity());
+  uint8_t kinds[DirectionBatch::kCapacity];
+  const auto count = static_cast<size_t>(terms_.world.count);
+  for (int i = 0; i < terms_.world.count; ++i) {
+    const Vertex& vertex = receivers[terms_.receiver[i]].vertex;
+    const Vec3 wl_world = terms_.world.get(i);
+    rays[i] = vertex.shadow_ray(wl_world, std::numeric_limits<float>::infinity());
+    kinds[i] = vertex.kind_along(wl_world);
   }
-  terms_.look_up_emissive(lighting_, views_, aims_, {rays, static_cast<size_t>(count)});
+  terms_.look_up_emissive(lighting_, views_, aims_, {rays, count}, {kinds, count});
   for (const LightTerms::EmissiveTerm& g : terms_.emissive) {
     const Receiver& receiver = receivers[terms_.receiver[g.direction]];
     if (along_deltas_ && !counts_emissive(g.hit)) continue;
-    if (lighting_.emissive().is_hidden(g.hit, receiver.vertex.kind_along(terms_.world.get(g.direction)))) continue;
+    if (lighting_.emissive().is_hidden(g.hit, kinds[g.direction])) continue;
     const auto [radiance, far] = lighting_.emissive().light(rays[g.direction], g.hit, receiver.vertex.cone);
     const Rgb light = g.weight * radiance * terms_.reflected.get(g.direction);
     settle_term(receivers, g.direction,
@@ -360,8 +363,8 @@ void LightTerms::look_up(const Lighting& lighting, std::span<const LightView> vi
 }
 
 void LightTerms::look_up_emissive(const Lighting& lighting, std::span<const LightView> views, std::span<const Hit> aims,
-                                  std::span<const Ray> rays) {
-  find_emissive(lighting.emissive(), aims, rays);
+                                  std::span<const Ray> rays, std::span<const uint8_t> kinds) {
+  find_emissive(lighting.emissive(), aims, rays, kinds);
   for (EmissiveTerm& g : emissive) {
     const int i = g.direction;
     g.pdf = light_share.v[i] > 0.0f ? lighting.emissive_pdf(views[receiver[i]], world.get(i), g.hit) : 0.0f;
@@ -369,8 +372,10 @@ void LightTerms::look_up_emissive(const Lighting& lighting, std::span<const Ligh
   }
 }
 
-void LightTerms::find_emissive(const EmissiveMeshes& surfaces, std::span<const Hit> aims, std::span<const Ray> rays) {
+void LightTerms::find_emissive(const EmissiveMeshes& surfaces, std::span<const Hit> aims, std::span<const Ray> rays,
+                               std::span<const uint8_t> kinds) {
   Ray searching[DirectionBatch::kCapacity];
+  uint8_t kind[DirectionBatch::kCapacity];
   int number[DirectionBatch::kCapacity];
   size_t count = 0;
   for (int i = 0; i < world.count; ++i) {
@@ -378,11 +383,12 @@ void LightTerms::find_emissive(const EmissiveMeshes& surfaces, std::span<const H
       emissive.push_back({i, aims[aim[i] - size_t{1}], 0.0f, 0.0f});
     } else if (technique[i] != Technique::lights) {
       number[count] = i;
+      kind[count] = kinds[static_cast<size_t>(i)];
       searching[count++] = rays[static_cast<size_t>(i)];
     }
   }
   found_.clear();
-  surfaces.meet({searching, count}, found_);
+  surfaces.meet({searching, count}, found_, {.each = {kind, count}});
   for (const EmissiveHit& f : found_) emissive.push_back({number[f.ray], f.hit, 0.0f, 0.0f});
 }
 

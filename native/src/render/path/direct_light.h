@@ -53,14 +53,15 @@ struct alignas(64) LightTerms {
   }
   /// `views`: by index of the vertex.
   void look_up(const Lighting& lighting, std::span<const LightView> views, Heuristic heuristic);
-  /// `rays`: along the directions, starting at their vertices.
+  /// `rays`: along the directions, starting at their vertices. `kinds`: theirs, bits of `hidden`.
   void look_up_emissive(const Lighting& lighting, std::span<const LightView> views, std::span<const Hit> aims,
-                        std::span<const Ray> rays);
+                        std::span<const Ray> rays, std::span<const uint8_t> kinds);
 
  private:
   /// 1 / d; `pdf`: of the technique that samples the light.
   float weighed(Heuristic heuristic, int direction, float pdf) const;
-  void find_emissive(const EmissiveMeshes& surfaces, std::span<const Hit> aims, std::span<const Ray> rays);
+  void find_emissive(const EmissiveMeshes& surfaces, std::span<const Hit> aims, std::span<const Ray> rays,
+                     std::span<const uint8_t> kinds);
   std::vector<EmissiveHit> found_;
 };
 

@@ -9,7 +9,7 @@ void PathsInFlight::trace_continued() {
   for (const Path& path : paths) {
     kinds_.push_back(path.past.was_transmitted ? hidden::kFromTransmission : hidden::kFromBounces);
   }
-  trace(continued(kinds_));
+  trace({.each = kinds_});
 }
 
 void PathsInFlight::trace(const RayKinds& kinds) {

@@ -85,12 +85,14 @@ struct VisibleRays::Pending {
   Ray ray[kTogether];
   Hit hit[kTogether];
   Hit passed[kTogether];  // the previous hit
+  uint8_t kind[kTogether];
   uint8_t number[kTogether];
   uint32_t decided[kTogether];  // number of surfaces decided about
 
-  void add(const Ray& r, const Hit& h, size_t n) {
+  void add(const Ray& r, const Hit& h, uint8_t k, size_t n) {
     ray[count] = r;
     hit[count] = h;
+    kind[count] = k;
     passed[count] = Hit{};
     decided[count] = 0;
     number[count++] = static_cast<uint8_t>(n);
@@ -99,6 +101,7 @@ struct VisibleRays::Pending {
     ray[to] = ray[from];
     hit[to] = hit[from];
     passed[to] = passed[from];
+    kind[to] = kind[from];
     number[to] = number[from];
     decided[to] = decided[from];
   }
@@ -118,7 +121,6 @@ VisibleRays::VisibleRays(const Scene& scene)
                                   [](const SurfaceMaterial& m) { return m.material->opaque() && !m.hides_backs(); })),
       dims_(std::ranges::any_of(scene.materials(), [](const SurfaceMaterial& m) { return !m.material->opaque(); })) {
   for (const Scene::Instance& i : scene.instances()) {
-    hidden_ |= i.hidden;
     const bool from_shadows = (i.hidden & hidden::kFromShadows) != 0;
     for (const uint8_t kind : {hidden::kFromBounces, hidden::kFromTransmission}) {
       if (((i.hidden & kind) != 0) != from_shadows) apart_ |= kind;
@@ -128,9 +130,9 @@ VisibleRays::VisibleRays(const Scene& scene)
 
 void VisibleRays::intersect(std::span<const Ray> rays, Hit* hits, const RayKinds& kinds, Rgb* passed,
                             std::span<const RayDecisions> decisions) const {
-  scene_.rays().intersect(rays, hits);
+  scene_.rays().intersect(rays, hits, kinds);
   if (passed != nullptr) std::fill_n(passed, rays.size(), Rgb(1.0f));
-  if (sees_all(kinds.all)) return;
+  if (all_opaque_) return;
   for (size_t done = 0; done < rays.size(); done += kTogether) {
     const size_t count = std::min(kTogether, rays.size() - done);
     pass_on(rays.subspan(done, count), hits + done, kinds.part(done, count), behind(passed, done),
@@ -146,7 +148,7 @@ bool VisibleRays::occluded(const Ray& ray, Rgb* passed) const {
 
 void VisibleRays::occluded(std::span<const Ray> rays, uint8_t* blocked, Rgb* passed) const {
   if (passed != nullptr) std::fill_n(passed, rays.size(), Rgb(1.0f));
-  if (sees_all(hidden::kFromShadows)) return scene_.rays().occluded(rays, blocked);
+  if (all_opaque_) return scene_.rays().occluded(rays, blocked, {hidden::kFromShadows});
   for (size_t done = 0; done < rays.size(); done += kTogether) {
     occluded_some(rays.subspan(done, std::min(kTogether, rays.size() - done)), blocked + done, behind(passed, done));
   }
@@ -161,7 +163,7 @@ void VisibleRays::occluded_some(std::span<const Ray> rays, uint8_t* blocked, Rgb
   if (shells_) {
     std::fill_n(blocked, rays.size(), uint8_t{1});
   } else {
-    scene_.rays().occluded(rays, blocked);
+    scene_.rays().occluded(rays, blocked, {hidden::kFromShadows});
   }
   size_t count = 0;
   for (size_t i = 0; i < rays.size(); ++i) {
@@ -176,11 +178,11 @@ void VisibleRays::occluded_some(std::span<const Ray> rays, uint8_t* blocked, Rgb
   }
 }
 
-bool VisibleRays::meets_surface(Pending& pending, size_t i, uint8_t kind, Rgb* passed,
+bool VisibleRays::meets_surface(Pending& pending, size_t i, Rgb* passed,
                                 std::span<const RayDecisions> decisions) const {
   const Ray& ray = pending.ray[i];
   const Hit& hit = pending.hit[i];
-  if ((scene_.instances()[hit.instance].hidden & kind) != 0) return false;
+  const uint8_t kind = pending.kind[i];
   const SurfaceMaterial& surface = scene_.materials()[scene_.material(hit)];
   const Material& material = *surface.material;
   if (passes_back(surface, ray, hit, kind)) return false;
@@ -201,12 +203,11 @@ bool VisibleRays::meets_surface(Pending& pending, size_t i, uint8_t kind, Rgb* p
   return false;
 }
 
-void VisibleRays::decide(Pending& pending, const RayKinds& kinds, bool* met, Rgb* passed,
-                         std::span<const RayDecisions> decisions) const {
+void VisibleRays::decide(Pending& pending, bool* met, Rgb* passed, std::span<const RayDecisions> decisions) const {
   ShellWays ways(pending.hit, met);
   for (size_t i = 0; i < pending.count; ++i) {
     const Hit& hit = pending.hit[i];
-    met[i] = !pending.again(i) && meets_surface(pending, i, kinds[pending.number[i]], passed, decisions);
+    met[i] = !pending.again(i) && meets_surface(pending, i, passed, decisions);
     if (!met[i] || !shells_ || !scene_.has_shell(hit)) continue;
     const ShellCrossing crossing(scene_, pending.ray[i], hit);
     met[i] = false;
@@ -219,11 +220,11 @@ void VisibleRays::pass_on(std::span<const Ray> rays, Hit* hits, const RayKinds& 
                           std::span<const RayDecisions> decisions) const {
   Pending pending;
   for (size_t i = 0; i < rays.size(); ++i) {
-    if (hits[i].instance != kNoHit) pending.add(rays[i], hits[i], i);
+    if (hits[i].instance != kNoHit) pending.add(rays[i], hits[i], kinds[i], i);
   }
   bool met[kTogether];
   while (pending.count > 0) {
-    decide(pending, kinds, met, passed, decisions);
+    decide(pending, met, passed, decisions);
     size_t left = 0;
     for (size_t i = 0; i < pending.count; ++i) {
       hits[pending.number[i]] = pending.hit[i];
@@ -231,7 +232,7 @@ void VisibleRays::pass_on(std::span<const Ray> rays, Hit* hits, const RayKinds& 
       pending.pass(i);
       pending.move(i, left++);
     }
-    scene_.rays().intersect({pending.ray, left}, pending.hit);
+    scene_.rays().intersect({pending.ray, left}, pending.hit, {.each = {pending.kind, left}});
     pending.count = 0;
     for (size_t i = 0; i < left; ++i) {
       if (pending.hit[i].instance == kNoHit) {

@@ -12,34 +12,20 @@ namespace velour {
 
 // Rays that respect the alpha, shells and visibility of surfaces.
 
-/// Kinds of rays: bits of `hidden`, the same for all rays or one each.
-struct RayKinds {
-  uint8_t all = hidden::kFromBounces;  // that occur
-  std::span<const uint8_t> each = {};
-
-  uint8_t operator[](size_t ray) const { return each.empty() ? all : each[ray]; }
-  RayKinds part(size_t first, size_t count) const { return {all, each.empty() ? each : each.subspan(first, count)}; }
-};
-
-/// Rays after the first bounce.
-inline RayKinds continued(std::span<const uint8_t> each) {
-  return {hidden::kFromBounces | hidden::kFromTransmission, each};
-}
-
 /// Like EmbreeScene, but a ray hits a surface of a material that is not opaque with the probability of its alpha there,
 /// and otherwise continues straight: correct on average. The decision uses the ray's own numbers, or the bits of ray
 /// and triangle, so it depends on neither threads nor order. Shadow rays decide nothing: they pass, dimmed by the
 /// alpha. A passed surface may change the color: `passed` of a ray is the factor on its light along the way to its end;
-/// it may be null where dims() is false. A shell is hit where its structure is (shell_crossing.h). An instance that is
-/// hidden from a kind of ray is not hit by it. Thread-safe. Scenes without any of these are traced directly.
+/// it may be null where dims() is false. A shell is hit where its structure is (shell_crossing.h). Thread-safe. Scenes
+/// of opaque surfaces without shells are traced directly. Kinds of rays are bits of `hidden`.
 class VisibleRays {
  public:
   /// `scene` must be committed, and its materials must not change.
   explicit VisibleRays(const Scene& scene);
 
   /// Distances are from the origin, whatever was passed on the way. `decisions`: one per ray, or none.
-  void intersect(std::span<const Ray> rays, Hit* hits, const RayKinds& kinds = {}, Rgb* passed = nullptr,
-                 std::span<const RayDecisions> decisions = {}) const;
+  void intersect(std::span<const Ray> rays, Hit* hits, const RayKinds& kinds = {hidden::kFromBounces},
+                 Rgb* passed = nullptr, std::span<const RayDecisions> decisions = {}) const;
   bool occluded(const Ray& ray, Rgb* passed = nullptr) const;
   /// Batch version, as in EmbreeScene::occluded.
   void occluded(std::span<const Ray> rays, uint8_t* blocked, Rgb* passed = nullptr) const;
@@ -48,8 +34,9 @@ class VisibleRays {
   bool tells_apart(uint8_t kind) const { return (apart_ & kind) != 0; }
   /// Whether rays may pass through surfaces. Otherwise `passed` is always 1, and there is nothing to decide.
   bool dims() const { return dims_; }
-  /// Whether shadow and bounce rays simply hit the nearest surface.
-  bool plain() const { return sees_all(hidden::kFromShadows | hidden::kFromBounces | hidden::kFromTransmission); }
+  /// Whether rays of a kind simply hit the nearest surface that they see, and shadow rays see the same as those that
+  /// continue a path.
+  bool plain() const { return all_opaque_ && apart_ == 0; }
 
  private:
   struct Pending;
@@ -59,19 +46,15 @@ class VisibleRays {
                std::span<const RayDecisions> decisions) const;
   /// Decides which of the pending rays hit the surfaces that they have reached. Multiplies what passes into `passed`,
   /// by index of the ray.
-  void decide(Pending& pending, const RayKinds& kinds, bool* met, Rgb* passed,
-              std::span<const RayDecisions> decisions) const;
-  bool meets_surface(Pending& pending, size_t i, uint8_t kind, Rgb* passed,
-                     std::span<const RayDecisions> decisions) const;
-  bool sees_all(uint8_t kind) const { return all_opaque_ && (hidden_ & kind) == 0; }
+  void decide(Pending& pending, bool* met, Rgb* passed, std::span<const RayDecisions> decisions) const;
+  bool meets_surface(Pending& pending, size_t i, Rgb* passed, std::span<const RayDecisions> decisions) const;
   void occluded_some(std::span<const Ray> rays, uint8_t* blocked, Rgb* passed) const;
 
   const Scene& scene_;
   const bool shells_;
   const bool all_opaque_;
   const bool dims_;
-  uint8_t hidden_ = 0;  // union over all instances
-  uint8_t apart_ = 0;   // kinds that tells_apart()
+  uint8_t apart_ = 0;  // kinds that tells_apart()
 };
 
 class RayLog;

@@ -28,7 +28,7 @@ void ViewTracer::follow(uint64_t first, uint64_t end, SeenWeights& seen) {
   for (int depth = 0; depth <= options_.bounces && !paths_.empty(); ++depth) {
     hits_.resize(rays_.size());
     passed_.resize(visible_.dims() ? rays_.size() : 0);
-    const RayKinds kinds = depth == 0 ? RayKinds{hidden::kFromCamera} : continued(kinds_);
+    const RayKinds kinds = depth == 0 ? RayKinds{hidden::kFromCamera} : RayKinds{.each = kinds_};
     visible_.intersect(rays_, hits_.data(), kinds, visible_.dims() ? passed_.data() : nullptr);
     kinds_.clear();
     for (size_t i = 0; i < passed_.size(); ++i) paths_[i].throughput *= passed_[i];
@@ -142,7 +142,7 @@ void HitLightRecorder::add_surfaces(const Vertex& vertex, int bounces, uint64_t 
   }
   hits_.resize(rays_.size());
   passed_.assign(rays_.size(), Rgb(1.0f));
-  visible_.intersect(rays_, hits_.data(), continued(kinds_), visible_.dims() ? passed_.data() : nullptr);
+  visible_.intersect(rays_, hits_.data(), {.each = kinds_}, visible_.dims() ? passed_.data() : nullptr);
   IndirectLight& indirect = indirect_[half];
   indirect.clear();
   met_.clear();

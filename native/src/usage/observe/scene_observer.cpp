@@ -153,17 +153,16 @@ namespace {
 
 constexpr int kProbes = 128;
 constexpr int kRaysOfSide = 8;  // through the image, along each side
-constexpr int kMaxHidden = 64;  // maximum number of hidden surfaces that a ray passes
+constexpr int kMaxHidden = 64;  // maximum number of hidden back faces that a ray passes
 
 /// The instance whose back face a ray hits first, if it is opaque there; kNoHit: it hits something else, or nothing.
 uint32_t back_met(const Scene& scene, Ray ray) {
   for (int i = 0; i < kMaxHidden; ++i) {
     Hit hit;
-    scene.rays().intersect(ray, hit);
+    scene.rays().intersect({&ray, 1}, &hit, {hidden::kFromCamera});
     if (hit.instance == kNoHit) return kNoHit;
     const SurfaceMaterial& surface = scene.materials()[scene.material(hit)];
-    if ((scene.instances()[hit.instance].hidden & hidden::kFromCamera) != 0 ||
-        passes_back(surface, ray, hit, hidden::kFromCamera)) {
+    if (passes_back(surface, ray, hit, hidden::kFromCamera)) {
       ray.near = hit.distance * (1.0f + 1e-5f);
       continue;
     }

@@ -3,6 +3,7 @@
 
 #include "material/principled/principled_material.h"
 #include "material/shader_layers.h"
+#include "render/path/shadow_queue.h"
 #include "support/textured_scenes.h"
 
 namespace velour::transparency_test {
@@ -67,6 +68,115 @@ TEST(Hidden, RaysPassWhatIsHiddenFromTheirKind) {
   EXPECT_EQ(alpha, 1);
   EXPECT_EQ(seen_of_two(hidden::kHoldout, alpha), 0);
   EXPECT_EQ(alpha, 0);
+}
+
+constexpr uint8_t kKinds[] = {hidden::kFromCamera, hidden::kFromBounces, hidden::kFromShadows,
+                              hidden::kFromTransmission};
+
+/// Two squares in one plane, one of them hidden from some rays. `veiled`: rays first pass a transparent surface.
+struct Coincident {
+  Scene scene;
+  uint32_t shown;  // number of the other one
+
+  Coincident(uint8_t hidden_from, bool shown_first, bool stays, bool veiled, uint8_t shown_hidden_from = 0)
+      : shown(shown_first ? 0 : 1) {
+    const uint32_t material = scene.add_material(matte(0.8f, {1}));
+    for (uint32_t i = 0; i < 2; ++i) {
+      scene.add_instance(scene.add_mesh(test::square(1)), test::shift({0, 0, 0.3f}), {material}, {},
+                         i == shown ? shown_hidden_from : hidden_from);
+    }
+    if (veiled) {
+      scene.add_instance(scene.add_mesh(test::square(2)), test::shift({0, 0, 0.5f}),
+                         {scene.add_material(matte(0.8f, {0}))});
+    }
+    if (stays) scene.stay();
+    scene.commit(1);
+  }
+};
+
+TEST(Hidden, RaysMeetWhatLiesInAHiddenSurface) {
+  std::vector<Ray> rays;
+  std::vector<uint8_t> kinds;
+  for (int i = 0; i < 64; ++i) {
+    const Vec2 at = Vec2(0.11f * static_cast<float>(i % 8), 0.11f * static_cast<float>(i / 8)) - 0.4f;
+    for (const uint8_t kind : kKinds) {
+      rays.push_back({Vec3(at, 1), 0, {0, 0, -1}});
+      kinds.push_back(kind);
+    }
+  }
+  std::vector<Hit> hits(rays.size());
+  std::vector<Rgb> passed(rays.size());
+  std::vector<uint8_t> blocked(rays.size());
+  for (const uint8_t hidden_from : kKinds) {
+    for (int variant = 0; variant < 8; ++variant) {
+      SCOPED_TRACE(testing::Message() << int{hidden_from} << ", variant " << variant);
+      const bool shown_first = (variant & 1) != 0, stays = (variant & 2) != 0, veiled = (variant & 4) != 0;
+      const Coincident two(hidden_from, shown_first, stays, veiled);
+      const VisibleRays visible(two.scene);
+      visible.intersect(rays, hits.data(), {.each = kinds}, passed.data());
+      visible.occluded(rays, blocked.data(), passed.data());
+      // Negative control: hidden from the same rays, the other surface is not met either.
+      const Coincident none(hidden_from, shown_first, stays, veiled, hidden_from);
+      std::vector<Hit> no_hits(rays.size());
+      VisibleRays(none.scene).intersect(rays, no_hits.data(), {.each = kinds}, passed.data());
+      for (size_t i = 0; i < rays.size(); ++i) {
+        ASSERT_NE(hits[i].instance, kNoHit);
+        EXPECT_NEAR(hits[i].distance, 0.7f, 1e-6f);
+        EXPECT_TRUE(blocked[i]);
+        EXPECT_TRUE(kinds[i] != hidden_from || hits[i].instance == two.shown);
+        EXPECT_EQ(no_hits[i].instance == kNoHit, kinds[i] == hidden_from);
+      }
+    }
+  }
+}
+
+/// A square that lies in a larger one over a floor.
+TEST(Hidden, WhatIsHiddenFromAllRaysLeavesTheImageAsItIs) {
+  const auto image = [](uint8_t hidden_from, bool has_larger) {
+    Scene scene;
+    const uint32_t material = scene.add_material(matte(0.8f, {1}));
+    const auto add_square = [&](float half, float height, uint8_t hidden) {
+      scene.add_instance(scene.add_mesh(test::square(half)), test::shift({0, 0, height}), {material}, {}, hidden);
+    };
+    add_square(0.5f, 0, 0);
+    if (has_larger) add_square(4, 0, hidden_from);
+    add_square(4, -0.5f, 0);
+    scene.set_environment(Environment::constant(Rgb(1)));
+    scene.set_camera(test::camera_above(1));
+    scene.commit(1);
+    return test::rendered(scene, options_for(16, 2));
+  };
+  constexpr uint8_t kAll = kKinds[0] | kKinds[1] | kKinds[2] | kKinds[3];
+  EXPECT_EQ(image(kAll, true), image(0, false));
+  // Negative control: seen by the camera alone, or by bounces alone.
+  EXPECT_NE(image(kAll & ~hidden::kFromCamera, true), image(0, false));
+  EXPECT_NE(image(kAll & ~hidden::kFromBounces, true), image(0, false));
+}
+
+/// A square beneath two emissive ones in one plane, of which bounces see one.
+TEST(Hidden, BouncesFindTheLightThatLiesInAHiddenSurface) {
+  const auto below = [](int lights, bool hidden_first, Strategy strategy) {
+    Scene scene;
+    SurfaceMaterial dim = matte(0, {1}), bright = dim;
+    dim.emission = Rgb(1);
+    bright.emission = Rgb(2);
+    const uint32_t square = scene.add_mesh(test::square(1));
+    const auto add_light = [&](const SurfaceMaterial& material, uint8_t hidden_from) {
+      scene.add_instance(square, test::shift({0, 0, 1}), {scene.add_material(material)}, {}, hidden_from);
+    };
+    if (lights == 2 && hidden_first) add_light(bright, hidden::kFromCamera | hidden::kFromBounces);
+    add_light(dim, hidden::kFromCamera);
+    if (lights == 2 && !hidden_first) add_light(bright, hidden::kFromCamera | hidden::kFromBounces);
+    scene.add_instance(scene.add_mesh(test::square(8)), {}, {scene.add_material(matte(0.4f, {1}))});
+    scene.set_camera(test::camera_above(1));
+    scene.commit(1);
+    return test::mean_of(test::rendered(scene, test::small_options(strategy, 256)));
+  };
+  for (const Strategy strategy : {Strategy::cosine, Strategy::light, Strategy::mis}) {
+    const double lit = below(1, false, strategy);
+    EXPECT_GT(lit, 0.05);
+    for (const bool hidden_first : {false, true}) EXPECT_NEAR(below(2, hidden_first, strategy), lit, 1e-3 * lit);
+  }
 }
 
 /// The same, the upper one turned over or not, or mirrored, and from behind not there for some rays.

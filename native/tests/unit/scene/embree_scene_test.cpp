@@ -155,6 +155,37 @@ TEST(EmbreeScene, CoherentBatchesAgreeWithSingleRays) {
   EXPECT_LT(blocked_count, 900);
 }
 
+/// One instance, alone or beside a copy that is out of the rays' way, in one level and in two, still or moving.
+TEST(EmbreeScene, RaysDoNotMeetInstancesHiddenFromTheirKind) {
+  const Ray ray{{0.25f, 0.25f, 2}, 0, {0, 0, -1}};
+  const std::vector<Ray> rays(100, ray);
+  std::vector<uint8_t> kinds, blocked(rays.size());
+  for (size_t i = 0; i < rays.size(); ++i) kinds.push_back(i % 3 == 0 ? 1 : i % 3 == 1 ? 4 : RayKinds::kAny);
+  std::vector<Hit> hits(rays.size());
+  for (int variant = 0; variant < 16; ++variant) {
+    SCOPED_TRACE(variant);
+    const bool is_hidden = (variant & 1) != 0, is_alone = (variant & 2) != 0, moves = (variant & 4) != 0;
+    const auto levels = (variant & 8) != 0 ? EmbreeScene::Levels::one : EmbreeScene::Levels::two;
+    EmbreeScene scene;
+    const uint32_t mesh = scene.add_mesh(kCorners, kTriangle);
+    const std::vector<Affine> steps(moves ? 2 : 0);
+    scene.add_instance(mesh, {}, steps, is_hidden ? 1 | 2 : 0);
+    if (!is_alone) scene.add_instance(scene.add_mesh(kCorners, kTriangle), scaled(Vec3(1), {9, 0, 0}));
+    scene.commit(1, nullptr, levels);
+    scene.intersect(rays, hits.data(), {.each = kinds});
+    scene.occluded(rays, blocked.data(), {.each = kinds});
+    for (size_t i = 0; i < rays.size(); ++i) {
+      EXPECT_EQ(hits[i].instance, is_hidden && kinds[i] == 1 ? kNoHit : 0);
+      EXPECT_EQ(blocked[i] != 0, hits[i].instance == 0);
+    }
+    scene.occluded(rays, blocked.data(), {2});
+    EXPECT_EQ(blocked[0] != 0, !is_hidden);
+    scene.occluded_coherent(rays, blocked.data());
+    EXPECT_TRUE(blocked[0]);
+    EXPECT_TRUE(scene.occluded(ray));
+  }
+}
+
 TEST(EmbreeScene, RefusesIndicesOutsideTheMesh) {
   EmbreeScene scene;
   EXPECT_THROW(scene.add_mesh(kCorners, std::vector<glm::uvec3>{{0, 1, 3}}), Error);
