@@ -197,6 +197,12 @@ ShellFrame Scene::shell(const Hit& hit, const Vec3& direction) const {
     frame.curvature = glm::dot(frame.normal_turn, unit);
     frame.uv_along = a * d1 + b * d2;
   }
+  // A fold turns the top over where it is sharper than the shell is high.
+  if (glm::dot(frame.normal, hit.geometric_normal) < 0) {
+    frame.normal = -frame.normal;
+    frame.normal_turn = -frame.normal_turn;
+    frame.curvature = -frame.curvature;
+  }
   if (const TextureMap* placed = placement(hit)) {
     frame.uv = placed->point(frame.uv);
     frame.uv_along = placed->map * frame.uv_along;

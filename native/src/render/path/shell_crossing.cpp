@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "render/path/path_numbers.h"
 #include "votf/eval/shell_trace.h"
@@ -16,6 +17,9 @@ constexpr float kOffStructure = 0.3f;
 
 /// Minimum radius of curvature below the top, as a share of that at the top.
 constexpr float kMinRadius = 0.1f;
+
+/// Ways that differ by less than this factor come from the triangles, not from a fold.
+constexpr float kSameSpan = 2;
 
 Vec3 downwards(const Ray& ray, const Hit& top) {
   return glm::dot(ray.direction, top.geometric_normal) > 0 ? -ray.direction : ray.direction;
@@ -35,6 +39,7 @@ ShellCrossing::ShellCrossing(const Scene& scene, const Ray& ray, const Hit& hit)
       frame_(scene.shell(foot_.top, direction_)) {
   ShellEdge edge{frame_.softness};
   if (edge.softness > 0) edge.offset = edge.softness * (ray_number(ray, hit, RayDecision::shell_edge) - 0.5f);
+  if (!foot_.is_side && !leaving_) flatten(ray, hit);
   way_ = foot_.is_side ? way_at_side(ray, hit, edge) : way_behind(in_shell(), hit, edge);
   if (!way_.empty() && scene.has_sides(hit)) end_at_sides(ray, hit);
 }
@@ -57,6 +62,25 @@ ShellWay ShellCrossing::way_behind(const ShellRay& ray, const Hit& hit, const Sh
   if (hit.distance < span.end) return {ray, volume, hit.distance, 0, true, edge};
   // A ray that entered through the top has been decided there.
   return {ray, volume, span.through_bottom ? span.end : 0, 0, false, edge};
+}
+
+/// A ray that enters at a sharp fold would leave through the top at once if the surface went on to bend as it does at
+/// the crossing. Gives it the curvature with which it leaves where it crosses the top again, if that is much farther.
+void ShellCrossing::flatten(const Ray& ray, const Hit& hit) {
+  const ShellRay way = in_shell();
+  if (!(way.cosine > 0)) return;
+  const ShellSpan span = span_of(way, field().volume());
+  if (span.through_bottom) return;
+  // A flatter surface than this leads the ray through the bottom.
+  const float far = 4 * height() / way.cosine;
+  if (!(far > kSameSpan * span.end)) return;
+  const float near = std::nextafter(hit.distance, std::numeric_limits<float>::infinity());
+  const float top = scene_.next_top(hit, {ray.origin, near, ray.direction, hit.distance + far, ray.time}, false);
+  const float end = std::min(top - hit.distance, far);
+  if (!(end > kSameSpan * span.end)) return;
+  const float share = span.end / end;
+  frame_.curvature *= share;
+  frame_.normal_turn *= share;
 }
 
 ShellWay ShellCrossing::way_at_side(const Ray& ray, const Hit& hit, const ShellEdge& edge) {

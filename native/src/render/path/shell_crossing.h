@@ -36,6 +36,7 @@ class ShellCrossing {
 
  private:
   ShellRay in_shell() const;
+  void flatten(const Ray& ray, const Hit& hit);
   ShellWay way_at_side(const Ray& ray, const Hit& hit, const ShellEdge& edge);
   void end_at_sides(const Ray& ray, const Hit& hit);
   /// Whether the hit is where the side cuts the structure.

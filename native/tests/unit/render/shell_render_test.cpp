@@ -57,6 +57,44 @@ Mesh tiled_sphere(uint32_t n, float tiles) {
       {.positions = plain.positions(), .triangles = plain.triangles(), .corner_normals = normals, .corner_uvs = uv});
 }
 
+/// A strip along y whose profile has the slopes `from` to `to`, radians, around a bend of `radius`, with flat parts of
+/// length `flat` beside it and the middle of the bend at the origin; `tile` meters a tile.
+Mesh bent_strip(float from, float to, float radius, float flat, float tile) {
+  constexpr uint32_t kBends = 8;
+  std::vector<Vec3> positions, normals;
+  std::vector<Vec2> uv;
+  std::vector<glm::uvec3> triangles;
+  const auto along = [](float slope) { return Vec3(std::cos(slope), 0, std::sin(slope)); };
+  const float chord = 2 * radius * std::sin(std::abs(to - from) / (2 * kBends)), part = (to - from) / kBends;
+  Vec3 at(0.0f);
+  std::vector<Vec3> profile = {-flat * along(from), at};
+  for (uint32_t i = 0; i < kBends; ++i)
+    profile.push_back(at += chord * along(from + (static_cast<float>(i) + 0.5f) * part));
+  profile.push_back(at + flat * along(to));
+  const Vec3 middle = profile[1 + kBends / 2];
+  float way = 0;
+  for (uint32_t i = 0; i < profile.size(); ++i) {
+    const float slope = from + part * static_cast<float>(std::clamp<int>(static_cast<int>(i) - 1, 0, kBends));
+    if (i > 0) way += glm::length(profile[i] - profile[i - 1]);
+    for (const float y : {-2.0f, 2.0f}) {
+      positions.push_back(profile[i] - middle + Vec3(0, y, 0));
+      normals.push_back({-std::sin(slope), 0, std::cos(slope)});
+      uv.push_back(Vec2(way, y) / tile);
+    }
+    if (i > 0) triangles.insert(triangles.end(), {{2 * i - 2, 2 * i, 2 * i - 1}, {2 * i, 2 * i + 1, 2 * i - 1}});
+  }
+  std::vector<Vec3> corner_normals;
+  std::vector<Vec2> corner_uvs;
+  for (const glm::uvec3& t : triangles) {
+    for (int k = 0; k < 3; ++k) {
+      corner_normals.push_back(normals[t[k]]);
+      corner_uvs.push_back(uv[t[k]]);
+    }
+  }
+  return Mesh(
+      {.positions = positions, .triangles = triangles, .corner_normals = corner_normals, .corner_uvs = corner_uvs});
+}
+
 struct Shot {
   explicit Shot(Mesh mesh, SurfaceMaterial material, const Affine& place = {}) {
     scene.add_material(std::move(material));
@@ -407,6 +445,29 @@ TEST(ShellRender, AShellHigherThanTheSurfaceBendsSaysSo) {
   EXPECT_EQ(folded[0].code, WarningCode::silhouette_folds);
   EXPECT_NEAR(test::value_of<double>(folded[0], "radius"), 1, 0.005);
   EXPECT_FLOAT_EQ(static_cast<float>(test::value_of<double>(folded[0], "tile")), 2.2f);
+}
+
+/// The rays come in where the shell bends sharply and would leave at once if it went on so.
+TEST(ShellRender, AClosedShellHidesAllBehindASharpRidge) {
+  for (const float degrees : {30.0f, 60.0f, 75.0f}) {
+    const float slope = radians_from(degrees);
+    Shot ridge(bent_strip(slope, -slope, 0.01f, 2, 0.4f), shelled(closed_field()));
+    EXPECT_EQ(ridge.alpha(0.3f), 1.0) << degrees;
+  }
+}
+
+/// A trough narrower than the shell is high: its top is an arch that is turned over, which a ray from below enters.
+TEST(ShellRender, RaysMeetAClosedShellWhereItsTopIsTurnedOver) {
+  const float slope = radians_from(60.0f);
+  Shot trough(bent_strip(-slope, slope, 0.1f, 0.5f, 0.4f), shelled(closed_field()));
+  trough.scene.commit(1);
+  const Ray ray{{0.01f, 0, -1}, 0, {0, 0, 1}};
+  Hit hit;
+  trough.scene.rays().intersect(ray, hit);
+  ASSERT_NE(hit.instance, kNoHit);
+  EXPECT_NEAR(hit.distance, 1.2f, 0.01f);
+  EXPECT_LT(glm::dot(hit.geometric_normal, ray.direction), 0);
+  EXPECT_TRUE(ShellCrossing(trough.scene, ray, hit).find());
 }
 
 TEST(ShellRender, StaysSaneWhereItHasNoMeaning) {

@@ -48,7 +48,7 @@ def metals():
     _dress(_knot((1.25, -1.45, 0.0), 0.34, turn=70), "Satin Copper")
     _dress(_ball((3.35, -0.75, 0.0), 0.5), "Glazed Porcelain")
     _dress(_ball((-3.3, -0.85, 0.0), 0.45), "Brushed Brass")
-    build.camera((0.15, -8.4, 2.5), (0.05, 0, 0.78), lens=39)
+    build.camera((0.15, -8.4, 2.5), (0.05, 0, 0.78), lens=36)
 
 
 def cloths():
@@ -58,7 +58,7 @@ def cloths():
     for x, y, preset in places:
         form = _ball((x, y, 0.0), 0.72) if preset != "Crimson Velvet" else _pedestal((x, y, 0.0))
         _dress(_draped(form, side=3.5), preset)
-    build.camera((0, -8.6, 3.0), (0, 0, 0.5), lens=62)
+    build.camera((0, -8.6, 3.0), (0, 0, 0.45), lens=46)
 
 
 def product():
@@ -251,6 +251,8 @@ def _draped(form, side):
     settings.settings.mass = 0.25
     settings.settings.bending_stiffness = 0.08
     settings.collision_settings.distance_min = 0.012
+    settings.collision_settings.use_self_collision = True
+    settings.collision_settings.self_distance_min = 0.012
     settings.point_cache.frame_end = _CLOTH_FRAMES
     scene = bpy.context.scene
     for frame in range(1, _CLOTH_FRAMES + 1):
