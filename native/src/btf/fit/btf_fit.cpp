@@ -46,7 +46,7 @@ const char* name_of(CompressMethod method) {
 /// Identifies the measurement and all that affects the bits of the fit. Whatever changes a fit's numbers must increment
 /// kFitVersion.
 std::string checkpoint_key(const BtfMeasurement& measurement, const CompressOptions& options) {
-  constexpr int kFitVersion = 9;
+  constexpr int kFitVersion = 10;
   std::ostringstream key;
   key << kFitVersion << ' ' << measurement.provenance().sha256 << ' ' << measurement.raw_bytes() << ' '
       << name_of(options.method) << ' ' << static_cast<int>(options.companding) << ' ' << options.bytes << ' '

@@ -9,14 +9,14 @@
 
 namespace velour {
 
-void BtfFitter::bound(uint64_t bytes, const char* one) {
+void BtfFitter::bound(uint64_t bytes, const std::string& one) {
   const std::vector<OrderPoint>& points = curve_.points;
   const auto past = std::upper_bound(points.begin(), points.end(), bytes,
                                      [](uint64_t n, const OrderPoint& p) { return n < p.parameter_bytes; });
   if (past == points.begin()) {
-    throw Error(Status::invalid_argument,
-                std::string(one) + " takes " + std::to_string(points.front().parameter_bytes) +
-                    " bytes, but the maximum size is " + std::to_string(bytes) + " bytes. Raise the maximum size.");
+    throw Error(Status::invalid_argument, one + " takes " + std::to_string(points.front().parameter_bytes) +
+                                              " bytes, but the maximum size is " + std::to_string(bytes) +
+                                              " bytes. Raise the maximum size.");
   }
   largest_ = static_cast<size_t>(past - points.begin()) - 1;
 }
@@ -180,13 +180,12 @@ void require_components(uint64_t memory, const FitExtent& extent) {
   if (bytes > memory) refuse(memory, bytes, std::to_string(extent.coefficients) + " components");
 }
 
-uint64_t components_within(uint64_t memory, FitExtent extent) {
-  const uint64_t most = extent.coefficients;
-  while (extent.coefficients > 1 && memory_for_components(extent) > memory) --extent.coefficients;
-  if (memory_for_components(extent) <= memory) return std::min(most, extent.coefficients);
-  refuse(
-      memory, memory_for_components(extent),
-      "one component of " + std::to_string(extent.texels) + " texels and " + std::to_string(extent.pairs) + " pairs");
+uint64_t components_within(uint64_t memory, uint64_t least, FitExtent extent) {
+  while (extent.coefficients > least && memory_for_components(extent) > memory) --extent.coefficients;
+  if (memory_for_components(extent) <= memory) return extent.coefficients;
+  refuse(memory, memory_for_components(extent),
+         (least == 1 ? "one component" : std::to_string(least) + " components") + " of " +
+             std::to_string(extent.texels) + " texels and " + std::to_string(extent.pairs) + " pairs");
 }
 
 }  // namespace velour

@@ -52,7 +52,7 @@ class BtfFitter {
 
  protected:
   /// Sets largest(). Throws Error(invalid_argument) if even the first point, described by `one`, exceeds `bytes`.
-  void bound(uint64_t bytes, const char* one);
+  void bound(uint64_t bytes, const std::string& one);
 
   OrderCurve curve_;
   size_t largest_ = 0;
@@ -97,9 +97,9 @@ uint64_t memory_for_components(const FitExtent& extent);
 /// Throws Error(unsupported), with the required memory, if such an SVD holds more than `memory` bytes.
 void require_components(uint64_t memory, const FitExtent& extent);
 
-/// Maximum number of components, up to `extent.coefficients`, of a truncated SVD within `memory` bytes. Throws
-/// Error(unsupported) with the smallest feasible limit.
-uint64_t components_within(uint64_t memory, FitExtent extent);
+/// Maximum number of components, from `least` to `extent.coefficients`, of a truncated SVD within `memory` bytes.
+/// Throws Error(unsupported) with the smallest feasible limit.
+uint64_t components_within(uint64_t memory, uint64_t least, FitExtent extent);
 
 /// Limits on the data held by a fit of clustered tensors.
 struct TensorAllowance {

@@ -50,6 +50,14 @@ double ColorAxes::energy_of(const std::vector<uint32_t>& views, const std::vecto
 
 double ColorAxes::all_energy() const { return std::accumulate(energy.begin(), energy.end(), 0.0); }
 
+size_t ColorAxes::lit_views() const {
+  size_t count = 0;
+  for (auto view = energy.begin(); view != energy.end(); view += static_cast<ptrdiff_t>(lights)) {
+    if (std::any_of(view, view + static_cast<ptrdiff_t>(lights), [](double e) { return e > 0; })) ++count;
+  }
+  return count;
+}
+
 ColorAxes find_colors(CompandedViews& views, const PairLayout& layout, FitCheckpoint& checkpoint) {
   std::optional<ColorAxes> found = kept(checkpoint, layout);
   if (!found) {

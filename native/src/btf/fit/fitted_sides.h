@@ -20,6 +20,8 @@ struct ColorAxes {
 
   double energy_of(const std::vector<uint32_t>& views, const std::vector<uint32_t>& of_lights) const;
   double all_energy() const;
+  /// Number of views that are not black.
+  size_t lit_views() const;
 };
 
 /// Finds the color axes and sets them in `views`, of a complete layout; reads every view once, or the checkpoint.

@@ -33,13 +33,16 @@ uint64_t component_bytes(const BtfMeasurement& measurement, bool by_view) {
 /// Maximum number of components of any model.
 uint64_t most_ever(bool by_view) { return by_view ? FactoredBtf::kMaxOfViews : FactoredBtf::kMaxComponents; }
 
+/// Minimum number of components, if all views have light: a view without a component would be black.
+uint64_t least_components(const BtfMeasurement& measurement, bool by_view) {
+  return by_view ? measurement.layout().views().size() : 1;
+}
+
 uint64_t bytes_of(const BtfMeasurement& measurement, const BtfFitOptions& options, bool by_view) {
   if (options.bytes > 0) return options.bytes;
   const uint64_t one = component_bytes(measurement, by_view);
   if (options.tolerance > 0) return most_ever(by_view) * one;
-  // By view, a view without a component would be black.
-  const uint64_t least =
-      by_view ? std::max<uint64_t>(kDefaultMinComponents, measurement.layout().views().size()) : kDefaultMinComponents;
+  const uint64_t least = std::max(kDefaultMinComponents, least_components(measurement, by_view));
   return std::max(measurement.raw_bytes() / kDefaultFactoredRatio, least * one);
 }
 
@@ -68,7 +71,7 @@ FitSize factored_fit_size(const BtfMeasurement& measurement, const BtfFitOptions
   require_complete_pairs(measurement.layout());
   FitExtent extent = extent_of(measurement, options, by_view);
   FitSize size{.memory = memory_for_components(extent), .bytes = bytes_of(measurement, options, by_view)};
-  if (options.tolerance > 0) extent.coefficients = 1;
+  if (options.tolerance > 0) extent.coefficients = least_components(measurement, by_view);
   size.least_memory = memory_for_components(extent);
   return size;
 }
@@ -83,8 +86,7 @@ FactoredFitter::FactoredFitter(const BtfMeasurement& measurement, const BtfFitOp
       by_view_(by_view),
       one_(component_bytes(measurement, by_view)) {
   require_complete_pairs(measurement.layout());
-  curve_.points = {{1, one_, 0, 1}};
-  bound(bytes(), "One component");
+  require_least(1);
 }
 
 uint64_t FactoredFitter::bytes() const { return bytes_of(measurement_, options_, by_view_); }
@@ -94,12 +96,25 @@ void FactoredFitter::find_axes() {
   axes_ = colors.axes;
   all_ = colors.all_energy();
   not_finite_ = colors.not_finite;
+  if (by_view_) require_least(std::max<size_t>(1, colors.lit_views()));
+}
+
+void FactoredFitter::require_least(size_t components) {
+  least_ = components;
+  curve_.points = {{static_cast<int>(least_), least_ * one_, 0, 1}};
+  bound_components();
+}
+
+void FactoredFitter::bound_components() {
+  bound(bytes(), least_ == 1 ? "One component"
+                             : "One component for each of the " + std::to_string(least_) + " views that are not black");
 }
 
 uint64_t FactoredFitter::most_components() const {
   const FitExtent extent = extent_of(measurement_, options_, by_view_);
   if (options_.memory == 0) return extent.coefficients;
-  if (options_.tolerance > 0) return components_within(options_.memory, extent);
+  if (options_.tolerance > 0)
+    return components_within(options_.memory, least_components(measurement_, by_view_), extent);
   require_components(options_.memory, extent);
   return extent.coefficients;
 }
@@ -107,21 +122,29 @@ uint64_t FactoredFitter::most_components() const {
 void FactoredFitter::rank(std::vector<Component> components, size_t most) {
   ranked_ = std::move(components);
   std::stable_sort(ranked_.begin(), ranked_.end(), [](const auto& x, const auto& y) { return x.energy > y.energy; });
-  const double least = kRounding * ranked_.front().energy;
-  ranked_.erase(std::find_if(ranked_.begin() + 1, ranked_.end(), [&](const auto& x) { return x.energy <= least; }),
-                ranked_.end());
+  const double rounding = kRounding * ranked_.front().energy;
+  std::vector<bool> has_component(by_view_ ? views_.views() : 1, false);
+  const auto others = std::stable_partition(ranked_.begin(), ranked_.end(), [&](const Component& x) {
+    const bool first = x.energy > 0 && !has_component[x.view];
+    if (first) has_component[x.view] = true;
+    return first;
+  });
+  const auto kept = std::max(others, ranked_.begin() + 1);
+  ranked_.erase(std::find_if(kept, ranked_.end(), [&](const auto& x) { return x.energy <= rounding; }), ranked_.end());
   if (ranked_.size() > most) ranked_.resize(most);
+  least_ = std::min(least_, ranked_.size());
   curve_ = {};
   double left = all_;
-  for (size_t k = 0; k < ranked_.size(); ++k) {
-    left = std::max(0.0, left - ranked_[k].energy);
-    curve_.points.push_back({static_cast<int>(k + 1), (k + 1) * one_, 0, all_ > 0 ? std::sqrt(left / all_) : 0.0});
+  for (size_t k = 1; k <= ranked_.size(); ++k) {
+    left = std::max(0.0, left - ranked_[k - 1].energy);
+    if (k < least_) continue;
+    curve_.points.push_back({static_cast<int>(k), k * one_, 0, all_ > 0 ? std::sqrt(left / all_) : 0.0});
   }
 }
 
 ModelBody FactoredFitter::fit(size_t point) {
   FactoredBtf btf{measurement_.layout(), measurement_.grid(), options_.companding, axes_, {}, {}, {}};
-  choose(point + 1, btf);
+  choose(static_cast<size_t>(curve_.points[point].lobes), btf);
   progress_.stage("fitting texels", 0, 1);
   project(btf);
   return btf;
@@ -260,7 +283,7 @@ SvdFitter::SvdFitter(const BtfMeasurement& measurement, const BtfFitOptions& opt
     sketch(count, begin, count == most ? 1.0 : (begin + 1) / 2);
     if (count == most || reaches(options.tolerance)) break;
   }
-  bound(bytes(), "One component");
+  bound_components();
 }
 
 /// Finds at least `components` components.
@@ -383,7 +406,7 @@ ViewSvdFitter::ViewSvdFitter(const BtfMeasurement& measurement, const BtfFitOpti
     progress.update(static_cast<double>(v + 1) / views_.views());
   }
   rank(std::move(components), most);
-  bound(bytes(), "One component");
+  bound_components();
 }
 
 void ViewSvdFitter::decompose(uint32_t view, std::vector<Component>& components) {

@@ -13,8 +13,9 @@ namespace velour {
 
 FitSize factored_fit_size(const BtfMeasurement& measurement, const BtfFitOptions& options, bool by_view);
 
-/// Functions of the pair are orthonormal; those with the most energy over all axes (and views) are chosen. Coarse
-/// levels are projections of the filtered measurement on the same functions, so they preserve its mean.
+/// Functions of the pair are orthonormal; those with the most energy over all axes (and views) are chosen, but first
+/// the strongest one of each view that has any light, if components serve one view. Coarse levels are projections of
+/// the filtered measurement on the same functions, so they preserve its mean.
 class FactoredFitter : public BtfFitter {
  public:
   ModelBody fit(size_t point) final;
@@ -32,19 +33,22 @@ class FactoredFitter : public BtfFitter {
   FactoredFitter(const BtfMeasurement& measurement, const BtfFitOptions& options, FitCheckpoint& checkpoint,
                  Progress& progress, bool by_view);
 
-  /// Reads every view once.
+  /// Reads every view once. Throws Error(invalid_argument) if the bytes do not hold a component for every view that
+  /// needs one.
   void find_axes();
   /// Byte budget: the requested size, or the method's default.
   uint64_t bytes() const;
   /// Maximum number of components to compute within the bytes and the memory limit. Throws Error(unsupported) if the
   /// memory does not suffice.
   uint64_t most_components() const;
-  /// Ranks components of all axes and views, given in any order: keeps the strongest `most` above rounding error and
-  /// sets the curve of their residuals. An axis may have unknown components weaker than those found: the curve may be
-  /// too high, never too low.
+  /// Ranks components of all axes and views, given in any order: keeps the best `most` above rounding error and sets
+  /// the curve of their residuals, from the minimum number on. An axis may have unknown components weaker than those
+  /// found: the curve may be too high, never too low.
   void rank(std::vector<Component> components, size_t most);
   /// Writes the values of a component's function.
   virtual void copy_function(const Component& component, Eigen::Ref<Eigen::VectorXf> values) const = 0;
+  /// Sets largest().
+  void bound_components();
 
   const BtfMeasurement& measurement_;
   const BtfFitOptions options_;
@@ -61,6 +65,7 @@ class FactoredFitter : public BtfFitter {
     std::vector<double> measured;  // per group of components: squares of companded images, times both cosines
   };
 
+  void require_least(size_t components);
   void choose(size_t components, FactoredBtf& btf);
   void project(FactoredBtf& btf);
   void project(const FactoredBtf& btf, const ComponentRanges& ranges, uint32_t view, Level& level);
@@ -70,9 +75,10 @@ class FactoredFitter : public BtfFitter {
 
   const bool by_view_;
   const uint64_t one_;  // bytes per component
+  size_t least_ = 1;    // minimum number of components
   Mat3 axes_{1.0f};
   double all_ = 0;                 // sum of squares of all companded values
-  std::vector<Component> ranked_;  // strongest first
+  std::vector<Component> ranked_;  // best first
   RowMatrix function_;             // row x component, of the current fit
 };
 
@@ -120,13 +126,13 @@ class SvdFitter final : public FactoredFitter {
 // Truncated singular value decomposition of every view on its own.
 
 /// One matrix of lights times texels per view and decorrelated color axis, decomposed exactly from the products of its
-/// rows and truncated to its strongest components; those of all views and axes compete for the bytes. A view that gets
-/// none is black.
+/// rows and truncated to its strongest components; those of all views and axes compete for the bytes beyond one for
+/// each view that is not black.
 class ViewSvdFitter final : public FactoredFitter {
  public:
   /// The arguments must outlive the fitter. Only the colors are checkpointed; the decompositions take one pass over the
-  /// views. Throws Error(invalid_argument) if the bytes do not hold a single component, Error(unsupported) for an
-  /// incomplete layout or too little memory.
+  /// views. Throws Error(invalid_argument) if the bytes do not hold a component for every view that is not black,
+  /// Error(unsupported) for an incomplete layout or too little memory.
   ViewSvdFitter(const BtfMeasurement& measurement, const BtfFitOptions& options, FitCheckpoint& checkpoint,
                 Progress& progress);
 

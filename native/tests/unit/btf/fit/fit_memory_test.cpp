@@ -55,14 +55,16 @@ TEST(FitMemory, NamesTheLeastThatWouldDo) {
 TEST(FitMemory, OfComponentsGrowsWithThem) {
   FitExtent extent = usual_extent();
   extent.coefficients = 512;
-  const uint64_t some = components_within(uint64_t{256} << 20, extent);
+  const uint64_t some = components_within(uint64_t{256} << 20, 1, extent);
   EXPECT_GT(some, 1u);
   ASSERT_LT(some, 512u);
   extent.coefficients = some;
   require_components(uint64_t{256} << 20, extent);
   ++extent.coefficients;
   EXPECT_THROW(require_components(uint64_t{256} << 20, extent), Error);
-  EXPECT_THROW(components_within(1'000'000, extent), Error);
+  EXPECT_THROW(components_within(1'000'000, 1, extent), Error);
+  EXPECT_EQ(components_within(uint64_t{256} << 20, some, extent), some);
+  EXPECT_THROW(components_within(uint64_t{256} << 20, some + 1, extent), Error);
 }
 
 constexpr uint64_t kEntries = 64 * 64 * 3;  // of a slice

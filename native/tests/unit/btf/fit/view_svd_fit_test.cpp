@@ -5,6 +5,8 @@
 #include <cmath>
 #include <set>
 
+#include "base/error.h"
+#include "support/striped_btf.h"
 #include "unit/btf/fit/factored_fits.h"
 
 namespace velour::view_svd_fit_test {
@@ -36,8 +38,60 @@ TEST(ViewSvdFit, RecoversAProductOfEachViewToTheRoundingOfHalves) {
   EXPECT_EQ(found.btf.view, (std::vector<uint16_t>{0, 1, 2, 3, 4}));
   EXPECT_EQ(found.btf.pair_value.size(), 5u * 7u);
   EXPECT_LT(errors_of(found.btf, btf).ser, 1e-6);
-  // The control: without its component a view is black.
-  EXPECT_GT(errors_of(fit_view_svd(btf, {.bytes = bytes_of(4, btf)}).btf, btf).ser, 0.1);
+}
+
+std::set<uint16_t> views_of(const FactoredBtf& btf) { return {btf.view.begin(), btf.view.end()}; }
+
+/// Sparse noise, of which no component has most; 20 times darker at grazing views.
+Rgb dark_beyond_60_degrees(const DirectionPair& pair, uint32_t x, uint32_t y) {
+  return (pair.wv.z < 0.5f ? 0.05f : 1.0f) * glm::pow(noise(pair, x, y), Rgb(8.0f));
+}
+
+/// The strongest components of all views belong to the bright ones.
+TEST(ViewSvdFit, DarkViewsHaveAComponentBesideBrightOnes) {
+  const test::MemoryBtf btf(test::ringed_layout(), kGrid, dark_beyond_60_degrees);
+  const size_t views = btf.layout().views().size();
+  for (const size_t components : {views, views + 3}) {
+    const FactoredBtf found = fit_view_svd(btf, {.bytes = bytes_of(components, btf)}).btf;
+    EXPECT_EQ(found.components(), components);
+    EXPECT_EQ(views_of(found).size(), views);
+  }
+  // The control: a black view needs none.
+  const test::MemoryBtf black(test::ringed_layout(), kGrid, [](const DirectionPair& pair, uint32_t x, uint32_t y) {
+    return (pair.wv.z < 0.5f ? 0.0f : 1.0f) * noise(pair, x, y);
+  });
+  EXPECT_EQ(views_of(fit_view_svd(black, {.bytes = bytes_of(views, btf)}).btf).size(), views - 8);
+}
+
+TEST(ViewSvdFit, RefusesSizesThatLeaveViewsBlackAndNamesTheSmallestThatDoesNot) {
+  const test::MemoryBtf btf(test::ringed_layout(), kGrid, dark_beyond_60_degrees);
+  try {
+    fit_view_svd(btf, {.bytes = bytes_of(14, btf) - 1});
+    ADD_FAILURE() << "not refused";
+  } catch (const Error& refused) {
+    EXPECT_EQ(refused.status(), Status::invalid_argument);
+    const std::string smallest =
+        "One component for each of the 14 views that are not black takes " + std::to_string(bytes_of(14, btf));
+    EXPECT_NE(std::string(refused.what()).find(smallest), std::string::npos) << refused.what();
+  }
+  EXPECT_EQ(fit_view_svd(btf, {.bytes = bytes_of(14, btf)}).btf.components(), 14u);
+}
+
+TEST(ViewSvdFit, SmallestModelWithinAToleranceHasAComponentForEveryView) {
+  const test::MemoryBtf btf(test::ringed_layout(), kGrid, dark_beyond_60_degrees);
+  Progress progress;
+  FitCheckpoint none;
+  ViewSvdFitter fitter(btf, {.tolerance = 0.9}, none, progress);
+  ASSERT_EQ(fitter.curve().points.front().lobes, 14);
+  EXPECT_EQ(views_of(std::get<FactoredBtf>(fitter.fit(0))).size(), 14u);
+}
+
+/// A two-hundredth of so small a BTF, the usual size, is fewer components than views.
+TEST(ViewSvdFit, TheDefaultSizeHasAComponentForEveryView) {
+  const test::MemoryBtf btf(test::ringed_layout(), kGrid, squared_product_of_view);
+  const FactoredBtf found = fit_view_svd(btf, {}).btf;
+  EXPECT_EQ(views_of(found).size(), btf.layout().views().size());
+  EXPECT_LT(errors_of(found, btf).ser, 1e-6);
 }
 
 /// The squares of singular values of every view's matrices.
@@ -73,8 +127,8 @@ TEST(ViewSvdFit, ItsCurveIsTheErrorOfEverySize) {
   Progress progress;
   FitCheckpoint none;
   ViewSvdFitter fitter(btf, {.bytes = bytes_of(60, btf)}, none, progress);
-  ASSERT_EQ(fitter.curve().points.size(), 60u);
-  for (const size_t point : {30u, 59u}) {
+  ASSERT_EQ(fitter.curve().points.size(), 56u) << "from one for each of five views on";
+  for (const size_t point : {26u, 55u}) {
     const BtfErrors errors = errors_of(std::get<FactoredBtf>(fitter.fit(point)), btf);
     EXPECT_NEAR(errors.relative_l2, fitter.curve().points[point].relative_l2, 0.02) << point;
   }
@@ -83,7 +137,7 @@ TEST(ViewSvdFit, ItsCurveIsTheErrorOfEverySize) {
 TEST(ViewSvdFit, EachViewIsAsBrightAsWhatItLeavesOut) {
   const test::MemoryBtf btf(small_layout(), kGrid, noise);
   const test::FactoredFit found = fit_view_svd(btf, {.bytes = bytes_of(15, btf)});
-  ASSERT_EQ(std::set(found.btf.view.begin(), found.btf.view.end()).size(), 5u);
+  ASSERT_EQ(views_of(found.btf).size(), 5u);
   EXPECT_NEAR(errors_of(found.btf, btf).brightness, 1, 2e-3);
 }
 
