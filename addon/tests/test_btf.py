@@ -66,6 +66,42 @@ def test_options_say_what_numbers_mean(named_set):
     assert velour("info", named_set, "--tile-size", "1").status == 2
 
 
+def test_fits_and_comparisons_read_all_btfs_with_the_options(named_set, tmp_path):
+    """Radiance is divided by the cosine of the light, reflectance is not."""
+    model, reflectance = tmp_path / "wool.velour", ["--values", "reflectance"]
+    fit = ["compress", named_set, "-o", model, "--method", "svd", *reflectance, "--held-out", named_set]
+    report = velour(*fit, "--json").json
+    assert report["psnr_held_out"] == pytest.approx(report["psnr"])
+    found = velour("compare", named_set, model, *reflectance, "--json").json
+    assert found["psnr"] == pytest.approx(report["psnr"])
+    assert velour("compare", named_set, model, "--json").json["psnr"] < report["psnr"] - 10
+    assert velour("compare", named_set, named_set, *reflectance, "--json").json["ser"] < 1e-9
+
+
+@pytest.mark.parametrize("verb", ["compare", "tile", "mesh", "export", "render"])
+def test_options_of_btfs_are_refused_by_name_for_what_is_no_btf(
+    verb, measurement_file, model_file, mesh_file, world_file, tmp_path
+):
+    out = tmp_path / ("x.mtlx" if verb == "export" else "x.exr" if verb == "render" else "x.velour")
+    silhouette = ["--material", model_file, "--texels", 8, "--check-views", 0]
+    name, *words = {
+        "compare": [measurement_file, "compare", measurement_file, model_file],
+        "tile": ["net", "votf", "net", *silhouette],
+        "mesh": [mesh_file, "votf", mesh_file, *silhouette],
+        "export": [model_file, "export", model_file, "--to", "openpbr"],
+        "render": [model_file, "render", "--mesh", mesh_file, "--material", model_file, "--world", world_file,
+                   "--size", "8x8", "--spp", 1],
+    }[verb]  # fmt: skip
+    words += [] if verb == "compare" else ["-o", out]
+    layer = "--btf-layer" if verb == "render" else "--layer"
+    for option, value in {"--tile-size": "1,1", "--values": "brdf", layer: "a", "--gamma": "srgb"}.items():
+        assert f"{name} is not a BTF; leave out {option}." in refused(*words, option, value)
+    both = refused(*words, "--tile-size", "1,1", "--angles", "degrees")
+    assert "--tile-size and --angles" in both or "--angles and --tile-size" in both
+    assert not out.exists()
+    assert velour(*words).status == 0
+
+
 @pytest.mark.parametrize("extension", [".exr", ".png"])
 def test_pictures_become_brdfs(tmp_path, extension):
     with Btf.load(write_set(tmp_path / "set", extension)) as btf:

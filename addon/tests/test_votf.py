@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from command_line import refused, velour
 from kept import captured
-from velour.native import Model, Scene, Tile, render_job, votf_job
+from velour.native import Model, Scene, Tile, images, render_job, votf_job
 
 _UNMOVED = ((1, 0, 0, 0), (0, 1, 0, 0), (0, 0, 1, 0))
 
@@ -124,6 +124,20 @@ def test_a_capture_tells_what_its_geometry_would(captured_net, made, model_file,
         solid = 1 - tile.info()["open_area"]
     with Model.load(tmp_path / "x.velour") as model:
         assert _coverage(model) == pytest.approx(solid, abs=0.05)
+
+
+def test_images_with_alpha_are_read_with_the_options_of_btfs(model_file, tmp_path):
+    half = np.ones((8, 8, 4), np.float32)
+    half[:, :4, 3] = 0
+    folder, out = tmp_path / "set", tmp_path / "x.velour"
+    folder.mkdir()
+    for view in range(8):
+        images.write(folder / f"{view:05d} tl000 pl000 tv030 pv{45 * view:03d}.exr", half)
+    made = ["votf", folder, "--material", model_file, "--check-views", 0, "-o", out, "--json"]
+    assert velour(*made).json["tile_width"] is None
+    found = velour(*made, "--tile-size", "0.02,0.04").json
+    assert found["tile_width"] == pytest.approx(0.02)
+    assert found["points"][:2] == [8, 16]  # as fine along y
 
 
 def test_of_a_btf_what_does_not_fit_is_refused(captured_net, model_file, tmp_path):

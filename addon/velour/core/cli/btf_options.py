@@ -6,6 +6,7 @@ import argparse
 
 from ... import native
 from ...native import table
+from ...native.errors import refuse
 from . import numbers
 
 _CURVES = {"srgb": 0.0, "linear": 1.0}
@@ -56,6 +57,14 @@ def given(args: argparse.Namespace) -> dict:
     names = {"values": args.values, "gamma": args.gamma, "colors": args.colors, "tile_metres": args.tile_size}
     names |= {"layer": args.btf_layer, "angles": args.angles}
     return {name: value for name, value in names.items() if value is not None}
+
+
+def refuse_given(args: argparse.Namespace, path: str, layer_option: str = "--layer") -> None:
+    """Refuses the options, by name, for `path`, which is not a BTF."""
+    flags = {"tile_metres": "--tile-size", "layer": layer_option}
+    named = [flags.get(name, f"--{name}") for name in given(args)]
+    if named:
+        raise refuse(f"{path} is not a BTF; leave out {' and '.join(named)}.")
 
 
 def load(path: str, args: argparse.Namespace) -> native.Btf:

@@ -49,8 +49,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(args: argparse.Namespace) -> dict:
     if library.file_info(args.input)["kind"] == "btf":
         return _compare_btf(args)
-    if btf_options.given(args):
-        raise refuse(f"{args.input} is not a BTF; leave out the options for measured BTFs.")
+    btf_options.refuse_given(args, args.input)
     with contextlib.ExitStack() as handles:
         measurement = handles.enter_context(Measurement.load(args.input))
         report = handles.enter_context(_job(args, measurement, handles)).run(output.progress_of(args))

@@ -36,6 +36,7 @@ def run(args: argparse.Namespace) -> dict:
     if args.to is None:
         with btf_options.load(args.input, args) as btf, export_btf_job(btf, args.output) as job:
             return job.run(output.progress_of(args))
+    btf_options.refuse_given(args, args.input)
     target, path = model_export.TARGETS[args.to], Path(args.output)
     if path.suffix.lower() != target.suffix:
         raise refuse(

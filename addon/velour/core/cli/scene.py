@@ -98,6 +98,7 @@ def _add_material(scene: Scene, args: argparse.Namespace, handles: contextlib.Ex
     if kind == "btf":
         btf = handles.enter_context(btf_options.load(args.material, args))
         return scene.add_btf_material(btf, args.memory or 0)
+    btf_options.refuse_given(args, args.material, "--btf-layer")
     if kind == "model":
         model = handles.enter_context(Model.load(args.material))
         material = scene.add_model_material(model, args.neighbors)

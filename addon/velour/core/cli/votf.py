@@ -74,6 +74,7 @@ def _job(args: argparse.Namespace, model: Model, handles: contextlib.ExitStack):
                     f" {args.subject}."
                 )
         return votf_data_job(handles.enter_context(btf_options.load(args.subject, args)), model, **given)
+    btf_options.refuse_given(args, args.subject)
     scene = handles.enter_context(Scene())
     place = subject.add_to(scene, args)
     scene.commit()
