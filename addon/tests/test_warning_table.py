@@ -125,8 +125,8 @@ def test_no_value_is_lost_between_two_numbers(code):
 
 def test_settings_are_named_as_the_reader_knows_them():
     warning = {"code": "views_exceed_tolerance", "values": example("views_exceed_tolerance")[0]["values"]}
-    assert "Raise Max Lobes" in sentence(warning, PANEL)
-    assert "Raise --max-lobes" in sentence(warning, COMMAND_LINE)
+    assert "raise Max Lobes" in sentence(warning, PANEL)
+    assert "raise --max-lobes" in sentence(warning, COMMAND_LINE)
 
 
 @pytest.mark.parametrize(

@@ -18,6 +18,7 @@ PANEL = {
     "MAX_SIZE": "Max Size",
     "MEASUREMENT_RENDER": "Render from Measurement",
     "METHOD": "Method",
+    "MODEL": "Model",
     "RECIPROCAL": "Reciprocal",
     "SIZE_PLOT": "the Size plot",
     "TEXELS": "Texels",
@@ -29,6 +30,7 @@ COMMAND_LINE = {
     "MAX_SIZE": "--bytes",
     "MEASUREMENT_RENDER": "a render of the measurement",
     "METHOD": "--method",
+    "MODEL": "--model",
     "RECIPROCAL": "--symmetric",
     "SIZE_PLOT": "velour plot --kind order",
     "TEXELS": "--texels",
@@ -137,8 +139,8 @@ SENTENCES = {
     # Fits and models
     "views_exceed_tolerance": (
         "The model exceeds {MAX_ERROR} ({tolerance}, twice that beyond 75\N{DEGREE SIGN}) at {views:degrees}:"
-        " its errors there are {errors}. Raise {MAX_LOBES} and fit again; {SIZE_PLOT} shows the error of"
-        " larger models."
+        " its errors there are {errors}. Fit again with another {MODEL}, or raise {MAX_LOBES} if the model"
+        " has that many; {SIZE_PLOT} shows the errors of all sizes that were tried."
     ),
     "views_not_covered": (
         "The measurement has no view at {views:degrees}, so the model is a guess there. Use a more complete"
@@ -147,7 +149,8 @@ SENTENCES = {
     "fitted_views_exceed_tolerance": (
         "{missed} of {fitted} fitted views exceed {MAX_ERROR} ({tolerance}) with at most {lobes} lobes, the"
         " first at {views:degrees}{azimuths:azimuths}. The worst, at {worst:degrees}{worst_azimuth:azimuths},"
-        " has an error of {error}. Raise {MAX_LOBES} and fit again."
+        " has an error of {error}. Fit again with another {MODEL}, or raise {MAX_LOBES} if the model has that"
+        " many."
     ),
     "black_model": (
         "The model is black: the measurement is darker than any value that can be fitted. Check that it is"

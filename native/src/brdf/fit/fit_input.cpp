@@ -27,6 +27,18 @@ void warn_of_gamut(const std::vector<MeasuredSlice>& slices, std::vector<Warning
   warnings.push_back(warning<WarningCode::out_of_gamut>({{"outside", outside}, {"values", total}, {"error", cost}}));
 }
 
+/// Views are left out if they have too few valid lights (sample_slices) or are not covered (covers_view).
+[[noreturn]] void refuse_uncovered(const Measurement& measurement) {
+  const EntryCounts& n = measurement.counts();
+  const std::string negative = n.negative > 0 ? ", " + std::to_string(n.negative) + " are negative" : "";
+  throw Error(Status::bad_data, "'" + measurement.provenance().path +
+                                    "' covers less than half of the light directions at every view, so it cannot be "
+                                    "fitted (" +
+                                    std::to_string(n.valid) + " of " + std::to_string(n.valid + n.invalid()) +
+                                    " entries are valid" + negative +
+                                    "). Measure more directions, or check how the file marks missing values.");
+}
+
 }  // namespace
 
 void check_options(const FitOptions& o, int most_lobes) {
@@ -47,14 +59,7 @@ MeasuredSlices read_slices(const Measurement& measurement, const SliceGrid& grid
   const auto unseen = options.all_data ? nullptr : measurement.without_held_out(progress);
   const Measurement& source = unseen ? *unseen : measurement;
   MeasuredSlices slices = sample_slices(source, grid, !options.all_data && !unseen, options.threads, progress);
-  if (slices.slices.empty()) {
-    const EntryCounts& n = measurement.counts();
-    throw Error(Status::bad_data, "'" + measurement.provenance().path +
-                                      "' has no view direction with at least 8 valid light directions (" +
-                                      std::to_string(n.valid) + " of " + std::to_string(n.valid + n.invalid()) +
-                                      " entries are valid), so it cannot be fitted. Measure more directions, or check "
-                                      "how the file marks missing values.");
-  }
+  if (slices.slices.empty()) refuse_uncovered(measurement);
   if (grid.folded && !source.samples().empty()) {
     for (MeasuredSlice& slice : slices.slices) slice.interpolated = true;
     for (MeasuredSlice& slice : bin_samples(source.samples())) slices.slices.push_back(std::move(slice));

@@ -157,8 +157,9 @@ std::optional<Rgb> IrregularInterpolant::f(const Vec3& wl, const Vec3& wv) const
   const Place here = place_of(wl, wv);
   Nearest nearest;
   (void)index_->tree->knnSearch(here.regression.data(), kCount, nearest.sample.data(), nearest.distance_sq.data());
+  const double reach = index_->trend.shapes().empty() ? kReach : kReachOfTrend;
   const bool in_reach = std::any_of(nearest.sample.begin(), nearest.sample.end(), [&](uint32_t n) {
-    return distance_sq(here.reach, index_->reach[n]) <= kReach * kReach;
+    return distance_sq(here.reach, index_->reach[n]) <= reach * reach;
   });
   if (!in_reach) return std::nullopt;
   return index_->f(wl, wv, here.regression, nearest);

@@ -28,13 +28,17 @@ class IrregularInterpolant {
   IrregularInterpolant(const IrregularInterpolant&) = delete;
   IrregularInterpolant& operator=(const IrregularInterpolant&) = delete;
 
-  /// Nothing if no sample is within kReach. Both directions must be above the horizon. Thread-safe.
+  /// Nothing if no sample is within kReach, or kReachOfTrend if there is a trend. Both directions must be above the
+  /// horizon. Thread-safe.
   std::optional<Rgb> f(const Vec3& wl, const Vec3& wv) const;
 
   static constexpr int kNeighbors = 16;
   /// Distance in (theta_h, theta_d, sin theta_h sin theta_d |cos phi_d|), radians: the gaps of Cornell's sets are below
   /// 8 degrees.
   static constexpr double kReach = 10.0 * kPiD / 180.0;
+  /// A trend that predicts samples from the others also tells highlights that no sample shows, as they are the same at
+  /// all theta_d but for the Fresnel effect. Without them, models are black there.
+  static constexpr double kReachOfTrend = 30.0 * kPiD / 180.0;
 
  private:
   struct Index;

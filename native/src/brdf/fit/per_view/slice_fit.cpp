@@ -15,9 +15,11 @@ using Index = Eigen::Index;
 
 // Minimum sharpness: broader lobes are constant over the hemisphere, whatever their center.
 constexpr double kMinSharpness = 0.02;
-// Maximum ratio of the peak of a lobe to its largest visible value, if no sample is near its center.
-constexpr double kMaxPeakToSeen = 100;
-constexpr double kHole = 4;  // a point this many sample spacings from the nearest sample is in a hole
+// Maximum ratio of the peak of a lobe below the horizon, which is invisible, to its largest visible value.
+constexpr double kMaxPeakBelow = 100;
+// Maximum ratio of the peak of a lobe to its value at the nearest sample, which the fit bounds. In the middle of the
+// cells of a square grid, the spacing allows the same.
+constexpr double kMaxPeakBetween = 4;
 // Column products are summed in float; a column below this share of its length is rounding.
 constexpr double kSliceRidge = 1e-7;
 // Maximum step of one refinement, in lobe widths and in log sharpness.
@@ -76,22 +78,22 @@ Vec3d SliceSolver::diffuse() const {
 
 double SliceSolver::max_sharpness(const Vec3d& center) const {
   const auto cx = static_cast<float>(center.x), cy = static_cast<float>(center.y), cz = static_cast<float>(center.z);
-  float nearest = -2, spacing = 1;
+  float largest = -2, spacing = 1;
+  Vec3d nearest(center);
   for (size_t i = 0; i < samples_.count(); ++i) {
     const float t = samples_.x()[i] * cx + samples_.y()[i] * cy + samples_.z()[i] * cz;
-    if (t > nearest) nearest = t, spacing = samples_.sqrt_weight()[i];
+    if (t > largest) largest = t, spacing = samples_.sqrt_weight()[i], nearest = Vec3d(samples_.wl(i));
   }
   const double half_width = 0.5 * std::clamp(static_cast<double>(spacing), 1e-4, 1.0);
   const double s = std::sin(0.5 * half_width);
   double limit = std::log(2.0) / (2 * s * s);
   // Only the tail of a lobe below the horizon or in a hole of the data is visible: the peak of a sharp one would be
   // unbounded.
-  const double to_nearest = 1 - static_cast<double>(nearest);
-  if (2 * to_nearest > kHole * kHole * spacing * spacing)
-    limit = std::min(limit, std::log(kMaxPeakToSeen) / to_nearest);
+  const double to_nearest = 0.5 * glm::dot(center - nearest, center - nearest);  // 1 - cosine, for small angles too
+  if (to_nearest > 0) limit = std::min(limit, std::log(kMaxPeakBetween) / to_nearest);
   if (center.z >= 0) return limit;
   const double cos_depth = std::sqrt(std::max(0.0, 1 - center.z * center.z));
-  return std::min(limit, std::log(kMaxPeakToSeen) / (1 - cos_depth));
+  return std::min(limit, std::log(kMaxPeakBelow) / (1 - cos_depth));
 }
 
 /// Columns of the lobes, then of the cosine term.

@@ -59,6 +59,23 @@ TEST(SliceFit, ATailAtTheHorizonIsNotTheFootOfATower) {
   for (const SliceLobe& l : tail.lobes) EXPECT_LT(l.peak.g, 1000 * brightest);
 }
 
+/// Irregular samples of glossy materials leave such holes; models were ten million times too bright in them.
+TEST(SliceFit, TheFlankOfAHoleIsNotTheFootOfATower) {
+  const auto samples_outside = [](float most_z) {
+    auto samples = lattice(2000, Rgb(0));
+    for (SliceSample& s : samples) s.value = Rgb(std::exp(600.0f * (s.wl.z - 1)));
+    std::erase_if(samples, [&](const SliceSample& s) { return s.wl.z > most_z; });
+    return samples;
+  };
+  const auto peak = [](const SliceFit& fit) {
+    double most = 0;
+    for (const SliceLobe& l : fit.lobes) most = std::max(most, l.peak.g);
+    return most;
+  };
+  EXPECT_LT(peak(fit(samples_outside(std::cos(0.17f)), 8, 0.001)), 20 * std::exp(600 * (std::cos(0.17) - 1)));
+  EXPECT_GT(peak(fit(samples_outside(1), 8, 0.001)), 0.5) << "the control: without the hole";
+}
+
 TEST(SliceFit, FewSamplesGiveSoundLobes) {
   for (int n = 1; n < 8; ++n) expect_sound(fit(lattice(n, Rgb(1)), 16, 1e-6));
 }

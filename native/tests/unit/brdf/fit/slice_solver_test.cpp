@@ -165,8 +165,29 @@ TEST(SliceSolver, ALobeInAHoleIsNoSharperThanItsTailShows) {
   const Progress progress;
   const SliceSamples samples(around);
   const SliceSolver solver(Kernel::gaussian, samples, progress);
-  EXPECT_NEAR(solver.max_sharpness({0, 0, 1}), std::log(100.0) / 0.2, 0.1);
+  EXPECT_NEAR(solver.max_sharpness({0, 0, 1}), std::log(4.0) / 0.2, 0.1);
   EXPECT_GT(solver.max_sharpness({0.8, 0, 0.6}), 500) << "not where there are samples";
+}
+
+/// Near the edge of a hole, the spacing of the samples alone allowed peaks a million times what a sample sees.
+TEST(SliceSolver, APeakBetweenSamplesIsAtMostFourTimesWhatTheNearestSees) {
+  std::vector<SliceSample> around;
+  for (const Vec3& w : hemisphere_fibonacci(2000)) {
+    if (w.z < 0.97f) around.push_back({w, 2 * kPi / 2000, Rgb(1)});
+  }
+  const Progress progress;
+  const SliceSamples samples(around);
+  const SliceSolver solver(Kernel::gaussian, samples, progress);
+  const double at_samples = solver.max_sharpness(Vec3d(around[1000].wl));
+  size_t far = 0;
+  for (const Vec3& w : hemisphere_fibonacci(20000)) {
+    const Vec3d center(w);
+    double nearest = -1;
+    for (const SliceSample& s : around) nearest = std::max(nearest, glm::dot(Vec3d(s.wl), center));
+    ASSERT_LT(std::exp(solver.max_sharpness(center) * (1 - nearest)), 4.01) << w.x << ' ' << w.y << ' ' << w.z;
+    if (std::exp(at_samples * (1 - nearest)) > 1e6) ++far;
+  }
+  EXPECT_GT(far, 50u) << "the control: with the sharpness that is allowed at samples";
 }
 
 TEST(SliceSolver, TheCosineTermTakesWhatIsDiffuse) {

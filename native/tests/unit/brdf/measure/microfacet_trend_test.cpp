@@ -110,5 +110,27 @@ TEST(IrregularInterpolant, DoesNotFollowALobeThatIsNotThere) {
   EXPECT_GT(error(trend_of(MicrofacetTrend(samples)), retro, 0.5f), 0.3);
 }
 
+/// Samples at random directions, none within 12 degrees of the mirror direction of a view at 40 degrees.
+std::vector<IrregularSample> without_a_highlight(const Brdf& brdf) {
+  constexpr float kGap = radians_from(12.0f);
+  std::vector<IrregularSample> out;
+  for (const auto& [wl, wv] : test::random_pairs(150, 5, 0.15f)) {
+    const HalfDiff angle = half_diff(wl, wv);
+    if (angle.theta_h < kGap && std::abs(angle.theta_d - radians_from(40.0f)) < kGap) continue;
+    out.push_back({wl, wv, brdf(wl, wv)});
+  }
+  return out;
+}
+
+TEST(IrregularInterpolant, ATrendTellsHighlightsThatNoSampleShows) {
+  const Vec3 wl = direction(radians_from(40.0f), 0), wv = direction(radians_from(40.0f), kPi);
+  const auto found = IrregularInterpolant(without_a_highlight(ggx(kGlossy))).f(wl, wv);
+  ASSERT_TRUE(found);
+  EXPECT_NEAR(found->g / ggx(kGlossy)(wl, wv).g, 1, 0.25);
+  // The control: without a trend, what is far from all samples is not known.
+  const Brdf matte = [](const Vec3&, const Vec3&) { return Rgb(0.1f); };
+  EXPECT_FALSE(IrregularInterpolant(without_a_highlight(matte)).f(wl, wv));
+}
+
 }  // namespace
 }  // namespace velour::microfacet_trend_test
