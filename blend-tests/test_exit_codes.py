@@ -1,5 +1,6 @@
 """A render that fails exits non-zero and leaves no picture: every cause, format and way to render."""
 
+import contextlib
 import os
 import unittest
 from pathlib import Path
@@ -7,7 +8,7 @@ from pathlib import Path
 import bpy
 
 from support import inputs, level, scenes
-from support.blender import BlenderTest, interrupt_blender, run_blender
+from support.blender import FULL_DISK, BlenderTest, interrupt_blender, run_blender
 
 _FORMATS = {"PNG": ".png", "OPEN_EXR": ".exr", "OPEN_EXR_MULTILAYER": ".exr"}
 _WAYS = ("-f", 1), ("-a",)
@@ -125,6 +126,34 @@ class ExitCodes(BlenderTest):
         child = self._render(blend, "OPEN_EXR", ("-a",))
         self.assertEqual(child.returncode, 1, child.stdout)
         self.assertEqual(self._written("OPEN_EXR"), ["picture_0001.exr"])
+
+    def test_failed_layer_ends_the_frame(self):
+        """Blender would render the other view layers, and discard them. The next frame starts afresh."""
+        scene = self._scene()
+        scene.view_layers.new("Other")
+        scene.render.use_persistent_data = True  # keeps the engine
+        child = self._render(self._save(), "OPEN_EXR", ("-f", 1), "--python-expr", _BREAK_EXPORT)
+        self.assertEqual(child.stdout.count("ZeroDivisionError: "), 2, child.stdout)  # traceback and report
+        camera, scene.camera.data.type = scene.camera.data, "PANO"
+        for kind in ("PANO", "PERSP"):
+            camera.type = kind
+            scene.render.filepath = str(self.folder / f"{kind}.png")
+            with contextlib.suppress(RuntimeError):
+                bpy.ops.render.render(write_still=True)
+            self.assertEqual(os.path.exists(scene.render.filepath), kind == "PERSP")
+
+    def test_full_disk(self):
+        """Blender itself says that it has saved the file."""
+        if "VELOUR_BPY" in os.environ:
+            self.skipTest("the module bpy leaves signals to its Python")
+        self._scene()
+        blend = self._save()
+        for kind, frames in (("OPEN_EXR", ("-a",)), ("OPEN_EXR_MULTILAYER", ("-f", 1)), ("TIFF", ("-f", 1))):
+            with self.subTest(kind):
+                child = self._render(blend, kind, frames, "--python-expr", FULL_DISK)
+                self.assertEqual(child.returncode, 1, child.stdout)
+                self.assertEqual(child.stdout.count("free space on the disk"), 1, child.stdout)
+                self.assertEqual(self._written(kind), [])
 
     def test_interrupt(self):
         if "VELOUR_BPY" in os.environ:

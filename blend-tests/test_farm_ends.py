@@ -35,7 +35,7 @@ class FarmEnds(FarmTest):
     def test_a_frame_that_is_ended_while_it_is_written(self):
         """It is done, and no other begins."""
         self.job_of("written", 64)
-        told = "def _forget_written(*_args):\n"
+        told = "def _forget_written(scene, *_args):\n"
         kill = "    import os, signal, time; os.kill(os.getppid(), signal.SIGTERM); time.sleep(1)\n"
         ended = self.another_stage("writes", "engine/frame_parts.py", told, told + kill)
         done = self.node("--frames", "1-2", environment=ended)

@@ -1,5 +1,6 @@
 """Final renders that several runs share out, or that are ended and gone on with; what a frame takes."""
 
+import os
 import re
 import resource
 import signal
@@ -10,11 +11,11 @@ import bpy
 import numpy as np
 
 from support import inputs, scenes
-from support.blender import BlenderTest, printed, run_blender
+from support.blender import FULL_DISK, BlenderTest, printed, run_blender
 
 OWN_PROCESS = "the largest of its child processes is measured"
 _ROUNDING = 1e-6
-# A batch engine that ends Blender while it renders the second view layer.
+# A batch engine that ends Blender while it renders a view layer.
 _END_LAYER = """
 import importlib, os, signal
 
@@ -22,7 +23,7 @@ final = importlib.import_module("velour.engine.final")
 follow = final._follow
 
 def ended(engine, delivery, job, begin, end):
-    if delivery.result.layers[0].name == "Layer 1":
+    if delivery.result.layers[0].name == {layer!r}:
         while job.poll().fraction < 0.05:
             pass
         os.kill(os.getpid(), signal.SIGTERM)
@@ -37,6 +38,13 @@ import os, signal
 import bpy
 
 bpy.app.handlers.render_post.append(lambda *_: os.kill(os.getpid(), signal.SIGTERM))
+"""
+# As after ulimit -v, with so many bytes left.
+_LIMIT_ADDRESSES = """
+import re, resource
+
+size = int(re.search(r"VmSize:\\s+(\\d+)", open("/proc/self/status").read())[1]) << 10
+resource.setrlimit(resource.RLIMIT_AS, (size + {left}, size + {left}))
 """
 
 
@@ -167,10 +175,13 @@ class FrameParts(BlenderTest):
         blend = self._save(samples=1000, layers=2)
         self._run(blend, "whole")
         parts = ("--velour-parts", self.parts)
-        said = self._run(blend, "ended", *parts, before=("--python-expr", _END_LAYER), status=1)
-        found = re.search(r"Stopped at sample (\d+) of 1000; .* Run the same command again", said)
-        self.assertTrue(found, said)
-        self.assertEqual(self._files(), sorted([f"0001.0-{found[1]}.exr", "0001.0-1000.exr"]))
+        # No layer after the ended one is rendered.
+        for layer, before in (("ViewLayer", []), ("Layer 1", ["0001.0-1000.exr"])):
+            script = ("--python-expr", _END_LAYER.format(layer=layer))
+            said = self._run(blend, "ended", *parts, before=script, status=1)
+            found = re.search(r"Stopped at sample (\d+) of 1000; .* Run the same command again", said)
+            self.assertTrue(found, said)
+            self.assertEqual(self._files(), sorted([f"0001.0-{found[1]}.exr", *before]))
         said = self._run(blend, "ended", "--velour-parts", self.parts)
         self._assert_same("ended", "whole", 0)
         self.assertEqual(self._files(), [])
@@ -214,6 +225,16 @@ class FrameParts(BlenderTest):
             scene.render.filepath = str(path)
             bpy.ops.render.render(write_still=True)
         self.assertTrue(path.exists())
+        self.assertEqual(self._files(), ["0001.0-8.exr"])
+
+    def test_a_full_disk_keeps_the_parts(self):
+        if "VELOUR_BPY" in os.environ:
+            self.skipTest("the module bpy leaves signals to its Python")
+        blend = self._save()
+        parts = ("--velour-parts", self.parts)
+        self._run(blend, "part", *parts, "--velour-samples", "0:8")
+        said = self._run(blend, "whole", *parts, before=("--python-expr", FULL_DISK), status=1)
+        self.assertIn("free space on the disk", said)
         self.assertEqual(self._files(), ["0001.0-8.exr"])
 
     def test_the_time_limit_ends_a_frame_that_keeps_its_parts(self):
@@ -285,3 +306,6 @@ class FrameParts(BlenderTest):
         above = int(stated[1]) - int(stated[2]) // 2
         said = self._run(blend, "refused", "--velour-memory", f"{above}M", status=1)
         self.assertRegex(said, r"The frame needs about \d+ MiB of memory \(.*, picture")
+        script = _LIMIT_ADDRESSES.format(left=int(stated[2]) << 19)
+        said = self._run(blend, "refused", before=("--python-expr", script), status=1)
+        self.assertRegex(said, r"The frame needs about .*, more than the limit of \d+ MiB \(ulimit -v")

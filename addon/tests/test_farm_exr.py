@@ -27,10 +27,12 @@ def test_every_compression(tmp_path, compression):
     assert exr.text_attribute(path, "velour.version") == "9.8.7"
     assert exr.text_attribute(path, "velour.models") is None
     whole = path.read_bytes()
+    exr.check_whole(path, unpack=False)
     for length in (0, 7, 100, len(whole) // 2, len(whole) - 1):
         path.write_bytes(whole[:length])
-        with pytest.raises(exr.ExrError):
-            exr.check_whole(path)
+        for unpack in (True, False):
+            with pytest.raises(exr.ExrError):
+                exr.check_whole(path, unpack)
 
 
 def test_several_parts(tmp_path):
@@ -101,3 +103,13 @@ def test_what_is_refused(tmp_path):
     tall.write_bytes(struct.pack("<2i", exr.MAGIC, 2) + header + window + b"\0")
     with pytest.raises(exr.ExrError, match="data window makes no sense"):
         exr.check_whole(tall)
+
+
+def test_what_a_later_version_may_write(tmp_path):
+    """It may be whole: whoever removes broken files must be able to tell."""
+    path = _write(tmp_path / "picture.exr", "--compression", "zip")
+    data = path.read_bytes()
+    kind = b"compression\0compression\0" + struct.pack("<i", 1)
+    path.write_bytes(data.replace(kind + b"\3", kind + b"\x20"))
+    with pytest.raises(exr.UnknownExrError, match="compression is not known"):
+        exr.check_whole(path, unpack=False)

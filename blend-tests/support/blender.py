@@ -20,6 +20,11 @@ from . import process
 
 ADDON = "velour"
 _folder = Path("/nowhere")
+# For --python-expr: writing a file fails beyond 256 bytes, as on a full disk.
+FULL_DISK = (
+    "import resource, signal; signal.signal(signal.SIGXFSZ, signal.SIG_IGN);"
+    " resource.setrlimit(resource.RLIMIT_FSIZE, (256, 256))"
+)
 _CHILD_SECONDS = 300  # only ends processes that hang, on however busy a machine
 
 

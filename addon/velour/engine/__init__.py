@@ -1,12 +1,22 @@
 """The render engine."""
 
-from . import frame_parts, freed_engines, kept_scene, model_images, viewport, viewport_clock, write_lock
+from . import (
+    failed_frame,
+    frame_parts,
+    freed_engines,
+    kept_scene,
+    model_images,
+    viewport,
+    viewport_clock,
+    write_lock,
+)
 from .engine import VelourRenderEngine
 
 CLASSES = (VelourRenderEngine, write_lock.VELOUR_OT_allow_writes)
 
 
 def attach():
+    failed_frame.attach()
     frame_parts.attach()
     kept_scene.attach()
     model_images.attach()
@@ -22,3 +32,4 @@ def detach():
     model_images.detach()
     kept_scene.detach()
     frame_parts.detach()
+    failed_frame.detach()

@@ -7,6 +7,7 @@ import bpy
 from ..export import ExportError, visitor
 from ..native import VelourError
 from . import viewport_clock
+from .failed_frame import FailedFrame
 from .final import RenderCancelledError, render_final
 from .frame_parts import UnfinishedError
 from .kept_scene import KeptScene
@@ -29,6 +30,7 @@ class VelourRenderEngine(bpy.types.RenderEngine):
         super().__init__(*args, **kwargs)  # Blender 4.4 and newer pass arguments and need this call
         self._viewport = None
         self.stamps = Stamps()
+        self.failed_frame = FailedFrame()
         self.kept_scene = KeptScene()
 
     def __del__(self):
@@ -42,6 +44,8 @@ class VelourRenderEngine(bpy.types.RenderEngine):
             parent()
 
     def render(self, depsgraph):
+        if self.failed_frame.is_current:
+            return
         try:
             # Other threads may be rendering previews, which must not get the visitor.
             visit = None if self.is_preview else visitor.current()
@@ -74,4 +78,5 @@ class VelourRenderEngine(bpy.types.RenderEngine):
         if self.is_preview:
             self.error_set(sentence)  # nobody reads reports of a preview: show it in its corner
         else:
+            self.failed_frame.note()
             self.report({"ERROR"}, sentence)

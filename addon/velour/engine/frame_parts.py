@@ -10,6 +10,7 @@ from ..core.film_parts import FilmParts
 from ..core.stopping import Stopping
 from ..native.errors import refuse
 from ..native.version import version_text
+from . import written_file
 from .arguments import Share
 
 _ELSEWHERE = {"threads", "time_limit", "cache_folder"}  # options that do not affect the picture
@@ -120,17 +121,19 @@ def _render(job, parts, gap, follow):
 
 
 @bpy.app.handlers.persistent
-def _keep_unwritten(*_args):
+def _keep_unwritten(scene, *_args):
     """Before a frame: the previous one may not have been written, so its samples stay."""
     _superfluous.clear()
+    written_file.watch(scene)
     _stopping.release(obey=True)
 
 
 @bpy.app.handlers.persistent
-def _forget_written(*_args):
-    """After Blender wrote the frame: removed only now, its samples survive a crash before."""
-    for path in _superfluous:
-        path.unlink(missing_ok=True)
+def _forget_written(scene, *_args):
+    """After Blender wrote the frame: removed only now, its samples survive a crash or a full disk before."""
+    if written_file.was_written_whole(scene):
+        for path in _superfluous:
+            path.unlink(missing_ok=True)
     _superfluous.clear()
     _stopping.release(obey=True)
 

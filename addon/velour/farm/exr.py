@@ -29,6 +29,10 @@ class ExrError(ValueError):
     """Its message says what is wrong with the file, in one sentence without the file's name."""
 
 
+class UnknownExrError(ExrError):
+    """The file may be whole, but is of a kind that is not read here."""
+
+
 @dataclass(frozen=True)
 class Part:
     attributes: dict[str, bytes]
@@ -41,7 +45,7 @@ class Part:
     def compression(self) -> int:
         found = self.attributes.get("compression", b"")
         if len(found) != 1 or found[0] >= len(_LINES):
-            raise ExrError("its compression is not known")
+            raise UnknownExrError("its compression is not known")
         return found[0]
 
     @property
@@ -73,8 +77,9 @@ def text_attribute(path: str | os.PathLike, name: str) -> str | None:
         return next((text for text in found if text is not None), None)
 
 
-def check_whole(path: str | os.PathLike) -> None:
-    """Raises ExrError unless every scanline of every part is in the file and all zlib data unpack."""
+def check_whole(path: str | os.PathLike, unpack: bool = True) -> None:
+    """Raises ExrError unless every scanline of every part is in the file and, with `unpack`, all zlib data
+    unpack."""
     size = Path(path).stat().st_size
     with open(path, "rb") as file:
         parts = _parts(file)
@@ -82,7 +87,8 @@ def check_whole(path: str | os.PathLike) -> None:
         for number, part in enumerate(parts):
             expected = _chunk_starts(part)
             found = {
-                _check_chunk(file, offset, size, len(parts) > 1, number, part) for offset in tables[number]
+                _check_chunk(file, offset, size, len(parts) > 1, number, part, unpack)
+                for offset in tables[number]
             }
             if found != expected:
                 raise ExrError("scanlines are missing")
@@ -93,7 +99,9 @@ def _chunk_starts(part: Part) -> set[int]:
     return set(range(first, first + count, _LINES[part.compression]))
 
 
-def _check_chunk(file: BinaryIO, offset: int, size: int, multipart: bool, number: int, part: Part) -> int:
+def _check_chunk(
+    file: BinaryIO, offset: int, size: int, multipart: bool, number: int, part: Part, unpack: bool
+) -> int:
     """The first scanline of the chunk at `offset`."""
     if not 0 < offset < size:
         raise ExrError("a part of it was never written")
@@ -103,6 +111,8 @@ def _check_chunk(file: BinaryIO, offset: int, size: int, multipart: bool, number
     line, length = struct.unpack("<2i", _read(file, 8))
     if not 0 <= length <= size - file.tell():
         raise ExrError("it ends too early")
+    if not unpack:
+        return line
     unpacked = part.unpacked_bytes(line)
     if part.compression in _ZLIB and length != unpacked:  # equal: stored as is, packing would not save bytes
         _check_packed(_read(file, length), unpacked)
@@ -137,7 +147,7 @@ def _parts(file: BinaryIO) -> list[Part]:
     if magic != MAGIC:
         raise ExrError("it is no OpenEXR file")
     if version & (_TILED | _DEEP):
-        raise ExrError("it has tiles or deep pixels, which Blender does not write")
+        raise UnknownExrError("it has tiles or deep pixels, which Blender does not write")
     if not version & _MULTIPART:
         return [_part(file)]
     parts = []
