@@ -57,6 +57,21 @@ class VelourCheck(CheckFolderTest):
         crop = scenes.read(page / "pictures" / crops[0])
         self.assertGreater(crop.shape[1], 4 * 32)
 
+    def test_studio_and_denoising(self):
+        """A black world, and pixels that the renderer would blend."""
+        self.scene.world.node_tree.nodes["Background"].inputs["Strength"].default_value = 0
+        self.save("shot")
+        self.update("--seeds", 4)
+        self.references("denoised", "lit")
+        self.scene.velour.use_denoising = True
+        self.save("denoised")
+        scenes.set_world(strength=0.01)
+        self.save("lit")
+        _, said, outcomes = self.check()
+        passed = {name: outcome["passed"] for name, outcome in outcomes.items()}
+        self.assertEqual(passed, {"shot": True, "denoised": True, "lit": False}, said)
+        self.assertIn("world", outcomes["lit"]["sentence"])
+
     def test_two_frames(self):
         light = bpy.data.lights["Lamp"]
         for frame, watts in ((1, 100), (20, 400)):

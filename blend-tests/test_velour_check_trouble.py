@@ -45,6 +45,7 @@ class Trouble(CheckFolderTest):
     def test_wrong_usage(self):
         for arguments, word, expected in (
             (["--seeds", 1], "--seeds", 2),
+            (["--samples", 0], "--samples", 2),
             (["--frame", 3], "--update", 2),
             ([], "no .blend", 1),
             ([self.folder / "nothing"], "neither", 1),
@@ -57,8 +58,14 @@ class Trouble(CheckFolderTest):
                 self.assertIn(word, said)
 
     def test_interrupt(self):
+        """By Ctrl-C, and as systems of continuous integration cancel a job."""
         self.scene.velour.samples = 1 << 20
         self.save("shot")
+        for number, status in ((signal.SIGINT, 130), (signal.SIGTERM, 143)):
+            with self.subTest(number.name):
+                self._assert_stopped_by(number, status)
+
+    def _assert_stopped_by(self, number, status):
         command = [str(part) for part in self.command("--update")]
         child = subprocess.Popen(
             command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, preexec_fn=_hear_ctrl_c
@@ -68,11 +75,12 @@ class Trouble(CheckFolderTest):
         self._wait_for(self.shots / "velour-check/work/001/inside_render.log", "Read blend")
         time.sleep(2.0)
         start = time.monotonic()
-        child.send_signal(signal.SIGINT)
+        child.send_signal(number)
         said, _ = child.communicate(timeout=120)
         self.assertLess(time.monotonic() - start, 3.0)
-        self.assertEqual(child.returncode, 130, said)
-        self.assertIn("stopped", said)
+        self.assertEqual(child.returncode, status, said)
+        if status == 130:
+            self.assertIn("stopped", said)
         self.assertFalse((self.shots / "shot.exr").exists())
         left = [path for path in Path("/proc").glob("[0-9]*/cmdline") if self._names_folder(path)]
         self.assertEqual(left, [], "a Blender goes on")

@@ -24,6 +24,7 @@ def main(task):
     inside.show_renders(scene)
     scene.render.engine = "VELOUR"
     _set_samples(scene, task["samples"])
+    _stop_denoising(scene)
     ball = inside_world.MirrorBall(scene) if task["passes"] and scene.world else None
     layer = _show_passes(scene) if task["passes"] else None
     first = scene.velour.seed
@@ -64,6 +65,12 @@ def _set_samples(scene, samples):
     inside.stop_animation(scene, {"velour.seed"} | ({"velour.samples"} if samples is not None else set()))
     if samples is not None:
         scene.velour.samples = samples
+
+
+def _stop_denoising(scene):
+    """It blends pixels, whose errors are then neither independent nor those that several seeds show."""
+    inside.stop_animation(scene, {"velour.use_denoising"})
+    scene.velour.use_denoising = False
 
 
 def _show_passes(scene):

@@ -22,6 +22,7 @@ class MirrorBall:
         made.render.resolution_x = made.render.resolution_y = _SIZE
         made.render.resolution_percentage = 100
         made.velour.samples, made.velour.split, made.velour.bounces = _SAMPLES, 1, 1
+        made.view_layers[0].use_pass_normal = True  # otherwise Velour refuses a black world
         made.collection.objects.link(_ball())
         made.camera = _camera()
         made.collection.objects.link(made.camera)

@@ -71,8 +71,9 @@ def _arguments() -> argparse.Namespace:
     arguments = parser.parse_intermixed_args()
     if arguments.seeds is not None and arguments.seeds < 2:
         parser.error("--seeds: at least 2 are needed to know how noisy they are")
-    if arguments.jobs < 1:
-        parser.error("--jobs: at least 1")
+    for name in ("jobs", "samples", "timeout"):
+        if getattr(arguments, name) is not None and getattr(arguments, name) < 1:
+            parser.error(f"--{name}: at least 1")
     if arguments.yes and not arguments.update:
         parser.error("--yes is for --update")
     if arguments.frame and not arguments.update:
@@ -188,8 +189,16 @@ def _write_junit(path: Path, outcomes: list[Outcome]) -> None:
     junit.write(path, {"velour-check": tests})
 
 
+def _stop(number: int, _frame: object) -> None:
+    """Ends like Ctrl-C: the Blenders have sessions of their own, so nobody else would end them."""
+    sys.exit(128 + number)
+
+
 if __name__ == "__main__":
     signal.signal(signal.SIGINT, signal.default_int_handler)  # in the background of a shell it is ignored
+    signal.signal(signal.SIGTERM, _stop)
+    if signal.getsignal(signal.SIGHUP) == signal.SIG_DFL:  # nohup ignores it
+        signal.signal(signal.SIGHUP, _stop)
     try:
         sys.exit(main())
     except KeyboardInterrupt:
