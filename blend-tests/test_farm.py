@@ -129,6 +129,20 @@ class Farm(FarmTest):
         said = self.save_and_make("noisy", "--parts", "2", status=1)
         self.assertIn("has a noise threshold, which looks at a whole picture", said)
 
+    def test_what_no_frame_would_survive(self):
+        """Refused before anything is submitted, but a missing model only fails the frames that show it."""
+        (self.shots / "paint.velour").unlink()
+        bpy.ops.wm.open_mainfile(filepath=str(self.blend))
+        scene = bpy.context.scene
+        said = self.save_and_make("torn")
+        self.assertRegex(said, r"paint\.velour.*Find Missing Files.*\n.*frames done")
+        camera, scene.camera = scene.camera, None
+        self.assertIn("has no camera", self.save_and_make("blind", status=1))
+        scene.timeline_markers.new("Cut", frame=1).camera = camera
+        self.save_and_make("cut")
+        scene.render.use_multiview = True
+        self.assertIn("is stereoscopic", self.save_and_make("stereo", status=1))
+
     def test_more_parts_than_camera_rays(self):
         bpy.ops.wm.open_mainfile(filepath=str(self.blend))
         settings = bpy.context.scene.velour

@@ -202,6 +202,17 @@ def test_a_container_whose_group_has_another_name_inside(tmp_path):
     assert memory_limit({}, root) == Limit(2 << 30, "the cgroup")
 
 
+def test_the_limit_on_addresses(tmp_path):
+    """ulimit -v, by which some engines limit jobs; libraries and stacks reserve addresses without memory."""
+    root = system(tmp_path, "")
+    (root / "proc/self/status").write_text("VmSize:\t 900 kB\nVmRSS:\t 500 kB\n")
+    row = "Max address space         {}              unlimited            bytes     \n"
+    (root / "proc/self/limits").write_text(row.format("unlimited"))
+    assert memory_limit({}, root) is None
+    (root / "proc/self/limits").write_text(row.format(1 << 20))
+    assert memory_limit({}, root) == Limit((1024 - 400) << 10, "ulimit -v, less what is reserved")
+
+
 @pytest.mark.parametrize(
     ("environment", "gib"),
     [

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import NamedTuple
@@ -15,8 +16,17 @@ class Limit(NamedTuple):
 
 
 def memory_limit(environment: Mapping[str, str], root: Path = Path("/")) -> Limit | None:
-    """The smallest limit of the process's cgroups and its Slurm job; None: there is no limit."""
-    return min([*_of_cgroups(root), *_of_slurm(environment)], default=None)
+    """The smallest limit of the process, its cgroups and its Slurm job; None: there is no limit."""
+    return min([*_of_process(root), *_of_cgroups(root), *_of_slurm(environment)], default=None)
+
+
+def _of_process(root: Path) -> Iterator[Limit]:
+    """The limit on addresses, without those that are reserved but hold no memory."""
+    found = re.search(r"^Max address space +(\d+) ", _text(root / "proc/self/limits"), re.MULTILINE)
+    sizes = dict(re.findall(r"^(VmSize|VmRSS):\s+(\d+) kB", _text(root / "proc/self/status"), re.MULTILINE))
+    if found and len(sizes) == 2:
+        reserved = (int(sizes["VmSize"]) - int(sizes["VmRSS"])) << 10
+        yield Limit(max(0, int(found[1]) - reserved), "ulimit -v, less what is reserved")
 
 
 def _of_cgroups(root: Path) -> Iterator[Limit]:

@@ -1,15 +1,42 @@
 """Hashes of the files that a measured material renders from."""
 
 from . import files
-from .notes import Notes
+from .notes import ExportError, Notes
 from .shaders import surface_layers
 
 
 def model_hashes(material):
     """hashes_of() the measured nodes of a material's surface; None if it has none."""
-    layers = surface_layers(material, Notes())
-    nodes = [layer.measured.node for layer in layers if layer.measured]
+    nodes = _nodes(material)
     return hashes_of(nodes) if nodes else None
+
+
+def unreadable_models(material):
+    """A sentence for each model or measurement of a material's surface that is missing or has changed."""
+    sentences = []
+    for node in _nodes(material):
+        try:
+            _try_to_read(node.velour, node.image, f"Material '{material.name}'")
+        except ExportError as error:
+            sentences.append(str(error))
+    return sentences
+
+
+def _try_to_read(settings, model, owner):
+    """Raises ExportError. A measurement may be large, so only its existence is checked."""
+    image = settings.measurement if settings.use_reference else model
+    if image is None:
+        return
+    stored = files.StoredFile.of(image, owner)
+    if not settings.use_reference:
+        stored.model_info()
+    elif stored.packed is None:
+        with stored.readable_path():
+            pass
+
+
+def _nodes(material):
+    return [layer.measured.node for layer in surface_layers(material, Notes()) if layer.measured]
 
 
 def hashes_of(nodes):

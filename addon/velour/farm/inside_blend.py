@@ -14,6 +14,14 @@ _SEQUENCER = (
     "scene '{scene}' puts out its sequencer (strip '{strip}'), whose pictures do not say what rendered them;"
     " switch off Output > Post Processing > Sequencer, and save the .blend."
 )
+_NO_CAMERA = (
+    "scene '{scene}' has no camera, and no marker with one; choose one in the Scene tab, and save the .blend."
+)
+_STEREO = (
+    "scene '{scene}' is stereoscopic, which Velour does not support; disable Output > Stereoscopy, and save"
+    " the .blend."
+)
+_UNREADABLE = "{sentence} Frames that show the material fail."
 _NOISE = (
     "scene '{scene}' has a noise threshold, which looks at a whole picture; switch it off, and save the"
     " .blend, or leave --parts out."
@@ -31,6 +39,10 @@ def look(addon, parts):
             "error": f"there is no add-on {addon!r} in this Blender; install it, or name it with --addon."
         }
     scene = bpy.context.scene
+    if not scene.camera and not any(marker.camera for marker in scene.timeline_markers):
+        return {"error": _NO_CAMERA.format(scene=scene.name)}
+    if scene.render.use_multiview:
+        return {"error": _STEREO.format(scene=scene.name)}
     strip = output_strip(scene)
     if strip:
         return {"error": _SEQUENCER.format(scene=scene.name, strip=strip.name)}
@@ -42,8 +54,9 @@ def look(addon, parts):
     if parts > 1 and node:
         wrong = _FILE_OUTPUT.format(node=node.name)
         return {"error": f"{wrong}, and would of some samples alone; mute it, or leave --parts out."}
-    hashes = importlib.import_module(f"{addon}.export.model_hashes").model_hashes
-    models = {material.name_full: hashes(material) for material in bpy.data.materials}
+    hashes = importlib.import_module(f"{addon}.export.model_hashes")
+    models = {material.name_full: hashes.model_hashes(material) for material in bpy.data.materials}
+    unreadable = [each for material in bpy.data.materials for each in hashes.unreadable_models(material)]
     return {
         "velour": importlib.import_module(f"{addon}.native.version").version_text(),
         "models": {name: found for name, found in models.items() if found is not None},
@@ -52,7 +65,7 @@ def look(addon, parts):
         "libraries": [
             library.filepath.removeprefix("//") for library in bpy.data.libraries if is_file(library)
         ],
-        "notes": notes(scene.velour, node),
+        "notes": [_UNREADABLE.format(sentence=each) for each in unreadable] + notes(scene.velour, node),
     }
 
 

@@ -7,6 +7,7 @@
 #include <embree3/rtcore.h>
 #endif
 
+#include "base/error.h"
 #include "base/private_library.h"
 
 namespace velour {
@@ -50,6 +51,20 @@ struct EmbreeApi {
   VELOUR_EMBREE(rtcOccluded1M);
 #endif
 #undef VELOUR_EMBREE
+
+  /// A device, which the caller releases. Throws with the reason why there is none.
+  RTCDevice new_device() const {
+    RTCDevice device = rtcNewDevice(nullptr);
+    if (device != nullptr) return device;
+    switch (rtcGetDeviceError(nullptr)) {
+      case RTC_ERROR_UNSUPPORTED_CPU:
+        throw Error(Status::unsupported, "Embree does not support this processor.");
+      default:  // also "unknown" where its threads cannot start
+        throw Error(Status::out_of_memory,
+                    "Embree cannot start, as there is no memory left for its threads; free memory, or raise the limit "
+                    "of the process (ulimit -v, ulimit -u).");
+    }
+  }
 
   // Embree 3 takes a context, Embree 4 optional arguments at the end. All differences between them are confined here.
   //

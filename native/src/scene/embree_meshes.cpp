@@ -112,8 +112,7 @@ class EmbreeMeshes::Build {
   std::thread thread_;
 };
 
-EmbreeMeshes::EmbreeMeshes() : device_(api_.rtcNewDevice(nullptr)) {
-  if (device_ == nullptr) throw Error(Status::unsupported, "Embree does not support this processor.");
+EmbreeMeshes::EmbreeMeshes() : device_(api_.new_device()) {
   api_.rtcSetDeviceMemoryMonitorFunction(device_, count_bytes, &bytes_);
   has_masks_ = api_.rtcGetDeviceProperty(device_, RTC_DEVICE_PROPERTY_RAY_MASK_SUPPORTED) != 0;
 }

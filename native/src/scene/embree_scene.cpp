@@ -253,8 +253,7 @@ uint64_t EmbreeScene::bytes() const { return static_cast<uint64_t>(std::max<int6
 
 EmbreeInfo embree_info() {
   const EmbreeApi& api = embree();
-  RTCDevice device = api.rtcNewDevice(nullptr);
-  if (device == nullptr) throw Error(Status::unsupported, "Embree does not support this processor.");
+  RTCDevice device = api.new_device();
   const auto version = api.rtcGetDeviceProperty(device, RTC_DEVICE_PROPERTY_VERSION);
   api.rtcReleaseDevice(device);
   return {
