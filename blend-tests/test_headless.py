@@ -68,8 +68,10 @@ class Headless(BlenderTest):
         self._save()
         text = self._render("-f", 1)
         self.assertIn("Velour: Material 'Diffuse'", text)
-        self.assertRegex(text, r"Fra: ?1 .*\| Sample \d+/8192 \| Remaining \d\d:\d\d")
-        self.assertRegex(text, r"samples \| .* M samples/s")
+        rays = bpy.context.scene.velour.camera_samples
+        self.assertEqual(rays, (1 << 13) // 8)
+        self.assertRegex(text, rf"Fra: ?1 .*\| Sample \d+/{rays} \| Remaining \d\d:\d\d")
+        self.assertRegex(text, rf"\| {rays} samples \| .* M light directions/s")
 
     def test_fit_in_a_script(self):
         """Import, fit and save without a window, then render in another process."""

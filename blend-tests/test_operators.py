@@ -247,6 +247,23 @@ class Operators(BlenderTest):
         self.assertEqual(len(bpy.data.materials), 0)
         self.assertFalse(self.obj.velour.is_property_set("jobs"))
 
+    def test_an_import_that_makes_no_material_tells_of_none(self):
+        bpy.context.view_layer.objects.active = None
+        for name, is_told in (("nothing.binary", False), ("good.binary", True)):
+            shutil.copy(inputs.lambert_measurement(), self.folder / "good.binary")
+            said = io.StringIO()
+            with contextlib.redirect_stdout(said), contextlib.suppress(RuntimeError):
+                bpy.ops.velour.load_material(filepath=str(self.folder / name), fit=False)
+            self.assertEqual("is kept without an object" in said.getvalue(), is_told, said.getvalue())
+
+    def test_a_folder_without_a_btf_is_no_choice_in_a_file_browser(self):
+        (self.folder / "holiday.png").write_bytes(b"")
+        with self.assertRaisesRegex(ExportError, "No file is chosen in .*choose a measurement"):
+            measured.refuse_folder(str(self.folder))
+        (self.folder / "btf.json").write_text("{}")
+        measured.refuse_folder(str(self.folder))
+        measured.refuse_folder(str(self.folder / "nothing.binary"))
+
     def test_a_fit_that_fails_is_no_matter_to_the_others(self):
         """Without a window they are made one after the other, and one report names those that failed."""
         for name in ("a.binary", "b.binary", "c.binary"):
@@ -485,8 +502,58 @@ class Refusals(BlenderTest):
         words = [f"'{name}' is linked", "make it local"]
         self._refused(words, bpy.ops.velour.fit, material=name, max_lobes=2)
         self._refused(words, bpy.ops.velour.add_votf, material=name, structure=tile, texels=8)
+        self._refused(words, bpy.ops.velour.mark_asset, material=name)
+        self._refused(words, bpy.ops.velour.accept_file, material=name)
+        bpy.context.object.active_material = bpy.data.materials[name]
+        self._refused(words, bpy.ops.velour.add_material)
         node = scenes.velour_node(bpy.data.materials[name])
         self.assertEqual((node.image, node.velour.max_lobes, node.velour.structure), (before, 16, None))
+
+    def test_objects_whose_materials_are_linked(self):
+        """A linked object, a linked mesh and an override get no material, and a sentence says why."""
+        path, measurement = str(self.folder / "library.blend"), str(inputs.lambert_measurement())
+        bpy.ops.mesh.primitive_cube_add()
+        bpy.context.object.data.materials.append(bpy.data.materials.new("Plain"))
+        bpy.ops.wm.save_as_mainfile(filepath=path)
+        for kind in ("object", "mesh", "override"):
+            bpy.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)
+            self._link(path, kind)
+            bpy.context.view_layer.update()
+            said = io.StringIO()
+            with self.subTest(kind), contextlib.redirect_stdout(said):
+                self.assertEqual(bpy.ops.velour.load_material(filepath=measurement, fit=False), {"FINISHED"})
+                self.assertRegex(
+                    said.getvalue(), "linked from a library; material .* is kept without an object"
+                )
+                self.assertEqual(bpy.context.object.active_material.name, "Plain")
+                self._refused(["'Plain' is linked"], bpy.ops.velour.add_material)
+        slot = bpy.context.object.material_slots[
+            0
+        ]  # the control: of an override, slots of the object are free
+        slot.link = "OBJECT"
+        bpy.ops.velour.load_material(filepath=measurement, fit=False)
+        self.assertEqual(slot.material, bpy.context.object.active_material)
+        self.assertIsNone(slot.material.library)
+
+    def _link(self, path, kind):
+        """An active object of a library, of its mesh, or an override of it."""
+        with bpy.data.libraries.load(path, link=True) as (source, target):
+            if kind == "mesh":
+                target.meshes = source.meshes
+            else:
+                target.objects = source.objects
+        obj = target.objects[0] if kind != "mesh" else bpy.data.objects.new("Local", target.meshes[0])
+        bpy.context.collection.objects.link(obj)
+        if kind == "override":
+            obj = obj.override_create(remap_local_usages=True)
+        bpy.context.view_layer.objects.active = obj
+
+    def test_a_model_is_not_saved_where_nothing_can_be_written(self):
+        scenes.add_plane().active_material = scenes.measured_material(
+            inputs.model_bytes(inputs.lambert_measurement())
+        )
+        path = self.folder / "missing" / "x.velour"
+        self._refused([f"{path} cannot be written", "choose"], bpy.ops.velour.save_model, filepath=str(path))
 
     def test_fit_missing_measurement(self):
         scenes.add_plane()

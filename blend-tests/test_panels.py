@@ -132,6 +132,16 @@ class Panels(BlenderTest):
             self.assertEqual("velour.estimate_fit" in offered, is_btf, name)
             self.assertEqual("velour.fit" in offered, not is_btf, name)
 
+    def test_a_model_that_is_missing_is_told_where_the_tab_begins(self):
+        context = self._of_a_material()
+        node = scenes.velour_node(context.material)
+        for path, is_told in ((self.folder / "gone.velour", True), (self.folder / "here.velour", False)):
+            (self.folder / "here.velour").write_bytes(inputs.model_bytes(inputs.lambert_measurement()))
+            node.image = measured.linked_model(str(path), "")
+            self._read_and_offered(context)
+            told = "".join(self._layout(VELOUR_MATERIAL_PT_measured, context).labels)
+            self.assertEqual("Find Missing Files" in told, is_told, told)
+
     def test_a_changed_measurement_can_be_accepted(self):
         context = self._of_a_material()
         path = self.folder / "paint.binary"

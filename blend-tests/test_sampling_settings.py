@@ -67,3 +67,17 @@ class SamplingSettings(BlenderTest):
     def _choose(self, preset, no_denoiser=""):
         with mock.patch.object(inputs.module("export.denoiser"), "missing", return_value=no_denoiser):
             bpy.ops.velour.sampling_preset(preset=preset)
+
+    def test_progress_counts_what_the_panels_count(self):
+        settings = bpy.context.scene.velour
+        settings.camera_samples, settings.light_samples = 32, 8
+        text = inputs.module("engine.options").samples_text
+        self.assertEqual(text(settings.samples, settings.samples, settings.split), "Sample 32/32")
+        self.assertEqual(text(100, settings.samples, settings.split), "Sample 13/32")
+        settings.viewport_camera_samples = 0  # no limit
+        depsgraph = bpy.context.evaluated_depsgraph_get()
+        options = inputs.module("engine.options").viewport_options(depsgraph, self._view())
+        self.assertEqual(text(100, options["spp"], options["split"]), "Sample 13")
+
+    def _view(self):
+        return mock.Mock(width=8, height=8)

@@ -89,13 +89,28 @@ class TileSteps(BlenderTest):
         self.assertTrue(os.path.isfile(captured))
         self.assertEqual(obj.velour.directory, "")
         self.assertEqual(bpy.ops.velour.estimate_fit(), {"FINISHED"})  # it finds the capture
-        bpy.ops.wm.save_as_mainfile(filepath=str(self.folder / "saved.blend"))
-        self.assertFalse(inputs.module("operators.tiles").is_temporary(obj))
-        self.assertEqual(
-            inputs.module("operators.tiles").capture_folder(obj), str(self.folder / "Corduroy.btf")
-        )
         bpy.ops.wm.read_homefile(use_factory_startup=True)
         self.assertFalse(os.path.isfile(captured), "a tile of the same name in the new file would take it")
+
+    def test_a_temporary_capture_serves_in_the_saved_file_until_there_is_another(self):
+        tiles = inputs.module("operators.tiles")
+        self._worn_by_a_cube()
+        obj = bpy.context.object
+        bpy.ops.velour.capture_btf(**_SMALL)
+        bpy.ops.wm.save_as_mainfile(filepath=str(self.folder / "saved.blend"))
+        self.assertTrue(self._steps().capture.is_done)
+        self.assertTrue(tiles.is_temporary(obj), "it is deleted with the session")
+        bpy.ops.velour.capture_btf(**_SMALL)
+        self.assertFalse(tiles.is_temporary(obj))
+        self.assertEqual(tiles.capture_folder(obj), str(self.folder / "Corduroy.btf"))
+        self.assertTrue(self._steps().capture.is_done)
+
+    def test_a_numbered_folder_of_an_unsaved_file_is_temporary(self):
+        self._worn_by_a_cube()
+        bpy.ops.velour.capture_btf(**_SMALL)
+        bpy.ops.velour.capture_btf(**_SMALL, new_folder=True)
+        self.assertTrue(bpy.context.object.velour.directory)
+        self.assertTrue(inputs.module("operators.tiles").is_temporary(bpy.context.object))
 
     def test_no_silhouette_is_taken_for_the_tile_of_a_collection(self):
         button = Layout().operator("velour.add_votf")

@@ -1,10 +1,12 @@
 """The window: panels drawn without an error, a fit in the background with cancel, a render as it grows."""
 
+from unittest import mock
+
 import addon_utils
 import bpy
 import numpy as np
 
-from support import inputs, scenes, window
+from support import framebuffer, inputs, scenes, window
 from support import panels as stock
 
 _TURNS_SECONDS = 60
@@ -13,7 +15,7 @@ _TURNS_SECONDS = 60
 def start(folder):
     """Called by the harness once the window is there."""
     fits = (fit_and_cancel, two_fits, fit_and_undo, scene_fit_and_cancel, scene_fit_and_undo, shared_material)
-    chosen = pinned, opened
+    chosen = pinned, opened, no_file, preset_cloth
     window.run(folder, (panels, stock_panels, preferences, viewport, *chosen, *fits, render), viewport=True)
 
 
@@ -112,6 +114,47 @@ def opened(folder):
                 break
         assert settings.measurement.name == name, settings.measurement.name
         assert settings.measurement.velour.sha256
+
+
+def no_file(folder):
+    """A file browser that is left without a file in a folder of pictures says so, and reads none of them."""
+    (folder / "holiday").mkdir()
+    (folder / "holiday" / "beach.png").write_bytes(b"")
+    _measured_cube()
+    for operator in (bpy.ops.velour.load_material, bpy.ops.velour.open_measurement):
+        with window.override():
+            assert operator("INVOKE_DEFAULT") == {"RUNNING_MODAL"}
+        yield 0.5
+        measured = inputs.module("operators.measured")
+        with mock.patch.object(measured, "refuse_folder", wraps=measured.refuse_folder) as refuse:
+            yield from window.choose_file(folder / "holiday" / "")
+        state = bpy.context.window_manager.velour
+        assert not state.running, "the pictures are read"
+        assert not state.reading, "the pictures are read"
+        refuse.assert_called_once()
+
+
+def preset_cloth(folder):
+    """The approximation of a preset cloth, which takes many seconds, does not hold the window up."""
+    presets = inputs.module("core.presets")
+    home = folder / "cloths"
+    home.mkdir()
+    made = presets.Preset(
+        "Weave", home / "weave.velour", home / "weave.png", "Cloths", "A weave", ("cloth",), 3
+    )
+    made.model.write_bytes(inputs.weave_model())
+    framebuffer.write_png(made.picture, np.full((64, 64, 3), 128, np.uint8))
+    (home / presets.INDEX_FILE).write_text(presets.index_text([made]))
+    state = bpy.context.window_manager.velour
+    bpy.context.view_layer.objects.active = cube = bpy.data.objects["Cube"]
+    with window.override():
+        assert bpy.ops.velour.add_preset(preset="Weave", directory=str(home)) == {"FINISHED"}
+    assert cube.active_material.name == "Weave"
+    assert (state.running, state.subject) == (True, "Weave"), "it was approximated before the operator ended"
+    yield 0.3
+    bpy.ops.velour.cancel_fit()
+    yield from window.at_rest()
+    assert scenes.velour_node(cube.active_material).image, "the model is gone with its approximation"
 
 
 def preferences(folder):

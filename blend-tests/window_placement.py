@@ -68,7 +68,7 @@ def model_rows(folder):
     size = scenes.velour_node(material).image.packed_file.size
     rows = dict(_ui("model_panel")._btf_rows(info))
     raw = 6 * (inputs.QUARTER_TEXELS * 16) ** 2  # texels and pairs of half-float colors
-    assert rows["Model"] == "BTF, srbf", rows
+    assert rows["Model"] == "BTF, SRBF", rows
     assert rows["Texels"] == "16 x 16", rows
     assert rows["Tile"] == "500 x 500 mm", rows
     assert rows["Directions"] == "16 views, 16 lights", rows

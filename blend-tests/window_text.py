@@ -1,5 +1,6 @@
 """The window: sentences in panels fill the lines and are cut nowhere, whatever the scale of the interface."""
 
+import types
 from unittest import mock
 
 import bpy
@@ -14,6 +15,7 @@ _TEXT = (
     " 'Accept Changed File' in the Material tab."
 )
 _NEW_WINDOW = 320  # width in pixels of the Properties editor of factory settings on a screen of 1920
+_OF_1600 = 248  # width in pixels of its panels on a screen of 1600
 _SLACK = 4  # pixels that glyphs leave free at the ends of a line
 _shown = {"text": "", "icon": "NONE", "active": True}
 SCREEN = "1400x720"
@@ -47,7 +49,7 @@ def start(folder):
     """Called by the harness once the window is there."""
     bpy.utils.register_class(_Engine)
     bpy.utils.register_class(_Sentence)
-    window.run(folder, (plain, large, labels))
+    window.run(folder, (plain, large, labels, buttons, values))
 
 
 def _text():
@@ -110,12 +112,88 @@ def labels(folder):
     assert _text()._width("Render from the Measurement of the Material", _points()) > room / 2  # the control
 
 
-class _Names(Layout):
-    """Remembers the names beside settings, and the share of the width that each has."""
+def buttons(folder):
+    """No text of a button in the Material tab is cut on a small screen."""
+    material = plots.material()
+    scenes.use_engine()
+    yield from window.show_properties("MATERIAL")
+    tab, scene_model = (inputs.module(f"ui.{name}") for name in ("material_panel", "scene_model_panel"))
+    panels = tab.VELOUR_MATERIAL_PT_measured, scene_model.VELOUR_MATERIAL_PT_scene_model
+    rows = []
+    with _over_the_tab():
+        for panel in panels:
+            panel.draw(recorder := _Names(panel), bpy.context)
+            rows += recorder.rows
+        for slot in bpy.data.objects["Cube"].material_slots:
+            slot.material = None
+    yield 0.5
+    with _over_the_tab():
+        assert bpy.context.material is None
+        panels[0].draw(recorder := _Names(panels[0]), bpy.context)
+    rows += recorder.rows
+    material.use_fake_user = True
+    assert {"Fit", "Fit for This Scene", "Use Measured Material"} <= {text for row in rows for text, _ in row}
+    cut = [row for row in rows if _is_cut(row)]
+    assert not cut, cut
+    assert _is_cut([("Use Measured Material", "NONE"), ("Import...", "NONE")])  # the control
+    assert _is_cut([("Fit for This Scene", "PLAY"), ("This Frame Only", "NONE")])
 
-    def __init__(self, cls):
+
+def _is_cut(row):
+    """Whether the text of a button in a row of buttons (text, icon) is cut."""
+    room = (_OF_1600 - 2.3 * _unit()) / max(len(row), 1)
+    return any(
+        _text()._width(text, _points()) + (0.8 if icon == "NONE" else 1.6) * _unit() > room
+        for text, icon in row
+    )
+
+
+def values(folder):
+    """Values beside names are wrapped at that width; nothing of them is lost."""
+    yield from window.show_properties("MATERIAL")
+    preferences = bpy.context.preferences
+    context = types.SimpleNamespace(
+        region=types.SimpleNamespace(width=_NEW_WINDOW), preferences=preferences, window=None
+    )
+    value = "72.7 x 72.7 mm, 24.2 x 24.2 times real size"
+    lines = _text().value_lines(context, value, 0.6)
+    assert " ".join(lines) == value
+    assert len(lines) > 1
+    room = 0.6 * (_NEW_WINDOW - 2.3 * _unit())
+    assert _widest(lines) < room
+    assert _widest([value]) > room  # the control
+
+
+def _over_the_tab():
+    area = max(window.first().screen.areas, key=lambda a: a.width * a.height)
+    region = next(region for region in area.regions if region.type == "WINDOW")
+    return window.in_context(window=window.first(), area=area, region=region)
+
+
+class _Names(Layout):
+    """Remembers the names beside settings, and the share of the width that each has; and rows of buttons."""
+
+    def __init__(self, cls, around=None, row=None):
         super().__init__(cls)
-        self.names = {}
+        self.names = around.names if around else {}
+        self.rows = around.rows if around else []
+        self._row = row  # of buttons; None: each button is a row
+
+    def row(self, **_keywords):
+        self.rows.append([])
+        return _Names(self._cls, self, self.rows[-1])
+
+    def column(self, **_keywords):
+        return _Names(self._cls, self)
+
+    def operator(self, name, text="", icon="NONE", **keywords):
+        prefix, _, rest = name.partition(".")
+        button = text or getattr(bpy.types, f"{prefix.upper()}_OT_{rest}").bl_label, icon
+        if self._row is None:
+            self.rows.append([button])
+        else:
+            self._row.append(button)
+        return super().operator(name, **keywords)
 
     def prop(self, owner, name, text="", **keywords):
         known = owner.bl_rna.properties[name]

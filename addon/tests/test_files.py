@@ -24,6 +24,13 @@ def test_a_failing_writer_leaves_the_old_file_and_nothing_else(tmp_path):
     assert list(tmp_path.iterdir()) == [path]
 
 
+def test_a_folder_that_takes_no_files_is_named_by_the_file_that_was_asked_for(tmp_path):
+    path = tmp_path / "missing" / "report.json"
+    with pytest.raises(OSError, match="No such file") as raised:
+        files.write_atomic(path, lambda temporary: temporary.write_text("new"))
+    assert raised.value.filename == str(path)
+
+
 def test_written_files_are_readable_by_others(tmp_path):
     files.write_text(tmp_path / "a", "text")
     plain = tmp_path / "b"

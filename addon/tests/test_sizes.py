@@ -1,6 +1,6 @@
-"""Numbers of bytes as people read them."""
+"""Numbers of bytes and shares as people read them."""
 
-from velour.core.sizes import data_size, limit_size
+from velour.core.sizes import data_size, limit_size, percent
 
 
 def test_files_have_decimal_units_and_three_digits():
@@ -22,3 +22,18 @@ def test_files_have_decimal_units_and_three_digits():
 
 def test_limits_of_memory_have_binary_ones():
     assert [limit_size(size) for size in (1023, 1 << 20, 1536 << 20)] == ["1023 bytes", "1 MiB", "1.5 GiB"]
+
+
+def test_shares_have_no_exponent():
+    shares = (0, 1e-7, 0.0001, 0.0086, 0.5, 0.994, 0.996, 1.0, 12.345)
+    assert [percent(share) for share in shares] == [
+        "0 %",
+        "0 %",
+        "0.01 %",
+        "0.86 %",
+        "50 %",
+        "99 %",
+        "100 %",
+        "100 %",
+        "1234 %",
+    ]

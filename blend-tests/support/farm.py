@@ -48,10 +48,10 @@ class FarmTest(BlenderTest):
         return int(re.search(r"\.0-(\d+)\.exr", film.name)[1])
 
     def first_sample(self, frame):
-        """The first that the latest run of a frame tells in its log; None before that."""
+        """The first light direction that the latest run of a frame tells in its log; None before that."""
         log = self.output / f"farm/logs/{frame:04d}.log"
         found = re.search(r"Sample (\d+)/", log.read_text()) if log.is_file() else None
-        return found and int(found[1])
+        return found and int(found[1]) * bpy.context.scene.velour.split
 
     def status(self):
         """The exit status, and what is said."""

@@ -36,13 +36,17 @@ def write_atomic(path: str | os.PathLike, write: Callable[[Path], object]) -> No
 def _new_beside(path: Path) -> Path:
     """A new, empty file with a random name that no other machine uses in the same folder.
 
-    Its permissions follow the umask, unlike those of mkstemp(), whose files are private.
+    Its permissions follow the umask, unlike those of mkstemp(), whose files are private. Errors name `path`.
     """
     for _ in range(_ATTEMPTS):
         temporary = path.with_name(f".{path.stem}-{secrets.token_hex(8)}{path.suffix}")
-        with contextlib.suppress(FileExistsError):
+        try:
             os.close(os.open(temporary, os.O_CREAT | os.O_EXCL | os.O_WRONLY, 0o666))
-            return temporary
+        except FileExistsError:
+            continue
+        except OSError as error:
+            raise OSError(error.errno, error.strerror, str(path)) from error
+        return temporary
     raise FileExistsError(errno.EEXIST, os.strerror(errno.EEXIST), str(path))
 
 

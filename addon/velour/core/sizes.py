@@ -1,4 +1,4 @@
-"""Human-readable numbers of bytes."""
+"""Human-readable numbers of bytes, and shares in per cent."""
 
 from __future__ import annotations
 
@@ -21,3 +21,9 @@ def limit_size(size: float) -> str:
             return f"{size:.0f} {unit}"
         size /= 1024
     return f"{size:.1f} GiB"
+
+
+def percent(share: float) -> str:
+    """Two digits, without an exponent."""
+    value = 100 * share
+    return f"{value:.2g} %" if 0.001 <= value < 99.5 else f"{value:.0f} %"

@@ -1,5 +1,6 @@
 """Denoises pictures and reports their errors."""
 
+from ..core.sizes import percent
 from ..export.denoiser import missing
 from ..native import denoise_job
 from ..native.errors import refuse
@@ -26,6 +27,5 @@ def denoise(job, scene, threads, wait):
             "Error of the denoised image: unknown, as each pixel has a single camera ray. Raise Samples."
         )
         return "relmse unknown"
-    percent = 100 * max(bound, 0.0) ** 0.5
-    last_errors[scene.name] = f"Error of the last image: at most {percent:.2g} %."
+    last_errors[scene.name] = f"Error of the last image: at most {percent(max(bound, 0.0) ** 0.5)}."
     return f"relmse {max(report['relmse'], 0.0):.3g}, at most {max(bound, 0.0):.3g}"

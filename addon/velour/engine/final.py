@@ -3,6 +3,7 @@
 import contextlib
 import functools
 import logging
+import math
 import time
 
 import bpy
@@ -19,7 +20,7 @@ from ..native import biases, render_job
 from . import denoising, memory
 from .arguments import arguments
 from .frame_parts import film, frame_parts
-from .options import final_options
+from .options import final_options, samples_text
 from .passes import Delivery, add_passes, stamp_cryptomattes
 from .scene_models import choose_models
 
@@ -108,7 +109,8 @@ def _render_layer(engine, depsgraph, view, shown, surroundings, film, denoise):
     layer = depsgraph.view_layer_eval
     add_passes(engine, layer, shown)
     result = engine.begin_result(0, 0, view.width, view.height, layer=layer.name)
-    delivery = Delivery(result, view, film_exposure(depsgraph.scene_eval))
+    scene = depsgraph.scene_eval
+    delivery = Delivery(result, view, film_exposure(scene), scene.velour.split)
     complete, denoised = False, ""
     try:
         with film(functools.partial(_follow, engine, delivery)) as job:
@@ -118,7 +120,7 @@ def _render_layer(engine, depsgraph, view, shown, surroundings, film, denoise):
             report = None if job.poll().state == "ready" else job.report()
             denoised = denoise(job) if denoise else ""
             delivery.write(job, shown)
-            _say_report(engine, report, denoised)
+            _say_report(engine, report, denoised, delivery.split)
         complete = True
     finally:
         engine.end_result(result, cancel=not complete)
@@ -142,7 +144,7 @@ def _follow(engine, delivery, job, begin, end):
     for state in _states(engine, job):
         engine.update_progress(state.fraction)
         if statistics.rings():
-            engine.update_stats("Velour", _statistics(state, begin, end))
+            engine.update_stats("Velour", _statistics(state, begin, end, delivery.split))
             _tell_memory(engine, state)
         if not bpy.app.background and pictures.rings():
             delivery.write(job, [COMBINED])
@@ -195,10 +197,11 @@ def _exported(info, seconds):
     return f"Exported {counts}, {size} in {seconds:.2f} s, including {tracing} for the BVH"
 
 
-def _statistics(state, begin, end):
+def _statistics(state, begin, end, split):
     left = state.seconds_left
     remaining = "" if left is None else f" | Remaining {int(left) // 60:02d}:{int(left) % 60:02d}"
-    return f"Sample {begin + int(state.fraction * (end - begin))}/{end}{remaining}"
+    done = begin + int(state.fraction * (end - begin))
+    return f"{samples_text(done, end, split)}{remaining}"
 
 
 def _say(notes):
@@ -206,11 +209,12 @@ def _say(notes):
         print(f"Velour: {note}", flush=True)
 
 
-def _say_report(engine, report, denoised):
+def _say_report(engine, report, denoised, split):
     if not report:
         engine.update_stats("Velour", "All samples were already rendered")
         return
-    line = f"{report['spp_mean']:.0f} samples | {report['samples_per_second'] / 1e6:.1f} M samples/s"
+    speed = report["samples_per_second"] / 1e6
+    line = f"{math.ceil(report['spp_mean'] / split)} samples | {speed:.1f} M light directions/s"
     if report["blocks_unfinished"] is not None:
         line += f" | {report['blocks_unfinished']} blocks above the noise threshold"
     if denoised:

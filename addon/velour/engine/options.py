@@ -31,6 +31,12 @@ def viewport_options(depsgraph, view):
     }
 
 
+def samples_text(done, end, split):
+    """How many of the camera rays per pixel are rendered, by light directions per pixel; `split`: per ray."""
+    of_all = "" if end == _WITHOUT_END else f"/{-(-end // split)}"
+    return f"Sample {-(-done // split)}{of_all}"
+
+
 def viewport_threads(scene):
     """All but one, which is left to the interface."""
     return max(1, scene.render.threads - 1)

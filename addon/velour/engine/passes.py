@@ -33,6 +33,7 @@ class Delivery(NamedTuple):
     result: bpy.types.RenderResult
     view: View
     exposure: float  # factor on light
+    split: int  # light directions per camera ray; panels and statistics count camera rays
 
     def write(self, job, shown):
         """Copies those of the LayerPasses `shown` that the result has."""

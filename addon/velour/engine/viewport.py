@@ -20,7 +20,7 @@ from ..native import VelourError
 from ..realtime import UnshownError
 from . import freed_engines, viewport_clock
 from .engine_reference import engine_reference
-from .options import viewport_options
+from .options import samples_text, viewport_options
 from .realtime_viewport import RealtimeViewport
 from .refusal import Refusal
 from .viewport_job import ViewportJob
@@ -236,7 +236,8 @@ class Viewport:
     def _progress(self):
         if not self._job:
             return ""
-        return f"Sample {self._job.picture.samples}/{self._job.options['spp']}"
+        options = self._job.options
+        return samples_text(self._job.picture.samples, options["spp"], options["split"])
 
 
 def _sentence(error):

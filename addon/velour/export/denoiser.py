@@ -17,7 +17,7 @@ def missing():
         library.set_denoiser(_blenders_own())
         library.denoiser()
     except VelourError as error:
-        return str(error)
+        return f"Open Image Denoise is missing: {error}"
     return ""
 
 

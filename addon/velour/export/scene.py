@@ -15,6 +15,8 @@ from .pass_labels import AskedPasses, asked_passes
 from .unused_settings import note_layer, note_scene
 from .world import WorldLight, add_world, has_moving_picture, layer_world, shown_world
 
+_NAMED_BEFORE = ("triangles_left_out",)  # warnings of the library that MeshQueue gives with the object's name
+
 
 class Export(NamedTuple):
     scene: Scene  # committed
@@ -85,7 +87,8 @@ class SceneExport:
         check_break()
         self.scene.commit()
         info = self.scene.info()
-        for sentence in sentences(info["warning_codes"]):
+        others = [each for each in info["warning_codes"] if each["code"] not in _NAMED_BEFORE]
+        for sentence in sentences(others):
             self.notes.add(sentence)
         surroundings = _surroundings(depsgraph.scene.camera, objects.owner(info["camera_inside"]))
         if surroundings:

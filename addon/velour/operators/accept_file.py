@@ -23,6 +23,9 @@ class VELOUR_OT_accept_file(measured.OfMaterial, ReadsFirst, bpy.types.Operator)
         node = velour_node(material)
         if node is None:
             raise ExportError("There is no measured material; select an object that has one.")
+        measured.refuse_linked(material)
+        if not _images(node):
+            raise ExportError(f"Material '{material.name}' has no file of its own to accept.")
         self._target, self._subject = JobTarget(material, node), material.name
         owner = f"Material '{material.name}'"
         stored = {role: StoredFile.of(image, owner) for role, image in _images(node)}
@@ -53,9 +56,10 @@ class VELOUR_OT_accept_file(measured.OfMaterial, ReadsFirst, bpy.types.Operator)
 
 
 def _images(node):
-    """Image datablocks of the material's files, with their roles."""
+    """Local image datablocks of the material's files, with their roles."""
     roles = (("model", node.image), ("scene model", node.velour.scene_model))
-    return [(role, image) for role, image in (*roles, (_MEASUREMENT, node.velour.measurement)) if image]
+    images = (*roles, (_MEASUREMENT, node.velour.measurement))
+    return [(role, image) for role, image in images if image and image.library is None]
 
 
 def _digests(stored):

@@ -3,8 +3,9 @@
 import bpy
 from bpy.props import StringProperty
 
+from ..export import ExportError
 from . import measured
-from .slots import assign
+from .slots import SlotTarget
 
 
 class VELOUR_OT_add_material(bpy.types.Operator):
@@ -19,6 +20,11 @@ class VELOUR_OT_add_material(bpy.types.Operator):
         material = measured.find_material(context, "")
         if material is None:
             material = measured.new_material(self.name)
-            assign(context, material)
+            SlotTarget(context).put(material, self.report)
+        try:
+            measured.refuse_linked(material)
+        except ExportError as error:
+            self.report({"ERROR"}, str(error))
+            return {"CANCELLED"}
         measured.ensure_node(material)
         return {"FINISHED"}

@@ -40,7 +40,9 @@ class VELOUR_OT_add_mesostructure(bpy.types.Operator, AddObjectHelper):
     bl_options = {"REGISTER", "UNDO"}
 
     # Properties that are not set use the type's defaults, which are filled in once the tile is made.
-    type: EnumProperty(name="Type", items=_TYPES, default="WEAVE", update=_forget_shape)
+    type: EnumProperty(
+        name="Type", description="Kind of structure", items=_TYPES, default="WEAVE", update=_forget_shape
+    )
     size: FloatProperty(
         name="Size",
         description="Length of the sides of the tile",
@@ -94,7 +96,7 @@ class VELOUR_OT_add_mesostructure(bpy.types.Operator, AddObjectHelper):
         step=2,
         options={"SKIP_SAVE"},
     )
-    seed: IntProperty(name="Seed", min=0, options={"SKIP_SAVE"})
+    seed: IntProperty(name="Seed", description="Random seed of the deviations", min=0, options={"SKIP_SAVE"})
 
     @classmethod
     def poll(cls, context):

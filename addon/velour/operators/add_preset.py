@@ -7,6 +7,7 @@ from ..core import presets
 from ..core.files import read_bytes
 from ..native import Model, VelourError
 from . import measured
+from .approximate import approximate_new
 from .slots import PutsInSlot, SlotTarget
 
 
@@ -29,7 +30,7 @@ class VELOUR_OT_add_preset(PutsInSlot, bpy.types.Operator):
 
     def execute(self, context):
         try:
-            material = make(find(self.preset, self.directory), self.report)
+            material, info = make(find(self.preset, self.directory), self.report)
         except (OSError, ValueError, VelourError) as error:
             self.report({"ERROR"}, str(error))
             return {"CANCELLED"}
@@ -38,7 +39,7 @@ class VELOUR_OT_add_preset(PutsInSlot, bpy.types.Operator):
             target.put(material, self.report)
         else:
             material.use_fake_user = True
-        bpy.ops.velour.approximate("EXEC_DEFAULT", material=material.name)
+        approximate_new(context, material, info)
         return {"FINISHED"}
 
 
@@ -55,7 +56,9 @@ def find(name, directory=""):
 
 
 def make(preset, report):
-    """A new material with the model of a preset, without its approximation; raises OSError or VelourError."""
+    """A new material with the model of a preset, without its approximation, and the info of the model.
+
+    Raises OSError or VelourError."""
     data = read_bytes(preset.model)
     with Model.load(preset.model) as model:
         info = model.info()
@@ -64,4 +67,4 @@ def make(preset, report):
     node = measured.set_model(material, measured.ensure_node(material), image, report, info=info)
     if preset.repeats:
         node.velour.placement.repeats = (preset.repeats,) * 2
-    return material
+    return material, info

@@ -114,7 +114,7 @@ def targets(context, owner):
         return [owner.velour.target]
     parts = {owner} if isinstance(owner, bpy.types.Object) else {*owner.all_objects}
     selected = context.view_layer.objects.selected
-    return [obj for obj in selected if obj not in parts and takes_materials(obj)]
+    return [o for o in selected if o not in parts and hasattr(o.data, "materials") and o.library is None]
 
 
 def _tiles_on(shown, tile, asked, is_placed):
@@ -154,7 +154,7 @@ def _named(name):
 
 
 def _checked(obj):
-    if not takes_materials(obj) or obj.is_property_readonly("active_material"):
+    if not takes_materials(obj):
         is_linked = obj.library is not None or getattr(obj.data, "library", None) is not None
         reason = "is linked from a library" if is_linked else "cannot have materials"
         raise ExportError(f"Object '{obj.name}' {reason}; choose another.")

@@ -3,6 +3,7 @@
 import bpy
 
 from ..core.read_job import ReadJob
+from ..core.sizes import percent
 from ..export import ExportError
 from ..export.files import sha256
 from . import approximation_group, measured
@@ -88,6 +89,15 @@ class VELOUR_OT_approximate(measured.OfMaterial, JobsInSteps, bpy.types.Operator
         if node.group is None:
             node = convert(material)
         approximation_group.put(node, material, found, self._info, self._digest)
-        error = 100 * found.relative_l2
-        self.report({"INFO"}, f"'{material.name}' in Cycles and EEVEE: {error:.2g} % off the model.")
+        error = percent(found.relative_l2)
+        self.report({"INFO"}, f"'{material.name}' in Cycles and EEVEE: {error} off the model.")
         return {"FINISHED"}
+
+
+def approximate_new(context, material, info):
+    """Approximates a material whose model has just been added; `info`: that of the model.
+
+    In a window, BTFs, which take many seconds, are approximated in the background."""
+    has_window = not bpy.app.background and context.window is not None
+    mode = "INVOKE_DEFAULT" if has_window and "texels" in info else "EXEC_DEFAULT"
+    bpy.ops.velour.approximate(mode, material=material.name)

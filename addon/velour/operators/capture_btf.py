@@ -14,11 +14,11 @@ from .background_job import OneJob
 from .tiles import (
     CAPTURE_NUMBERS,
     OfTile,
-    capture_folder,
     capture_options,
     find_tile,
-    held_out_folder,
+    held_out_beside,
     new_folder,
+    output_folder,
 )
 
 _NEW_FOLDER = "Capture into a new folder. The previous capture is kept"
@@ -93,7 +93,7 @@ class VELOUR_OT_capture_btf(OfTile, OneJob, bpy.types.Operator):
         with scene:
             self._job = capture_job(scene, self._folder, held_out=self.held_out, **options)
             if settings.held_out and not self.held_out:
-                folder = held_out_folder(tile)
+                folder = held_out_beside(output_folder(tile.owner))
                 self._later = folder, capture_job(scene, folder, held_out=settings.held_out, **options)
 
     def _goes_on(self):
@@ -105,10 +105,10 @@ class VELOUR_OT_capture_btf(OfTile, OneJob, bpy.types.Operator):
 
     def _folder_of(self, tile):
         if not self.held_out:
-            return capture_folder(tile.owner)
+            return output_folder(tile.owner)
         if self.directory:
             return os.path.normpath(bpy.path.abspath(self.directory))
-        return held_out_folder(tile)
+        return held_out_beside(output_folder(tile.owner))
 
     def _fail(self, error):
         if self._later is not None:

@@ -43,7 +43,7 @@ class VELOUR_OT_fit(measured.OfMaterial, MakesModel, bpy.types.Operator):
         node = velour_node(material)
         owner = f"Material '{material.name}'"
         if node is None or node.velour.measurement is None:
-            raise ExportError(f"{owner}: no measurement is chosen; use File > Import > Measured Material.")
+            raise ExportError(f"{owner}: no measurement is chosen; press Open beside Measurement.")
         if measured.is_btf(node.velour.measurement):
             path = absolute_path(node.velour.measurement)
             call = f"bpy.ops.velour.compress_btf(material={material.name!r})"

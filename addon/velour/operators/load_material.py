@@ -109,6 +109,11 @@ class VELOUR_OT_load_material(PutsInSlot, OneJob, bpy.types.Operator, ImportHelp
     def execute(self, context):
         if not self._asks:
             return OneJob.execute(self, context)
+        try:
+            for path in self._paths():
+                measured.refuse_folder(path)
+        except ExportError as error:
+            return self._fail(error)
         # Blender ends the file browser's operator when this returns, so another one does the work.
         chosen = self.as_keywords(ignore=("check_existing", "filter_glob", "files"))
         chosen["files"] = [{"name": file.name} for file in self.files]
@@ -136,7 +141,7 @@ class VELOUR_OT_load_material(PutsInSlot, OneJob, bpy.types.Operator, ImportHelp
         jobs += [
             (bpy.ops.velour.approximate, {"material": m.name}) for m in materials if m.name not in unfitted
         ]
-        place = {} if materials else self._place()  # the first file takes the slot
+        place = {} if materials else self._place(len(btfs))  # the first file takes the slot
         for path in btfs:
             jobs.append((bpy.ops.velour.compress_btf, {"filepath": path, **place}))
             place = {}
@@ -144,13 +149,14 @@ class VELOUR_OT_load_material(PutsInSlot, OneJob, bpy.types.Operator, ImportHelp
         self._say_all()
         return {"FINISHED"} if found else {"CANCELLED"}
 
-    def _place(self):
-        """Slot arguments for the operator that makes the material."""
+    def _place(self, count):
+        """Slot arguments for the first of the operators that make `count` materials."""
         if self._slot is None:
             return {}
         taken = self._slot.take()
         if taken is None:
-            self._slot.tell("the material", self.report)
+            if count:
+                self._slot.tell("the material", self.report)
             return {}
         return {"assign": True, "object": taken[0].name, "slot": taken[1]}
 

@@ -30,6 +30,7 @@ class VELOUR_OT_mark_asset(measured.OfMaterial, JobsInSteps, bpy.types.Operator)
 
     def _begin(self, context):
         material = measured.wanted_material(context, self.material)
+        measured.refuse_linked(material)
         node = measured.modelled_node(material)
         self._target, self._subject = JobTarget(material, node), material.name
         self._threads = context.scene.render.threads

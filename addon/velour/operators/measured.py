@@ -36,7 +36,8 @@ def wanted_material(context, name):
     """Like find_material(); raises ExportError if there is none."""
     material = find_material(context, name)
     if material is None:
-        raise ExportError(f"There is no material {name!r}." if name else "There is no active material.")
+        missing = f"There is no material {name!r}; check its name."
+        raise ExportError(missing if name else "There is no active material; select an object that has one.")
     return material
 
 
@@ -79,6 +80,14 @@ def refuse_linked_group(material, node):
             " and cannot be changed; make it local with the icon beside its name in the Material tab, or"
             " change it in that file."
         )
+
+
+def refuse_folder(path):
+    """Raises ExportError for a folder that is no BTF: the file browser was left without choosing a file.
+
+    Otherwise all images in it would be read as those of a BTF."""
+    if os.path.isdir(path) and not any(os.path.isfile(os.path.join(path, name)) for name in INDICES):
+        raise ExportError(f"No file is chosen in {path}; choose a measurement or a model.")
 
 
 def new_material(name):

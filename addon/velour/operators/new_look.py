@@ -11,6 +11,7 @@ from ..core import presets
 from ..core.ball import ball_mesh, studio
 from ..native import VelourError
 from . import add_preset
+from .approximate import approximate_new
 
 NAME = "Velour Look"
 _TURN_FRAMES = 120
@@ -34,7 +35,7 @@ class VELOUR_OT_new_look(bpy.types.Operator):
 
     def execute(self, context):
         try:
-            material = self._material()
+            material, info = self._material()
         except (OSError, ValueError, VelourError) as error:
             self.report({"ERROR"}, str(error))
             return {"CANCELLED"}
@@ -51,15 +52,15 @@ class VELOUR_OT_new_look(bpy.types.Operator):
         view_layer.objects.active = ball
         ball.select_set(True, view_layer=view_layer)
         if material is not None:
-            bpy.ops.velour.approximate("EXEC_DEFAULT", material=material.name)
+            approximate_new(context, material, info)
         return {"FINISHED"}
 
     def _material(self):
-        """Material of the ball; None without presets."""
+        """Material of the ball and info of its model; None for both without presets."""
         listed = presets.listed()
         if self.preset:
             return add_preset.make(add_preset.find(self.preset), self.report)
-        return add_preset.make(listed[0], self.report) if listed else None
+        return add_preset.make(listed[0], self.report) if listed else (None, None)
 
 
 def _set_up(scene):

@@ -42,6 +42,10 @@ class _OpensFile(measured.OfMaterial, ReadsFirst, ImportHelper):
     def execute(self, context):
         if not self._asks:
             return ReadsFirst.execute(self, context)
+        try:
+            measured.refuse_folder(bpy.path.abspath(self.filepath))
+        except ExportError as error:
+            return self._fail(error)
         # Blender ends the file browser's operator when this returns, so another one does the work.
         opens = getattr(bpy.ops.velour, type(self).bl_idname.partition(".")[2])
         opens("INVOKE_DEFAULT", **self.as_keywords(ignore=("check_existing", "filter_glob")))

@@ -29,9 +29,8 @@ class PlacementOperator(ReadsFirst):
     def _read(self, context):
         obj = bpy.data.objects.get(self.object) if self.object else context.object
         if obj is None:
-            raise ExportError(
-                f"There is no object '{self.object}'." if self.object else "There is no active object."
-            )
+            missing = f"There is no object '{self.object}'; check its name."
+            raise ExportError(missing if self.object else "There is no active object; select one.")
         material = measured.find_material(context, self.material) if self.material else obj.active_material
         node = velour_node(material)
         if node is None or node.image is None:
@@ -79,4 +78,5 @@ class VELOUR_OT_keep_uv_density(PlacementOperator, bpy.types.Operator):
     bl_options = {"UNDO"}
 
     def _use_on(self, depsgraph, obj, material, _tile):
+        measured.refuse_linked(material)
         velour_node(material).velour.placement.uv_density = uv_density_on(depsgraph, obj, material)

@@ -39,10 +39,14 @@ class VELOUR_OT_save_model(measured.OfMaterial, bpy.types.Operator, ExportHelper
         if image is None:
             self.report({"ERROR"}, "There is no model to save; fit or import one first.")
             return {"CANCELLED"}
+        path = bpy.path.abspath(self.filepath)
         try:
             data = content(image, f"Material '{material.name}'")
-            write_atomic(bpy.path.abspath(self.filepath), lambda path: path.write_bytes(data))
-        except (ExportError, OSError) as error:
+            write_atomic(path, lambda temporary: temporary.write_bytes(data))
+        except ExportError as error:
             self.report({"ERROR"}, str(error))
+            return {"CANCELLED"}
+        except OSError as error:
+            self.report({"ERROR"}, f"{path} cannot be written ({error.strerror}); choose another folder.")
             return {"CANCELLED"}
         return {"FINISHED"}

@@ -169,7 +169,7 @@ def _refuse_unfit(material):
     node = velour_node(material)
     owner = f"Material '{material.name}'"
     if node is None or node.velour.measurement is None:
-        raise ExportError(f"{owner}: no measurement is chosen; use File > Import > Measured Material.")
+        raise ExportError(f"{owner}: no measurement is chosen; press Open beside Measurement.")
     if node.image is None:
         raise ExportError(f"{owner}: it has no full model yet; press Fit first.")
     measured.refuse_linked(material)

@@ -63,7 +63,9 @@ def _is_drawn(context, depsgraph, obj, matrix) -> bool:
 
 
 def takes_materials(obj) -> bool:
-    return obj is not None and hasattr(obj.data, "materials") and obj.library is None
+    """Whether the active slot of an object can get a material: the object or its mesh may be linked."""
+    is_one = obj is not None and hasattr(obj.data, "materials")
+    return is_one and not obj.is_property_readonly("active_material")
 
 
 class PutsInSlot:
@@ -87,10 +89,13 @@ class SlotTarget:
         obj = bpy.data.objects.get(slot.object) if slot else context.object
         self._owner = self._number = None
         self._why_none = _why_none(obj, slot)
-        if takes_materials(obj):
-            self._owner, count = JobOwner(obj), len(obj.material_slots)
-            is_there = slot is not None and (slot.slot < count or count == 0)
-            self._number = slot.slot if is_there else obj.active_material_index
+        if obj is None:
+            return
+        count = len(obj.material_slots)
+        is_there = slot is not None and (slot.slot < count or count == 0)
+        number = slot.slot if is_there else obj.active_material_index
+        if _takes(obj, number):
+            self._owner, self._number = JobOwner(obj), number
 
     @classmethod
     def asked(cls, context, operator):
@@ -102,9 +107,7 @@ class SlotTarget:
     def take(self):
         """The object and the slot's number; None if there is none, or it is gone. Call once."""
         obj = self._owner.take() if self._owner else None
-        if not takes_materials(obj) or 0 < len(obj.material_slots) <= self._number:
-            return None
-        return obj, self._number
+        return (obj, self._number) if _takes(obj, self._number) else None
 
     def put(self, material, report) -> None:
         """Puts the material into the slot; without a slot, a fake user keeps the material."""
@@ -126,16 +129,20 @@ class SlotTarget:
 def _why_none(obj, slot: Slot | None) -> str:
     """Reason why there is no slot."""
     if obj is not None:
-        return f"Object '{obj.name}' cannot have materials"
+        if not hasattr(obj.data, "materials"):
+            return f"Object '{obj.name}' cannot have materials"
+        if obj.library is not None:
+            return f"Object '{obj.name}' is linked from a library"
+        return f"The materials of object '{obj.name}' are linked from a library"
     return f"There is no object '{slot.object}'" if slot else "There is no active object"
 
 
-def assign(context, material) -> None:
-    """Puts `material` into the active slot of the active object; without one, a fake user keeps it."""
-    if takes_materials(context.object):
-        context.object.active_material = material
-    else:
-        material.use_fake_user = True  # otherwise it would be lost on saving
+def _takes(obj, number) -> bool:
+    """Whether an object has a slot with this number, or none yet, and it can get a material."""
+    slots = obj.material_slots if obj is not None else ()
+    if not slots:
+        return takes_materials(obj)
+    return number < len(slots) and not slots[number].is_property_readonly("material")
 
 
 def _put(material, obj, number):

@@ -45,15 +45,28 @@ def tile_of(context, owner):
 
 
 def capture_folder(owner):
-    """Absolute folder of the BTF of a tile, which may not exist yet. Safe in draw()."""
-    if is_temporary(owner):
-        return os.path.join(bpy.app.tempdir, _folder_name(owner))
+    """Absolute folder of the BTF of a tile, which may not exist yet. Safe in draw().
+
+    A capture from before the file was saved counts until there is one beside the file."""
+    folder, earlier = output_folder(owner), _temporary_folder(owner)
+    is_lacking = not owner.velour.directory and not os.path.exists(folder)
+    return earlier if is_lacking and os.path.isdir(earlier) else folder
+
+
+def output_folder(owner):
+    """Absolute folder that the BTF of a tile is captured into. Safe in draw()."""
+    if not owner.velour.directory and not bpy.data.filepath:
+        return _temporary_folder(owner)
     return os.path.normpath(bpy.path.abspath(owner.velour.directory or f"//{_folder_name(owner)}"))
 
 
 def is_temporary(owner):
-    """Whether the BTF of a tile is lost with the file: neither its folder nor the file has a place."""
-    return not owner.velour.directory and not bpy.data.filepath
+    """Whether the BTF of a tile is deleted when the file is closed. Safe in draw()."""
+    return capture_folder(owner).startswith(os.path.join(bpy.app.tempdir, ""))
+
+
+def _temporary_folder(owner):
+    return os.path.join(bpy.app.tempdir, _folder_name(owner))
 
 
 def remove_temporary():
@@ -68,19 +81,20 @@ def _folder_name(owner):
 
 def held_out_folder(tile):
     """Folder of the held-out pairs, beside the tile's BTF."""
-    return _held_out_beside(capture_folder(tile.owner))
+    return held_out_beside(capture_folder(tile.owner))
 
 
-def _held_out_beside(folder):
+def held_out_beside(folder):
+    """Folder of the held-out pairs of the BTF in a folder."""
     return folder.removesuffix(".btf") + ".held-out.btf"
 
 
 def new_folder(tile):
     """Value for the tile's setting: the first unused folder, numbered as in Blender."""
-    folder = capture_folder(tile.owner)
+    folder = output_folder(tile.owner)
     name = re.sub(r"\.\d{3,}$", "", folder.removesuffix(".btf"))
     number = 0
-    while os.path.exists(folder) or os.path.exists(_held_out_beside(folder)):
+    while os.path.exists(folder) or os.path.exists(held_out_beside(folder)):
         number += 1
         folder = f"{name}.{number:03}.btf"
     return bpy.path.relpath(folder) if bpy.data.filepath else folder

@@ -15,7 +15,10 @@ class VELOUR_OT_use_as_tile(OfTile, bpy.types.Operator):
 
     def execute(self, context):
         try:
-            _owner(context, self.collection).velour.is_tile = True
+            owner = _owner(context, self.collection)
+            if owner.library is not None:
+                raise ExportError(f"'{owner.name}' is linked from a library; make it local.")
+            owner.velour.is_tile = True
         except ExportError as error:
             self.report({"ERROR"}, str(error))
             return {"CANCELLED"}

@@ -108,7 +108,13 @@ class VelourTileSettings(BtfFitSettings, bpy.types.PropertyGroup):
         default=1,
         override=_OVERRIDABLE,
     )
-    sides: EnumProperty(name="Sides", items=SIDES, default="ONE", override=_OVERRIDABLE)
+    sides: EnumProperty(
+        name="Sides",
+        description="Sides of the tile that are captured",
+        items=SIDES,
+        default="ONE",
+        override=_OVERRIDABLE,
+    )
     use_approximate: BoolProperty(
         name="Approximate",
         description="Also capture materials that Velour can only approximate",

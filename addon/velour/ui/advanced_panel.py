@@ -31,7 +31,9 @@ class VELOUR_MATERIAL_PT_advanced(MaterialPanel, bpy.types.Panel):
         layout.template_ID(node.texture, "image", open=VELOUR_OT_open_model.bl_idname, text="Model File")
         if info.get("model") == "scattered":
             layout.column().prop(node.texture.velour, "neighbors")
-        layout.column(heading="Render").prop(settings, "use_reference", text="From Measurement")
+        column = layout.column(heading="Render")
+        column.active = settings.measurement is not None
+        column.prop(settings, "use_reference", text="Measurement")
 
 
 def _draw_fit_settings(column, settings):

@@ -2,6 +2,7 @@
 
 import bpy
 
+from ..core.sizes import percent
 from ..export.nodes import approximation_node, velour_node
 from ..operators.approximate import VELOUR_OT_approximate
 from ..operators.approximation_image import images_of
@@ -30,7 +31,7 @@ class VELOUR_MATERIAL_PT_approximation(MaterialPanel, bpy.types.Panel):
             return
         state = group.node_tree.velour
         if state.relative_l2 >= 0.0:
-            layout.label(text=f"In Cycles and EEVEE: {100 * state.relative_l2:.2g} % off")
+            layout.label(text=f"In Cycles and EEVEE: {percent(state.relative_l2)} off")
             if state.reason:
                 draw_sentence(context, layout, state.reason)
             errors = (error if error >= 0.0 else None for error in state.by_view_angle)

@@ -47,11 +47,11 @@ def draw_chosen(layout, info):
     at = order["chosen"]
     size = order["parameter_bytes"][at]
     if "texels" in info:
-        text = f"{data_size(size)}: error {order['relative_l2'][at]:.3g}"
+        text = f"{data_size(size)} in memory: error {order['relative_l2'][at]:.3g}"
         text += _asked(order["relative_l2"][at], info["tolerance"])
     else:
         text = f"{order['lobes'][at]} lobes, {data_size(size)}: {order['worst'][at]:.3g} times Max Error"
-    layout.label(text=text)
+    draw_sentence(bpy.context, layout, text)
 
 
 def _asked(error, tolerance):

@@ -48,10 +48,9 @@ class VELOUR_MATERIAL_PT_measured(MaterialPanel, bpy.types.Panel):
         layout.use_property_decorate = False
         node = velour_node(context.material)
         if node is None:
-            row = layout.row()
-            row.operator(VELOUR_OT_add_material.bl_idname)
+            layout.operator(VELOUR_OT_add_material.bl_idname)
             if context.object is not None:  # the material goes into its slot
-                row.operator(VELOUR_OT_load_material.bl_idname, text="Import...")
+                layout.operator(VELOUR_OT_load_material.bl_idname, text="Import...")
                 if context.object.type in GEOMETRY and not context.object.velour.is_shown():
                     layout.operator(VELOUR_OT_use_as_tile.bl_idname, icon="TEXTURE")
                 if context.material is None:
@@ -61,8 +60,10 @@ class VELOUR_MATERIAL_PT_measured(MaterialPanel, bpy.types.Panel):
             layout.template_ID(node.group, "node_tree", text="Node Group")
         else:
             _draw_former(context, layout, context.material)
-        info = model_summary(node.image) if node.image is not None else None
-        info = info if isinstance(info, dict) else {}
+        found = model_summary(node.image) if node.image is not None else None
+        info = found if isinstance(found, dict) else {}
+        if isinstance(found, str):
+            draw_refusal(context, layout, node.image, found)
         if node.group is not None:
             _draw_look(context, layout, node, info)
         _draw_verdict(context, layout, node, info)
@@ -110,7 +111,9 @@ def _draw_fit(context, layout, node, info):
         key, name = refitted_as(context.material), context.material.name
         draw_btf_fit(context, layout, node.velour.btf, key, (VELOUR_OT_fit.bl_label, "PLAY"), material=name)
     elif "texels" not in info:  # otherwise there is no BTF to fit
-        layout.operator(VELOUR_OT_fit.bl_idname, icon="PLAY")
+        row = layout.row()
+        row.enabled = measurement is not None
+        row.operator(VELOUR_OT_fit.bl_idname, icon="PLAY")
     draw_progress(context, layout)
     state = context.window_manager.velour
     if state.canceled and state.canceled_subject == context.material.name:

@@ -7,9 +7,13 @@ from ..core.sizes import data_size
 from ..export.nodes import velour_node
 from ..operators.mark_asset import VELOUR_OT_mark_asset
 from ..operators.save_model import VELOUR_OT_save_model
+from ..properties.btf_fit_settings import METHODS
 from .material_panel import MaterialPanel, draw_refusal
 from .summaries import model_summary
-from .text import draw_sentence
+from .text import draw_sentence, value_lines
+
+_METHODS = {key.lower().replace("_", "-"): name for key, name, *_ in METHODS}  # as the library calls them
+_NAMES = 0.4  # share of the width for the names of rows
 
 
 class VELOUR_MATERIAL_PT_model(MaterialPanel, bpy.types.Panel):
@@ -58,7 +62,7 @@ def _btf_rows(info):
     unseen, tile = info["psnr_held_out"], info["tile_metres"]
     return (
         ("Source", info["source"]["name"]),
-        ("Model", f"BTF, {info['method']}"),
+        ("Model", f"BTF, {_METHODS.get(info['method'], info['method'])}"),
         ("Texels", "{} x {}".format(*info["texels"])),
         ("Tile", "unknown size" if tile is None else "{:.4g} x {:.4g} mm".format(*(1e3 * t for t in tile))),
         ("Directions", f"{info['views']} views, {info['lights']} lights"),
@@ -114,13 +118,14 @@ def _relative_error(error):
 
 
 def draw_rows(layout, rows):
-    """Draws names on the left, values on the right."""
-    split = layout.split(factor=0.4)
+    """Draws names on the left, values on the right, which are wrapped."""
+    split = layout.split(factor=_NAMES)
     names, values = split.column(align=True), split.column(align=True)
     names.alignment = "RIGHT"
     for name, value in rows:
-        names.label(text=name)
-        values.label(text=value)
+        for number, line in enumerate(value_lines(bpy.context, value, 1 - _NAMES)):
+            names.label(text="" if number else name)
+            values.label(text=line)
 
 
 def _lobes(info):

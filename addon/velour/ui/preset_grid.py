@@ -22,7 +22,7 @@ def draw_presets(context, layout):
     if not found:
         return
     settings = context.window_manager.velour.browser
-    layout.row().prop(settings, "catalog", text="")
+    layout.prop(settings, "catalog")
     shown = [preset for preset in found if preset.catalog == settings.catalog]
     columns = _columns(context, [preset.name for preset in shown])
     grid = layout.grid_flow(row_major=True, columns=columns, even_columns=True, even_rows=True)

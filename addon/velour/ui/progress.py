@@ -3,6 +3,7 @@
 import bpy
 
 from ..operators.fit import VELOUR_OT_cancel_fit, VELOUR_OT_cancel_waiting
+from .text import draw_sentence
 
 
 def attach():
@@ -20,7 +21,7 @@ def draw_progress(context, layout):
         return
     has_progress = hasattr(layout, "progress")  # 4.0 and newer
     if not has_progress:
-        layout.label(text=_text(job), icon="TIME")  # no room for the remaining time beside a slider
+        draw_sentence(context, layout, _text(job), icon="TIME")  # no room for it beside a slider
     row = layout.row(align=True)
     if has_progress:
         row.progress(factor=job.fraction, text=_text(job))

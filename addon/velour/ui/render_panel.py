@@ -69,7 +69,7 @@ class VELOUR_RENDER_PT_sampling(_RenderPanel, bpy.types.Panel):
         value.prop(settings, "noise_target", text="")
         layout.prop(settings, "time_limit")
         layout.column(heading="Denoise").prop(settings, "use_denoising", text="Render")
-        if reason := denoiser.missing():
+        if settings.use_denoising and (reason := denoiser.missing()):
             draw_sentence(context, layout, reason, icon="ERROR")
         elif error := denoising.last_errors.get(context.scene.name):
             draw_sentence(context, layout, error, icon="INFO")

@@ -25,9 +25,10 @@ class VELOUR_MATERIAL_PT_scene_model(MaterialPanel, bpy.types.Panel):
 
     def draw(self, context):
         layout, settings = self.layout, velour_node(context.material).velour
-        row = layout.row(align=True)
-        row.operator(VELOUR_OT_fit_for_scene.bl_idname, icon="PLAY")
-        row.operator(VELOUR_OT_fit_for_scene.bl_idname, text="This Frame Only").current_frame = True
+        column = layout.column(align=True)
+        column.enabled = settings.measurement is not None
+        column.operator(VELOUR_OT_fit_for_scene.bl_idname, icon="PLAY")
+        column.operator(VELOUR_OT_fit_for_scene.bl_idname, text="This Frame Only").current_frame = True
         if settings.scene_model is None:
             return
         layout.prop(settings, "use_scene_model")

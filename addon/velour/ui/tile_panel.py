@@ -21,6 +21,11 @@ from .summaries import model_summary
 from .text import draw_sentence
 from .tile_steps import steps
 
+_TEMPORARY = (  # of a file that is not saved; of a file that has been saved since
+    "Temporary: deleted with this unsaved file. To keep it, save the file first, or choose a Folder.",
+    "Temporary: deleted when this file is closed. Capture again to keep it.",
+)
+
 
 class TilePanel(PropertiesPanel):
     """Mixin for a panel of the object or the collection that is a tile; a tab gives it `_owner`."""
@@ -72,7 +77,7 @@ def _step(layout, title, step):
 def _draw_capture(context, layout, owner, collection):
     layout.label(text=_size(owner.velour), icon="DISK_DRIVE")
     if is_temporary(owner):
-        layout.label(text="Unsaved file: temporary", icon="INFO")
+        draw_sentence(context, layout, _TEMPORARY[bool(bpy.data.filepath)], icon="INFO")
     state = context.window_manager.velour
     if state.estimate and state.estimated == captured_as(owner):
         draw_sentence(context, layout, state.estimate, icon="TIME")
