@@ -46,11 +46,17 @@ def _samples(text):
     return Share(number, count)
 
 
+def _folder(text):
+    if not text:
+        raise argparse.ArgumentTypeError("the name of the folder is empty")
+    return Path(text)
+
+
 def arguments():
     """`parts`, `keep_parts`, `samples`, `memory`; None or False if not given, or if there is a window."""
     parser = _Parser(prog="blender", add_help=False, allow_abbrev=False)
     add = parser.add_argument
-    add("--velour-parts", dest="parts", type=Path)
+    add("--velour-parts", dest="parts", type=_folder)
     add("--velour-keep-parts", dest="keep_parts", action="store_true")
     add("--velour-samples", dest="samples", type=_samples)
     add("--velour-memory", dest="memory", type=numbers.size_in_bytes)

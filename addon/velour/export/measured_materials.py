@@ -139,7 +139,7 @@ class MeasuredMaterials:
             return self._read_reference(node, owner)
         if node.image is None:
             raise ExportError(
-                f"{owner}: node '{node.name}' has no model; press Fit, or choose a model as its image."
+                f"{owner}: node '{node.name}' has no model; press Fit, or choose a Model File under Advanced."
             )
         model = self._read_model(node.image, measured, owner)
         return Reflectance("model", model, model.info(), node.neighbors)

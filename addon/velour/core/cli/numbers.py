@@ -84,6 +84,8 @@ def pixels(text: str) -> tuple[int, int, int, int]:
 def size_in_bytes(text: str) -> int:
     """Bytes, or K, M, G, T (powers of 1024); 2^63 at most."""
     number, unit = (text[:-1], text[-1]) if text[-1:].upper() in ("K", "M", "G", "T") else (text, "")
+    if not number.isdecimal():
+        raise argparse.ArgumentTypeError(f"{text!r} is not a number of bytes, such as 8G")
     doublings = 10 * " KMGT".index(unit.upper() or " ")
     return whole(1, 2**63 >> doublings)(number) << doublings
 
