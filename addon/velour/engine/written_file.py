@@ -66,7 +66,7 @@ def _state(path):
 
 
 def _damage(path):
-    """What is missing; "" if it is complete, or of a format that Blender itself checks."""
+    """Returns what the file lacks: "" if it is complete, or of a format that Blender itself checks."""
     try:
         with open(path, "rb") as file:
             start = file.read(8)
