@@ -169,15 +169,11 @@ class Asset(BallTest):
         middle, corner = pixels[96:160, 96:160, :3].mean((0, 1)), pixels[250:, 250:, :3].mean((0, 1))
         self.assertGreater(middle[2], middle[0] + 0.05)
         self.assertLess(np.ptp(corner), 0.01)  # the backdrop is gray
-
-    def test_what_is_given_once_stays(self):
-        material = self._material(inputs.glossy_measurement())
-        for values in ({"author": "A. Painter", "description": "Blue"}, {"tags": "later"}):
-            self._said(bpy.ops.velour.mark_asset, material="Paint", **values)
-        self.assertEqual(
-            (material.asset_data.author, material.asset_data.description), ("A. Painter", "Blue")
-        )
-        self.assertIn("later", {tag.name for tag in material.asset_data.tags})
+        # What was given stays when more is given.
+        asset.description = "Blue"
+        self._said(bpy.ops.velour.mark_asset, material="Paint", tags="later")
+        self.assertEqual((asset.author, asset.description), ("A. Painter", "Blue"))
+        self.assertLessEqual({"car", "later"}, {tag.name for tag in asset.tags})
 
     def test_no_model(self):
         material = self._material(inputs.glossy_measurement())

@@ -5,7 +5,7 @@ import unittest.mock
 import bpy
 import numpy as np
 
-from support import inputs, scenes
+from support import blender, inputs, scenes
 from support.blender import BlenderTest
 from support.drawn import drawn
 
@@ -31,6 +31,16 @@ class Outline(BlenderTest):
         bpy.context.scene.camera.rotation_euler = (0, 0, 0)
         scenes.set_world()
 
+    def _outlined(self):
+        """The outline is captured by the first test that asks; the others open what it saved."""
+        path, names = blender.folder() / "outlined.blend", (self.material.name, self.tile.name)
+        if path.exists():
+            bpy.ops.wm.open_mainfile(filepath=str(path))
+            self.material, self.tile = bpy.data.materials[names[0]], bpy.data.objects[names[1]]
+        else:
+            bpy.ops.velour.add_votf(material=names[0], structure=names[1], texels=48)
+            bpy.ops.wm.save_as_mainfile(filepath=str(path), copy=True)
+
     def _info(self):
         image = scenes.velour_node(self.material).image
         with inputs.native().Model.from_bytes(image.packed_file.data, image.name) as model:
@@ -54,7 +64,7 @@ class Outline(BlenderTest):
         self.assertAlmostEqual(self._alpha("after"), self._solid(), delta=0.03)
 
     def test_a_wider_tile_has_a_higher_outline(self):
-        bpy.ops.velour.add_votf(material=self.material.name, structure=self.tile.name, texels=32)
+        self._outlined()
         camera, angle = bpy.context.scene.camera, np.radians(70)
         camera.location = (0, -5 * np.sin(angle), 5 * np.cos(angle))
         camera.rotation_euler = (angle, 0, 0)
@@ -64,7 +74,7 @@ class Outline(BlenderTest):
         self.assertGreater(self._alpha("high"), low + 0.05)
 
     def test_a_soft_edge_fades_and_keeps_what_is_covered(self):
-        bpy.ops.velour.add_votf(material=self.material.name, structure=self.tile.name, texels=48)
+        self._outlined()
         bpy.context.scene.camera.data.ortho_scale = 0.125  # half a tile
         hard = scenes.render(self.folder, "hard")[..., 3]
         scenes.velour_node(self.material).velour.outline_softness = 0.05
@@ -77,7 +87,7 @@ class Outline(BlenderTest):
             return 1 - tile.info()["open_area"]
 
     def test_it_lies_as_its_placement_says(self):
-        bpy.ops.velour.add_votf(material=self.material.name, structure=self.tile.name, texels=32)
+        self._outlined()
         layers = bpy.context.object.data.uv_layers
         bpy.context.scene.camera.data.ortho_scale = 0.25  # a tile
         plain = scenes.render(self.folder, "plain")[..., 3]
@@ -97,7 +107,7 @@ class Outline(BlenderTest):
         self.assertAlmostEqual(self._alpha("projected"), self._solid(), delta=0.03)  # one tile, of a metre
 
     def test_its_height_is_told_in_radii_of_the_surface(self):
-        bpy.ops.velour.add_votf(material=self.material.name, structure=self.tile.name, texels=32)
+        self._outlined()
         bpy.ops.mesh.primitive_cylinder_add(radius=0.5, depth=2, vertices=256, end_fill_type="NOTHING")
         cylinder = bpy.context.object
         bpy.ops.object.shade_smooth()
@@ -143,7 +153,7 @@ class Outline(BlenderTest):
             bpy.ops.velour.save_plot(
                 material=self.material.name, kind="OUTLINE", filepath=str(self.folder / "no.csv")
             )
-        bpy.ops.velour.add_votf(material=self.material.name, structure=self.tile.name, texels=48)
+        self._outlined()
         path = self.folder / "outline.csv"
         bpy.ops.velour.save_plot(material=self.material.name, kind="OUTLINE", filepath=str(path))
         rows = [line.split(",") for line in path.read_text().splitlines()[1:]]
