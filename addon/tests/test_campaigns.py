@@ -69,10 +69,11 @@ def test_chart(campaign, capsys):
     assert "| seconds of `mis` to equal error at most 1/5 of `uniform` |" in page
     rows = [row for row in campaign.rows("chart/chart.csv") if row["seconds"]]
     scenes = {row["scene"] for row in rows}
-    assert len(scenes) == 3
+    assert len(scenes) == 4
     for scene in scenes:
         curves = {row["curve"] for row in rows if row["scene"] == scene}
-        assert curves >= {"uniform", "mis", "mis-dissertation", "mis-ggx", "product"}
+        assert curves >= {"uniform", "mis", "mis-ggx", "product", "auto"}
+        assert ("mis-dissertation" in curves) == ("default model" not in scene)
         assert f"![{scene}]" in page
     assert all(path.stat().st_size > 5000 for path in (campaign.output / "chart").glob("*.png"))
     assert _kept(campaign, "chart", capsys, *small)

@@ -112,6 +112,10 @@ class Run:
         label = f"{model} fit of {measurement.stem}, " + ", ".join(f"{k} {v}" for k, v in options.items())
         return self.model(label, "fit", measurement, options, refusable="bytes" in options)
 
+    def default_fit(self, measurement: Path) -> Path:
+        """The model that users get who choose nothing."""
+        return self.model(f"default fit of {measurement.stem}", "fit", measurement, {"seed": self.seed})[0]
+
     def model(
         self, label: str, verb: str, source: Path, options: dict, name: str = "", **how
     ) -> tuple[Path, dict]:

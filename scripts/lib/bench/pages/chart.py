@@ -1,9 +1,10 @@
-"""Error against seconds for every strategy on seven scenes, beside Mitsuba."""
+"""Error against seconds for every strategy, on scattered models and today's defaults, and beside Mitsuba."""
 
 from __future__ import annotations
 
 import functools
 from collections.abc import Iterator, Mapping
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -24,6 +25,7 @@ SETTINGS = {
     "skipped": ((), ("cosine", "table", "srbf", "ggx", "light", "dissertation")),  # curves
     "spp": ((16, 64, 256, 1024), (8, 32)),
     "level_spp": (800, 16),  # the default strategy's error here is the level of the equal-error table
+    "default_subjects": (3, 1),  # that are also fitted with today's defaults
     "equal_spp": (256, 32),  # one of `spp`, at which targets compare equal samples
     "seeds": (3, 2),  # compared curves; others have one seed
     "reference_spp": (2048, 64),  # per batch
@@ -39,6 +41,9 @@ DEFAULT, DISSERTATION = "mis", "mis-dissertation"
 # Curves that targets compare closely have more seeds. Curves that no target names end a step earlier.
 COMPARED = (DEFAULT, "mis-ggx", "product", "auto")
 LONG = (*COMPARED, "uniform", DISSERTATION)
+# How a scene's model is fitted: as the dissertation's, or by today's defaults, which have these curves.
+SCATTERED, DEFAULTS = "scattered", "default model"
+_OF_DEFAULTS = ("uniform", *COMPARED)
 # Maximum relmse of `product` relative to the default strategy at equal samples.
 _EQUAL_SAMPLES = {
     ("nickel", SUNSET): 0.6,
@@ -54,20 +59,17 @@ _MOST_GGX_ERROR = 0.2  # relative L2 above which SRBF lobes must be clearly fast
 
 
 def measure(run: Run) -> dict:
-    shown_ = subjects(run)
-    scenes = [(s, world, s.scene(world, run.data)) for s in shown_ for world in run.settings.worlds]
-    sky, bunny = run.made("sunny.exr", write_sunny_sky), shown_[0]
-    scenes.append((bunny, SKY, Scene(f"{bunny.name}, {SKY}", bunny.mesh, "y", sky, bunny.model)))
-    for _ in scenes:
-        for name in _curves(run):
+    rows, found = [], []
+    scenes = list(_scenes(run))
+    for _, about in scenes:
+        for name in _curves(run, about["model"]):
             for spp, seeds in _ladder(run, name):
                 run.expect(spp, count=seeds)
         run.expect(run.settings.reference_spp, count=run.settings.reference_batches)
-    rows, found = [], []
-    for subject, world, scene in scenes:
-        own, about = _scene(run, subject, world, scene)
+    for scene, about in scenes:
+        own, measured = _scene(run, scene, about["model"])
         rows += own
-        found.append(about)
+        found.append({"name": scene.name} | about | measured)
     return {
         "conditions": run.conditions(),
         "rows": rows,
@@ -76,8 +78,31 @@ def measure(run: Run) -> dict:
     }
 
 
-def _curves(run: Run) -> list[str]:
-    return [name for name in STRATEGIES if name not in run.settings.skipped]
+def _scenes(run: Run) -> Iterator[tuple[Scene, dict]]:
+    """Each scene, with its material and world, how its model is fitted, and the error of the closest GGX."""
+    shown_ = subjects(run)
+    ggx = {s.material: run.compare_peer(s.measurement, "ggx")["relative_l2"] for s in shown_}
+
+    def about(subject: Subject, world: str, model: str) -> dict:
+        return {"material": subject.material, "world": world, "model": model, "ggx": ggx[subject.material]}
+
+    for subject in shown_:
+        for world in run.settings.worlds:
+            yield subject.scene(world, run.data), about(subject, world, SCATTERED)
+    bunny, sky = shown_[0], run.made("sunny.exr", write_sunny_sky)
+    scene = Scene(f"{bunny.name}, {SKY}", bunny.mesh, "y", sky, bunny.model)
+    yield scene, about(bunny, SKY, SCATTERED)
+    for subject in shown_[: run.settings.default_subjects]:
+        subject = replace(
+            subject, name=f"{subject.name}, {DEFAULTS}", model=run.default_fit(subject.measurement)
+        )
+        for world in run.settings.worlds:
+            yield subject.scene(world, run.data), about(subject, world, DEFAULTS)
+
+
+def _curves(run: Run, model: str) -> list[str]:
+    wanted = STRATEGIES if model == SCATTERED else _OF_DEFAULTS
+    return [name for name in wanted if name not in run.settings.skipped]
 
 
 def _ladder(run: Run, name: str) -> list[tuple[int, int]]:
@@ -88,21 +113,18 @@ def _ladder(run: Run, name: str) -> list[tuple[int, int]]:
     return [(spp, seeds) for spp in sorted(steps) if name in LONG or spp < max(steps)]
 
 
-def _scene(run: Run, subject: Subject, world: str, scene: Scene) -> tuple[list[dict], dict]:
-    """The points of all curves, and what else is known of the scene."""
+def _scene(run: Run, scene: Scene, model: str) -> tuple[list[dict], dict]:
+    """The points of all curves, the noise of the reference, and the bound."""
     own = run.settings
     reference = Reference(run, scene, own.reference_spp, strategy="product").add(own.reference_batches)
     pictures = []
-    for name in _curves(run):
+    for name in _curves(run, model):
         for spp, seeds in _ladder(run, name):
             for seed in range(run.seed, run.seed + seeds):
                 # The dissertation's strategies have their own random numbers.
                 picture = run.render(scene, spp, seed=seed, strategy=name, sequence="sobol")
                 pictures.append((picture, {"scene": scene.name, "curve": name, "spp": spp, "seed": seed}))
-    about = {"name": scene.name, "material": subject.material, "world": world}
-    about |= {"noise": reference.noise()[1], "bound": _bound(run, scene)}
-    about |= {"ggx": run.compare_peer(subject.measurement, "ggx")["relative_l2"]}
-    return points(pictures, reference), about
+    return points(pictures, reference), {"noise": reference.noise()[1], "bound": _bound(run, scene)}
 
 
 def _bound(run: Run, scene: Scene) -> dict | None:
@@ -141,7 +163,7 @@ class Result:
         return self.means(DEFAULT)[self.level_spp][1]
 
     def seconds_to_level(self, name: str) -> Reading | None:
-        return self.curves[name].seconds_at(self.level)
+        return self.curves[name].seconds_at(self.level) if name in self.curves else None
 
     def time_ratio(self, name: str, other: str) -> Reading | None:
         """Ratio of `name` to `other` in seconds to the level."""
@@ -205,7 +227,8 @@ def verdicts(results: list[Result], peers: list[Mapping], spp: int) -> Iterator[
     figures = [result for result in results if result.about["world"] != SKY]
     for result in figures:
         name, material = result.about["name"], result.about["material"]
-        if most := _EQUAL_SAMPLES.get((material, result.about["world"])):
+        most = _EQUAL_SAMPLES.get((material, result.about["world"]))
+        if most and result.about["model"] == SCATTERED:
             gain = result.gain("product", DEFAULT, spp)
             target = f"relmse of `product` / `mis` at {spp} spp at most {most}"
             yield judged(target, name, _gain(gain), gain[0] <= most)
@@ -225,10 +248,11 @@ def verdicts(results: list[Result], peers: list[Mapping], spp: int) -> Iterator[
         found = result.to_best("auto")
         target = f"relmse of `auto` at equal time at most {_WITHIN} of the best strategy's"
         yield judged(target, result.about["name"], shown(found), found and found.value <= _WITHIN)
-    readings = [result.error_ratio("product", DEFAULT) for result in figures]
+    scattered = [result for result in figures if result.about["model"] == SCATTERED]
+    readings = [result.error_ratio("product", DEFAULT) for result in scattered]
     better = sum(reading is not None and reading.value < 1 for reading in readings)
     target = "`product` better than `mis` at equal time on at least four of six"
-    yield judged(target, "all", f"{better} of {len(readings)}", better >= 4)
+    yield judged(target, "all scattered", f"{better} of {len(readings)}", better >= 4)
     for peer in peers:
         target, found = "seconds of Mitsuba to equal error over ours above 1", peer["speed_up"]
         yield judged(target, peer["material"], shown(found), found and found.value > 1)
@@ -240,7 +264,8 @@ def values(found: dict) -> dict:
     results, conditions = results_of(found), found["conditions"]
     absent = found["mitsuba"] if isinstance(found["mitsuba"], str) else ""
     peers = [] if absent else peers_of(found["mitsuba"])
-    equal_spp, most_spp = int(conditions["equal_spp"]), max(results[-1].means("product"))
+    equal_spp, sun = int(conditions["equal_spp"]), next(r for r in results if r.about["world"] == SKY)
+    most_spp = max(sun.means("product"))
     targets = list(verdicts(results, peers, equal_spp))
     bounded = all(result.about["bound"] for result in results)
     curves = [name for name in _SHOWN if name in results[0].points]
@@ -259,7 +284,7 @@ def values(found: dict) -> dict:
         + " | `mis` / `mis-dissertation`"
         + bound_titles * bounded,
         "equal_samples": [_equal_samples(result, every, equal_spp, bounded) for result in results],
-        "sun_gain": _gain(results[-1].gain("product", DEFAULT, most_spp)),
+        "sun_gain": _gain(sun.gain("product", DEFAULT, most_spp)),
         "most_spp": most_spp,
         "absent": [{"why": absent}] if absent else [],
         "present": [] if absent else [_mitsuba(found["mitsuba"], peers, conditions)],
@@ -293,7 +318,8 @@ def _equal_error(result: Result, curves: list[str]) -> dict:
 
 def _equal_samples(result: Result, every: list[int], equal_spp: int, bounded: bool) -> dict:
     cells = [_gain(result.gain("product", DEFAULT, spp)) for spp in every]
-    cells.append(f"{result.gain(DEFAULT, DISSERTATION, equal_spp)[0]:.2f}")
+    has_both = DISSERTATION in result.points
+    cells.append(f"{result.gain(DEFAULT, DISSERTATION, equal_spp)[0]:.2f}" if has_both else "")
     if bounded:
         bound = result.about["bound"]
         cells += [f"{bound[name] / bound['mis']:.3f}" for name in ("exact", "product")]
