@@ -35,3 +35,15 @@ def test_all_who_ask_at_once_find_it_whole(tmp_path, monkeypatch):
         thread.join()
     assert found == ["half and half"] * 4
     assert [path.name for path in (tmp_path / "build/merl").iterdir()] == ["nickel.binary"]
+
+
+def test_meshes_of_one_name_in_two_folders_of_data_stay_apart(tmp_path, monkeypatch):
+    monkeypatch.setattr(project, "_SMOOTH", tmp_path / "build/meshes")
+    made = []
+    for content in ("v 0 0 0\n", "v 1 1 1\n"):
+        source = tmp_path / str(len(made)) / "mesh/bunny.obj"
+        source.parent.mkdir(parents=True)
+        source.write_text(content)
+        made.append((project.mesh(source.parents[1], "bunny"), "s 1\n" + content))
+    for path, content in made:
+        assert (path.name, path.read_text()) == ("bunny.obj", content)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import datetime
+import hashlib
 import json
 import os
 import subprocess
@@ -112,11 +113,13 @@ def materials(data: Path) -> list[tuple[str, Path]]:
 
 def mesh(data: Path, name: str) -> Path:
     """The mesh as one smoothing group: meshes of the data have neither normals nor smoothing groups."""
-    source, path = data / f"mesh/{name}.obj", _SMOOTH / f"{name}.obj"
-    if not path.is_file() or path.stat().st_mtime < source.stat().st_mtime:
-        _SMOOTH.mkdir(parents=True, exist_ok=True)
-        with tempfile.NamedTemporaryFile(dir=_SMOOTH, prefix="partial-", delete=False) as file:
-            file.write(b"s 1\n" + source.read_bytes())
+    content = b"s 1\n" + (data / f"mesh/{name}.obj").read_bytes()
+    # By content: another folder of data may have another mesh of this name.
+    path = _SMOOTH / hashlib.sha256(content).hexdigest()[:16] / f"{name}.obj"
+    if not path.is_file():
+        path.parent.mkdir(parents=True, exist_ok=True)
+        with tempfile.NamedTemporaryFile(dir=path.parent, prefix="partial-", delete=False) as file:
+            file.write(content)
         os.replace(file.name, path)
     return path
 
