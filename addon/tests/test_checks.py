@@ -170,9 +170,10 @@ def test_the_table_of_times_has_groups_their_sum_and_the_slowest():
         },
     }
     conditions = {"date": "d", "commit": "c", "machine": "m", "threads": 2, "seed": 0, "shown": 10}
-    found = {"conditions": conditions, "groups": groups}
+    found = {"conditions": conditions, "groups": groups, "demo": 300.4}
     text = page.text("test_times", conditions | test_times.values(found))
     for line in (
+        "took\n300 s from nothing",
         "| style | 5 | 12 | 20 |",
         "| all | 105 | 312 | 610 |",
         "| native | Lobe.Integrates | 30.0 |",

@@ -18,7 +18,7 @@ from velour.core import files
 _GRAY, _SKY, _PINK, _RED, _ORANGE, _GREEN = "#999999", "#56b4e9", "#cc79a7", "#d55e00", "#e69f00", "#009e73"
 _YELLOW, _BLUE, _BLACK = "#f0e442", "#0072b2", "#000000"
 COLORS = {"uniform": _GRAY, "cosine": _SKY, "table": _PINK, "srbf": _RED, "light": _ORANGE, "mis": _GREEN}
-COLORS |= {"ggx": _YELLOW, "mis-ggx": _BLUE, "product": _BLACK}
+COLORS |= {"ggx": _YELLOW, "mis-ggx": _BLUE, "product": _BLACK, "auto": _RED}
 COLORS |= {"dissertation": "#a6761d", "mis-dissertation": "#882255"}
 COLORS |= {"scattered": _RED, "parametric": _BLUE, "principled": _GREEN}
 COLORS |= {"svd": _GRAY, "svd-view": _SKY, "tucker": _YELLOW, "cta": _ORANGE, "kcta": _GREEN}

@@ -22,6 +22,7 @@ class Progress:
     """
 
     def __init__(self, rate: float | None = None):
+        self.kept = 0  # items that an earlier run has done
         self._count = self._expected = 0
         self._cost_left = self._cost_paid = self._seconds = 0.0
         self._rate = rate
@@ -32,6 +33,7 @@ class Progress:
 
     def skip(self, label: str, cost: float, count: int = 1) -> None:
         """Counts work that an earlier run has done. `cost`: of all `count` items together."""
+        self.kept += count
         self._finish(cost, count)
         self._say(f"{label}: kept")
 
