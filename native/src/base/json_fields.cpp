@@ -84,16 +84,39 @@ double four_digits(double value) {
   return rounded;
 }
 
+namespace {
+
+/// Whether no value of the JSON `text` is nested too deep and no object has too many members. This is not left to a
+/// callback of the parser, with which arrays of arrays take quadratic time, as objects of many members always do.
+bool is_modest(std::span<const uint8_t> text) {
+  constexpr size_t kMaxDepth = 32, kMaxMembers = 1024;
+  std::array<size_t, kMaxDepth + 1> members{};  // [depth]
+  size_t depth = 0;
+  bool is_quoted = false;
+  for (size_t i = 0; i < text.size(); ++i) {
+    const uint8_t c = text[i];
+    if (is_quoted) {
+      if (c == '\\') ++i;
+      is_quoted = c != '"';
+      continue;
+    }
+    is_quoted = c == '"';
+    if (c == '{' || c == '[') {
+      if (++depth > kMaxDepth) return false;
+      members[depth] = 0;
+    }
+    if ((c == '}' || c == ']') && depth > 0) --depth;
+    if (c == ':' && ++members[depth] > kMaxMembers) return false;
+  }
+  return true;
+}
+
+}  // namespace
+
 JsonFields::Json parse_json(std::span<const uint8_t> text) {
   using Json = JsonFields::Json;
-  constexpr int kDeepest = 32;
-  bool too_deep = false;
-  const auto is_shallow = [&](int depth, Json::parse_event_t /*event*/, Json& /*parsed*/) {
-    too_deep = too_deep || depth > kDeepest;
-    return !too_deep;
-  };
-  Json json = Json::parse(text.begin(), text.end(), is_shallow, false);
-  return too_deep ? Json(Json::value_t::discarded) : json;
+  if (!is_modest(text)) return Json(Json::value_t::discarded);
+  return Json::parse(text.begin(), text.end(), nullptr, false);
 }
 
 JsonFields::Json parse_json(const std::string& text) {

@@ -58,8 +58,9 @@ class JsonFields {
   std::string path_;
 };
 
-/// Parses any JSON file. The result is discarded (is_discarded()) if `text` is not JSON or is nested more than 32
-/// levels deep: nlohmann copies and writes nested values recursively, so a file must not choose the depth.
+/// Parses any JSON file. The result is discarded (is_discarded()) if `text` is not JSON, is nested more than 32 levels
+/// deep or has an object of more than 1024 members: nlohmann copies and writes nested values recursively and searches
+/// members linearly, so a file must not choose these numbers.
 JsonFields::Json parse_json(std::span<const uint8_t> text);
 JsonFields::Json parse_json(const std::string& text);
 

@@ -119,7 +119,8 @@ namespace {
 
 using namespace std::string_view_literals;
 
-constexpr int kMaxSegments = 4096;  // protects against hostile files with segments of a few bytes
+// Protect against hostile files with segments and chunks of a few bytes.
+constexpr int kMaxSegments = 4096, kMaxChunks = 1 << 20;
 
 /// Bounds-checked view of a part of a file; reads beyond its end return nothing.
 class Part {
@@ -192,7 +193,7 @@ Orientation of_jpeg(const Part& jpeg) {
 Orientation of_png(const Part& png) {
   constexpr uint64_t kSignature = 8, kBesideData = 12;  // length, type and checksum of a chunk
   uint64_t at = kSignature;
-  for (int i = 0; i < kMaxSegments && at + kBesideData <= png.size(); ++i) {
+  for (int i = 0; i < kMaxChunks && at + kBesideData <= png.size(); ++i) {
     if (png.holds(at + 4, "eXIf"sv)) return of_tiff(png.from(at + 8));
     at += kBesideData + *png.number(at, 4, true);
   }
@@ -202,16 +203,21 @@ Orientation of_png(const Part& png) {
 }  // namespace
 
 int check_png_chunks(const std::string& path) {
-  constexpr uint64_t kSignature = 8, kBesideData = 12, kBits = 24;
+  constexpr uint64_t kSignature = 8, kBesideData = 12, kBits = 24, kColorType = 25;
   constexpr uint64_t kLengthAndType = 8;
-  constexpr int kMaxChunks = 1 << 20;
+  constexpr std::array<int, 7> kSamples{1, 0, 3, 1, 2, 0, 4};  // stored per pixel, by color type; 0: not valid
   const RandomAccessFile file(path);
   const Part png(file);
   uint64_t at = kSignature;
   for (int i = 0; at + kLengthAndType <= png.size() && !png.holds(at + 4, "IEND"sv); ++i) {
     if (i == kMaxChunks)
       throw Error(Status::bad_data, path + ": has more than a million chunks. Save the image again.");
+    if (png.holds(at + 4, "CgBI"sv))
+      throw Error(Status::unsupported, path + ": is an Apple-optimized PNG; save it again as a PNG.");
     const uint64_t length = *png.number(at, 4, true);
+    if (at == kSignature && !png.holds(at + 4, "IHDR"sv)) {
+      throw Error(Status::bad_data, path + ": is damaged: its first chunk is not IHDR. Save the image again.");
+    }
     if (at + kBesideData + length > png.size()) {
       throw Error(Status::bad_data, path + ": is damaged: the chunk at byte " + std::to_string(at) +
                                         " has a length of " + std::to_string(length) +
@@ -219,8 +225,10 @@ int check_png_chunks(const std::string& path) {
     }
     at += kBesideData + length;
   }
-  const auto bits = png.number(kBits, 1, true);
-  return bits && (*bits == 2 || *bits == 4 || *bits == 8 || *bits == 16) ? static_cast<int>(*bits) : 1;
+  const auto bits = png.number(kBits, 1, true), type = png.number(kColorType, 1, true);
+  if (!bits || !type || *type >= kSamples.size()) return 1;
+  const bool is_depth = *bits == 2 || *bits == 4 || *bits == 8 || *bits == 16;
+  return std::max(1, is_depth ? static_cast<int>(*bits) * kSamples[*type] : kSamples[*type]);
 }
 
 Orientation exif_orientation(PictureFormat format, const std::string& path) {

@@ -52,7 +52,8 @@ Picture upright(Picture stored, Orientation orientation);
 Orientation exif_orientation(PictureFormat format, const std::string& path);
 
 /// Throws Error(bad_data) for a PNG file with a chunk that extends beyond the file: libraries allocate the stated size
-/// of a chunk before they read it. Returns the bits per sample; 1 if the header does not state them validly.
+/// of a chunk before they read it. Refuses Apple's own variant as well, which some libraries read with red and blue
+/// swapped. Returns the bits of a pixel as stored, an index if it is of a palette; 1 if the header states none.
 int check_png_chunks(const std::string& path);
 
 // The color space that a file of integers states. Velour treats all of them as sRGB.
@@ -94,6 +95,8 @@ class OpenPicture {
   /// Reads width x height x channels values: rows in stored order, channels interleaved, integers as fractions of the
   /// largest. Throws Error(bad_data) with the library's message, also for a file that ends early.
   virtual void read(std::span<float> values) = 0;
+  /// Maximum number of bytes of pixels per byte of the file.
+  virtual uint64_t expansion() const { return kMaxExpansion; }
 };
 
 /// Error message "FILE: cannot be read as a picture: DETAIL", on one line.

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
+#include <iterator>
 #include <memory>
 #include "base/error.h"
 #include "base/file.h"
@@ -29,16 +30,18 @@ std::string size_text(int width, int height, int channels) {
 
 /// The size limits of OpenEXR and OpenImageIO are global to the process, which may be Blender's, and are left alone, so
 /// sizes are checked here.
-/// `bits`: at least so many are stored per value.
-void check_size(const std::string& path, const PictureHeader& header, int bits) {
+/// `pixel_bits`: at least so many are stored per pixel; 0: one per channel.
+void check_size(const std::string& path, const OpenPicture& input, int pixel_bits) {
+  const PictureHeader& header = input.header();
   const std::string size = size_text(header.width, header.height, header.channels);
   if (header.width <= 0 || header.height <= 0 || header.depth > 1 || header.channels <= 0 ||
       header.channels > kMaxChannels)
     throw Error(Status::bad_data, path + ": the header claims " + size + ", which is not a valid flat image.");
   const uint64_t pixels = static_cast<uint64_t>(header.width) * static_cast<uint64_t>(header.height);
-  const uint64_t bound =
-      std::min(kMaxValues, kMaxExpansion * 8 / static_cast<uint64_t>(bits) * std::filesystem::file_size(path));
-  if (pixels > bound / static_cast<uint64_t>(header.channels))
+  const auto bits = static_cast<uint64_t>(pixel_bits > 0 ? pixel_bits : header.channels);
+  const uint64_t bound = std::min(kMaxValues / static_cast<uint64_t>(header.channels),
+                                  input.expansion() * 8 * std::filesystem::file_size(path) / bits);
+  if (pixels > bound)
     throw Error(Status::bad_data,
                 path + ": the header claims " + size + ", more than the file can contain; the file is damaged.");
 }
@@ -63,8 +66,8 @@ PictureFormat format_of(const std::string& path) {
   return picture_format_of(read_file_head(path, kPictureHeadBytes), path);  // clear error message about a bad path
 }
 
-std::unique_ptr<OpenPicture> checked(const std::string& path, std::unique_ptr<OpenPicture> input, int bits = 1) {
-  check_size(path, input->header(), bits);
+std::unique_ptr<OpenPicture> checked(const std::string& path, std::unique_ptr<OpenPicture> input, int pixel_bits = 0) {
+  check_size(path, *input, pixel_bits);
   check_frame(path, input->header());
   return input;
 }
@@ -77,11 +80,11 @@ std::unique_ptr<OpenPicture> open_picture(const std::string& path, const std::st
                                          "', because only OpenEXR files have layers. Do not choose a layer.");
   }
   // The former run lengths of Radiance have no bound of their own; only a picture of one color exceeds this one.
-  if (format == PictureFormat::radiance) return checked(path, open_radiance(path), 8);
+  if (format == PictureFormat::radiance) return checked(path, open_radiance(path), 24);
   if (format == PictureFormat::tiff) return checked(path, open_tiff(path));
   if (format == PictureFormat::bmp) return checked(path, open_bmp(path));
-  const int bits = format == PictureFormat::png ? check_png_chunks(path) : 1;
-  return checked(path, open_integers(path, format), bits);
+  const int pixel_bits = format == PictureFormat::png ? check_png_chunks(path) : 0;
+  return checked(path, open_integers(path, format), pixel_bits);
 }
 
 std::unique_ptr<OpenPicture> open_channels(const std::string& path) {
@@ -145,13 +148,14 @@ void make_linear(Picture& picture, int alpha_channel, const TransferCurve& curve
       picture.pixels[i] = linear(picture.pixels[i]);
 }
 
-/// Keeps negative values: differences and out-of-gamut colors have them.
-void replace_not_finite(Picture& picture, const std::string& path) {
-  ValueFaults faults = find_value_faults(picture.pixels);
+/// Adds what it replaces to `replaced`. Keeps negative values: differences and out-of-gamut colors have them.
+void replace_not_finite(Picture& picture, ValueFaults& replaced) {
+  const ValueFaults faults = find_value_faults(picture.pixels);
   if (faults.infinite + faults.no_number == 0) return;
   std::ranges::transform(picture.pixels, picture.pixels.begin(), [&](float v) { return faults.finite(v); });
-  faults.negative = 0;
-  picture.warnings = fault_warnings(faults, path);
+  if (faults.infinite > 0) replaced.brightest = faults.brightest;
+  replaced.infinite += faults.infinite;
+  replaced.no_number += faults.no_number;
 }
 
 void scale_colors(Picture& picture, const std::array<float, 3>& scale) {
@@ -246,17 +250,19 @@ Picture read_picture(const std::string& path, const PictureOptions& options) {
   const PictureHeader& header = input->header();
   Picture picture = stored_pixels(*input);
   if (header.integers) make_linear(picture, header.alpha_channel, options.curve);
-  if (!options.keeps_not_finite) replace_not_finite(picture, path);
-  std::vector<Warning> warnings = warnings_of(path, header, options);
-  warnings.insert(warnings.end(), picture.warnings.begin(), picture.warnings.end());
+  ValueFaults replaced;
+  if (!options.keeps_not_finite) replace_not_finite(picture, replaced);
   if (!options.as_stored) {
     if (is_scaled(header)) scale_colors(picture, header.scale);
     if (const auto& primaries = primaries_of(header, options)) apply_primaries(picture, *primaries, path);
+    // An exposure or a matrix may make finite values infinite.
+    if (!options.keeps_not_finite) replace_not_finite(picture, replaced);
     picture = upright(std::move(picture), header.orientation);
   }
   flip_rows(picture);
   if (header.frame && !options.as_stored) picture = placed(picture, *header.frame);
-  picture.warnings = std::move(warnings);
+  picture.warnings = warnings_of(path, header, options);
+  std::ranges::move(fault_warnings(replaced, path), std::back_inserter(picture.warnings));
   return picture;
 }
 

@@ -169,7 +169,8 @@ class ObjReader {
     int64_t index = 0;
     const std::string_view digits = text.starts_with('+') ? text.substr(1) : text;
     const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), index);
-    if (error != std::errc() || end != digits.data() + digits.size() || index == 0 || index > INT32_MAX)
+    if (error != std::errc() || end != digits.data() + digits.size() || index == 0 || index > INT32_MAX ||
+        index < -INT32_MAX)
       refuse("'" + std::string(text.substr(0, 40)) + "' is not a valid " + what + " index.");
     if (index > 0) return static_cast<uint32_t>(index - 1);
     if (-index > static_cast<int64_t>(count))

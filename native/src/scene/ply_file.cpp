@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstring>
 #include <optional>
+#include <set>
 #include <sstream>
 #include <string_view>
 
@@ -184,6 +185,7 @@ Property read_property(std::istringstream& words, const Reader& reader) {
 std::vector<Element> read_header(Reader& reader) {
   if (reader.line() != "ply") reader.refuse("is not a PLY file. If it is an OBJ file, rename it.");
   std::vector<Element> elements;
+  std::set<std::string> names;
   for (;;) {
     std::istringstream words(reader.line());
     std::string word, value;
@@ -201,10 +203,10 @@ std::vector<Element> read_header(Reader& reader) {
       Element element;
       if (!(words >> element.name >> element.count)) reader.refuse("an element in its header has no name or no count.");
       // If a second vertex list lacked normals, its corners would index past the end of the first list's normals.
-      if (std::ranges::find(elements, element.name, &Element::name) != elements.end()) {
+      if (!names.insert(element.name).second) {
         reader.refuse("its header has two elements named '" + element.name + "'; merge them.");
       }
-      elements.push_back(element);
+      elements.push_back(std::move(element));
     } else if (word == "property") {
       if (elements.empty()) reader.refuse("its header has a property before any element.");
       elements.back().properties.push_back(read_property(words, reader));

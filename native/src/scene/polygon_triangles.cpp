@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 #include "scene/mesh_file.h"
 
@@ -23,10 +24,14 @@ std::span<const glm::uvec3> PolygonTriangles::cut(std::span<const Vec3> corners)
     return triangles_;
   }
   project(corners);
-  if (corners.size() == 4)
+  if (corners.size() == 4) {
     cut_quad();
-  else
+  } else if (std::ranges::all_of(points_,
+                                 [](const glm::dvec2& p) { return std::isfinite(p.x) && std::isfinite(p.y); })) {
     clip_ears();
+  } else {  // no corner would be an ear
+    for (uint32_t i = 1; i + 1 < corners.size(); ++i) triangles_.push_back({0, i, i + 1});
+  }
   return triangles_;
 }
 

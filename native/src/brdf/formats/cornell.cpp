@@ -1,6 +1,7 @@
 #include "brdf/formats/cornell.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <string_view>
 
@@ -124,9 +125,11 @@ bool read_directions(std::span<const double> row, size_t index, const std::strin
       fail(path, "theta of sample " + std::to_string(index + 1) + " is " + std::to_string(row[i]) +
                      "; it must be 0 to pi radians.");
   }
-  if (!std::all_of(row.begin(), row.begin() + 4, [](double angle) { return std::isfinite(angle); })) return false;
-  sample.wl = direction(static_cast<float>(row[0]), static_cast<float>(row[1]));
-  sample.wv = direction(static_cast<float>(row[2]), static_cast<float>(row[3]));
+  std::array<float, 4> angles;
+  std::transform(row.begin(), row.begin() + 4, angles.begin(), [](double v) { return static_cast<float>(v); });
+  if (!std::ranges::all_of(angles, [](float angle) { return std::isfinite(angle); })) return false;
+  sample.wl = direction(angles[0], angles[1]);
+  sample.wv = direction(angles[2], angles[3]);
   return true;
 }
 

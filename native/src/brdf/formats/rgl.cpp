@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <ranges>
 
 #include "base/error.h"
 #include "brdf/formats/tensor_file.h"
@@ -20,6 +21,13 @@ float ramp_integral(float a, float b, float t) { return t * (a + 0.5f * t * (b -
 float ramp_inverse(float a, float b, float area) {
   const float root = std::sqrt(std::max(0.0f, a * a + 2.0f * area * (b - a)));
   return a + root > 0.0f ? std::clamp(2.0f * area / (a + root), 0.0f, 1.0f) : 0.0f;
+}
+
+/// The last of nodes 0 to `count` - 2 whose running sum is at most `target`; 0 if there is none. Sums must not
+/// decrease.
+uint32_t last_within(uint32_t count, float target, const auto& running_sum) {
+  const auto nodes = std::views::iota(uint32_t{1}, count - 1);
+  return *std::ranges::partition_point(nodes, [&](uint32_t node) { return running_sum(node) <= target; }) - 1;
 }
 
 }  // namespace
@@ -91,8 +99,7 @@ bool BilinearWarp::invert(const SliceMix& mix, const Vec2& position, Vec2& u) co
 }
 
 Vec2 BilinearWarp::warp(const SliceMix& mix, const Vec2& u) const {
-  uint32_t y = 0;
-  while (y + 2 < height_ && rows_below(mix, y + 1) <= u.y) ++y;
+  const uint32_t y = last_within(height_, u.y, [&](uint32_t row) { return rows_below(mix, row); });
   const float row_low = row_sum(mix, y), row_high = row_sum(mix, y + 1);
   const float t_y = ramp_inverse(row_low, row_high, u.y - rows_below(mix, y));
 
@@ -104,8 +111,7 @@ Vec2 BilinearWarp::warp(const SliceMix& mix, const Vec2& u) const {
     return sum;
   };
   const float target = u.x * along(width_ - 1, &Node::running);
-  uint32_t x = 0;
-  while (x + 2 < width_ && along(x + 1, &Node::running) <= target) ++x;
+  const uint32_t x = last_within(width_, target, [&](uint32_t column) { return along(column, &Node::running); });
   const float t_x =
       ramp_inverse(along(x, &Node::density), along(x + 1, &Node::density), target - along(x, &Node::running));
   return {(static_cast<float>(x) + t_x) / static_cast<float>(width_ - 1),

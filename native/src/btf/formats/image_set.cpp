@@ -60,6 +60,11 @@ OrderedPictures ordered(const ImageSetSource& source) {
     lights.add(p.light, p.light_number);
   }
   const std::vector<PolarAngles> view_list = views.ordered(), light_list = lights.ordered();
+  if (view_list.size() > kMaxDirections || light_list.size() > kMaxDirections) {
+    throw Error(Status::bad_data, source.path + ": has " + std::to_string(view_list.size()) + " views and " +
+                                      std::to_string(light_list.size()) +
+                                      " lights; at most 4096 of each are supported. Remove the images of the others.");
+  }
   std::vector<std::map<uint32_t, std::string>> by_view(view_list.size());
   for (const PairPicture& p : source.pictures) by_view[views.place(p.view)][lights.place(p.light)] = p.path;
   OrderedPictures result;

@@ -269,8 +269,9 @@ class CsvIndex {
              "'; it must contain file, theta_l, phi_l, theta_v and phi_v, separated by commas");
       }
     }
+    std::set<std::string> names;
     for (const std::string& name : columns_) {
-      if (std::ranges::count(columns_, name) > 1)
+      if (!names.insert(name).second)
         fail("the first line names the column '" + name + "' more than once; remove all but one");
     }
     numbered_ = column("view") < columns_.size();

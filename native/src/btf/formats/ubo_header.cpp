@@ -135,6 +135,10 @@ void lay_out(Cursor& in, const Sampling& sampling, UboHeader& header) {
     }
     first_row += of_view.size();
   }
+  if (lights.size() > kMaxDirections) {
+    in.fail("has " + std::to_string(sampling.views.size()) + " views and, in all, " + std::to_string(lights.size()) +
+            " different lights; at most 4096 of each are supported");
+  }
   try {
     header.layout.emplace(sampling.views, lights, lights_of_view);
   } catch (const Error& error) {

@@ -156,8 +156,10 @@ std::string space_of_png(const RandomAccessFile& file) {
   const Bytes gama = find("gAMA"), chrm = find("cHRM");
   const double exponent = number_at(gama, 0) / 1e5;
   if (!gama.empty() && exponent > 0 && !is_near(exponent, 1 / 2.2, 0.02)) {
-    const std::string gamma = std::to_string(std::round(100 / exponent) / 100);
-    return "of gamma " + gamma.substr(0, gamma.find_last_not_of("0.") + 1);
+    std::string gamma = std::to_string(std::round(100 / exponent) / 100);
+    gamma.erase(gamma.find_last_not_of('0') + 1);
+    if (gamma.ends_with('.')) gamma.pop_back();
+    return "of gamma " + gamma;
   }
   constexpr double kSrgb[] = {0.3127, 0.329, 0.64, 0.33, 0.3, 0.6, 0.15, 0.06};
   for (size_t i = 0; !chrm.empty() && i < std::size(kSrgb); ++i) {

@@ -8,6 +8,7 @@
 #include <OpenEXR/ImfOutputFile.h>
 #include <OpenEXR/ImfPartType.h>
 #include <OpenEXR/ImfRgbaFile.h>
+#include <OpenEXR/ImfRgbaYca.h>
 #include <OpenEXR/ImfStandardAttributes.h>
 #include <OpenEXR/ImfStringAttribute.h>
 #include <OpenEXR/ImfVersion.h>
@@ -195,6 +196,8 @@ class ExrPicture : public OpenExr {
     } else if (part() != 0) {
       throw Error(Status::unsupported,
                   path_ + ": luminance and chroma are only supported in the first part. Save the image as RGB.");
+    } else {
+      check_luminance_names();
     }
     header_.channels = static_cast<int>(names_.size());
     if (!colors_.alpha.empty()) header_.alpha_channel = header_.channels - 1;
@@ -253,6 +256,18 @@ class ExrPicture : public OpenExr {
     if (!colors_.alpha.empty()) names_.push_back(colors_.alpha);
   }
 
+  /// OpenEXR's own reconstruction knows its channels by these names only; it makes others black.
+  void check_luminance_names() const {
+    const std::string prefix = colors_.layer.empty() ? "" : colors_.layer + ".";
+    const std::pair<const std::string&, const char*> named[] = {
+        {colors_.names[1], "Y"}, {colors_.names[0], "RY"}, {colors_.names[2], "BY"}, {colors_.alpha, "A"}};
+    for (const auto& [name, expected] : named) {
+      if (name.empty() || name == prefix + expected) continue;
+      throw Error(Status::unsupported, path_ + ": channel " + name + " of a luminance and chroma image must be named " +
+                                           prefix + expected + ". Rename it, or save the image as RGB.");
+    }
+  }
+
   void check_not_a_cube() const {
     if (Imf::hasEnvmap(exr_header()) && Imf::envmap(exr_header()) == Imf::ENVMAP_CUBE) {
       throw Error(
@@ -280,6 +295,9 @@ class ExrPicture : public OpenExr {
   /// Uses OpenEXR's own reconstruction, which works in half floats.
   void read_luminance_chroma(std::span<float> values) {
     with_exr_errors(Status::bad_data, input_error_of(path_), [&] {
+      // Throws if no colors have these chromaticities, for which RgbaInputFile would leak memory.
+      Imf::RgbaYca::computeYw(Imf::hasChromaticities(exr_header()) ? Imf::chromaticities(exr_header())
+                                                                   : Imf::Chromaticities());
       Imf::RgbaInputFile input(path_.c_str(), colors_.layer, 0);
       const Imath::Box2i& window = input.dataWindow();
       const auto width = static_cast<size_t>(header_.width);

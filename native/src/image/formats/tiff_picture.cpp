@@ -75,6 +75,25 @@ struct Storage {
   size_t samples_together() const { return is_planar ? 1 : samples; }
 };
 
+/// Maximum number of bytes of pixels per byte of the file.
+uint64_t expansion_of(uint16_t compression) {
+  switch (compression) {
+    case COMPRESSION_NONE:
+      return 1;
+    case COMPRESSION_CCITTFAX3:
+    case COMPRESSION_CCITTFAX4:
+      return 1 << 16;  // a bit repeats the row above: eight rows of at most 65536 pixels
+    case COMPRESSION_LZW:
+      return 2560;  // a code of 12 bits: a string as long as the table
+    case COMPRESSION_LZMA:
+      return 8192;  // 14 choices of at least 0.022 bits each: 273 bytes
+    case COMPRESSION_ZSTD:
+      return 1 << 15;  // 4 bytes: a block of 128 KB
+    default:
+      return kMaxExpansion;
+  }
+}
+
 template <typename T>
 T tag(TIFF* tiff, uint32_t name, T otherwise) {
   T value = otherwise;
@@ -95,9 +114,8 @@ Storage storage_of(TIFF* tiff) {
                 s.samples > 1 && !s.is_palette;
   s.is_cmyk = s.photometric == PHOTOMETRIC_SEPARATED && s.samples >= 4 &&
               tag<uint16_t>(tiff, TIFFTAG_INKSET, INKSET_CMYK) == INKSET_CMYK;
-  const bool is_jpeg = s.compression == COMPRESSION_JPEG || s.compression == COMPRESSION_OJPEG;
   const uint16_t rare[] = {PHOTOMETRIC_YCBCR, PHOTOMETRIC_CIELAB, PHOTOMETRIC_ICCLAB, PHOTOMETRIC_ITULAB};
-  s.by_rgba = std::ranges::count(rare, s.photometric) > 0 || (is_jpeg && s.samples != 3);
+  s.by_rgba = std::ranges::count(rare, s.photometric) > 0 || s.compression == COMPRESSION_OJPEG;
   s.is_luv = s.photometric == PHOTOMETRIC_LOGL || s.photometric == PHOTOMETRIC_LOGLUV;
   if (s.is_luv && TIFFSetField(tiff, TIFFTAG_SGILOGDATAFMT, SGILOGDATAFMT_FLOAT) == 1) {
     s.bits = 32;
@@ -147,6 +165,10 @@ class Samples {
     if (bits_ == 8) return row[i];
     if (bits_ == 16) return number<uint16_t>(row, i);
     if (bits_ == 32) return number<uint32_t>(row, i);
+    if (bits_ == 24) {  // libtiff swaps files of the other byte order, as it does for 16 and 32 bits
+      const uint8_t* byte = row + 3 * i;
+      return byte[0] | uint64_t{byte[1]} << 8 | uint64_t{byte[2]} << 16;
+    }
     uint64_t code = 0;
     for (size_t bit = i * bits_, end = bit + bits_; bit < end; ++bit) {
       code = code << 1 | (row[bit / 8] >> (7 - bit % 8) & 1u);
@@ -202,6 +224,7 @@ class ByLibtiff : public OpenPicture {
 
   const PictureHeader& header() const override { return header_; }
   std::optional<std::string> text(const std::string&) const override { return std::nullopt; }
+  uint64_t expansion() const override { return std::max(kMaxExpansion, expansion_of(storage_.compression)); }
 
   void read(std::span<float> values) override {
     complaint_.text.clear();
@@ -289,6 +312,19 @@ class ByLibtiff : public OpenPicture {
         warning<WarningCode::channels_ignored>({{"file", path_}, {"layer", ""}, {"channels", ignored}}));
   }
 
+  /// For a strip or a tile. Refuses large ones that the file's bytes cannot fill: pixels may have many more samples
+  /// than are read.
+  std::vector<uint8_t> buffer(uint64_t bytes) const {
+    constexpr uint64_t kSmall = uint64_t{64} << 20;
+    if (bytes > std::max(expansion_of(storage_.compression) * bytes_.size(), kSmall)) {
+      throw Error(Status::bad_data,
+                  input_error(path_, "a strip or tile has " + std::to_string(bytes) +
+                                         " bytes, more than the file can contain. Save it with DEFLATE or in smaller "
+                                         "strips; otherwise the file is damaged."));
+    }
+    return std::vector<uint8_t>(bytes);
+  }
+
   void read_rgba(std::span<float> values) {
     std::vector<uint32_t> pixels(size_t{storage_.width} * storage_.height);
     // If the file's own orientation is requested, libtiff leaves the rows in stored order.
@@ -306,7 +342,7 @@ class ByLibtiff : public OpenPicture {
     const uint32_t rows = std::min(tag<uint32_t>(tiff_.get(), TIFFTAG_ROWSPERSTRIP, storage_.height), storage_.height);
     const auto row_bytes = static_cast<size_t>(TIFFScanlineSize64(tiff_.get()));
     if (rows == 0 || row_bytes == 0) refuse();
-    std::vector<uint8_t> strip(row_bytes * rows);
+    std::vector<uint8_t> strip = buffer(uint64_t{row_bytes} * rows);
     for (size_t plane = 0; plane < storage_.planes(); ++plane) {
       for (uint32_t y = 0; y < storage_.height; y += rows) {
         const uint32_t count = std::min(rows, storage_.height - y);
@@ -325,8 +361,8 @@ class ByLibtiff : public OpenPicture {
     const auto height = tag<uint32_t>(tiff_.get(), TIFFTAG_TILELENGTH, 0);
     const auto row_bytes = static_cast<size_t>(TIFFTileRowSize64(tiff_.get()));
     const uint64_t tile_bytes = TIFFTileSize64(tiff_.get());
-    if (width == 0 || height == 0 || tile_bytes == 0 || tile_bytes > kMaxLibraryBytes) refuse();
-    std::vector<uint8_t> tile(tile_bytes);
+    if (width == 0 || height == 0 || tile_bytes == 0) refuse();
+    std::vector<uint8_t> tile = buffer(tile_bytes);
     for (size_t plane = 0; plane < storage_.planes(); ++plane) {
       for (uint32_t y = 0; y < storage_.height; y += height) {
         for (uint32_t x = 0; x < storage_.width; x += width) {

@@ -3,6 +3,8 @@
 
 #include <jpeglib.h>
 
+#include <jerror.h>
+
 #include <csetjmp>
 
 #include <algorithm>
@@ -26,8 +28,11 @@ struct Decoder {
       std::longjmp(self.failed, 1);
     };
     // libjpeg reports damage as a warning, fills in what is missing and continues.
-    errors.output_message = [](j_common_ptr common) {
-      common->err->format_message(common, static_cast<Decoder*>(common->client_data)->message.data());
+    errors.emit_message = [](j_common_ptr common, int level) {
+      auto& self = *static_cast<Decoder*>(common->client_data);
+      if (level >= 0 || self.is_damaged || !means_lost_data(common->err->msg_code)) return;
+      self.is_damaged = true;
+      common->err->format_message(common, self.message.data());
     };
     info.client_data = this;
   }
@@ -54,17 +59,25 @@ struct Decoder {
       jpeg_read_scanlines(&info, &row, 1);
     }
     jpeg_finish_decompress(&info);
-    return errors.num_warnings == 0;
+    return !is_damaged;
   }
 
   bool is_cmyk() const { return info.jpeg_color_space == JCS_CMYK || info.jpeg_color_space == JCS_YCCK; }
   size_t row_values() const { return size_t{info.output_width} * static_cast<size_t>(info.out_color_components); }
+
+  /// Other warnings are about what decoders do not need, such as parameters that only progressive files have.
+  static bool means_lost_data(int warning) {
+    constexpr int kLost[] = {JWRN_HIT_MARKER,    JWRN_JPEG_EOF,    JWRN_BOGUS_PROGRESSION,
+                             JWRN_HUFF_BAD_CODE, JWRN_MUST_RESYNC, JWRN_ARITH_BAD_CODE};
+    return std::ranges::find(kLost, warning) != std::end(kLost);
+  }
 
   std::span<const uint8_t> bytes;
   jpeg_decompress_struct info{};
   jpeg_error_mgr errors{};
   std::jmp_buf failed{};
   std::array<char, JMSG_LENGTH_MAX> message{};
+  bool is_damaged = false;
 };
 
 /// The stored CMYK values are the fractions of the paper that each ink leaves white.

@@ -97,6 +97,24 @@ void check_checksums(const std::string& path, std::span<const uint8_t> png) {
   });
 }
 
+/// `png` with a palette of 256 colors: stb_image does not initialize those that a file leaves out, which are black, as
+/// in libpng. The checksum of the palette is not valid afterwards.
+std::vector<uint8_t> with_full_palette(std::span<const uint8_t> png) {
+  constexpr size_t kPaletteBytes = 3 * 256;
+  std::vector<uint8_t> bytes(png.begin(), png.end());
+  for_each_chunk(png, [&](std::string_view type, std::span<const uint8_t> chunk) {
+    const size_t length = chunk.size() - 8;
+    if (type != "PLTE") return true;
+    if (length >= kPaletteBytes || length % 3 != 0) return false;
+    const auto colors = chunk.data() + 4 - png.data();
+    bytes[static_cast<size_t>(colors) - 6] = kPaletteBytes >> 8;  // the length, of four bytes
+    bytes[static_cast<size_t>(colors) - 5] = kPaletteBytes & 0xff;
+    bytes.insert(bytes.begin() + colors + static_cast<std::ptrdiff_t>(length), kPaletteBytes - length, uint8_t{0});
+    return false;
+  });
+  return bytes;
+}
+
 class ByStb : public OpenPicture {
  public:
   explicit ByStb(const std::string& path) : path_(path), bytes_(read_file(path)) {
@@ -122,7 +140,8 @@ class ByStb : public OpenPicture {
  private:
   template <typename T, typename Load>
   Values<T> load(Load* function) const {
-    Source source{bytes_};
+    const std::vector<uint8_t> png = with_full_palette(bytes_);
+    Source source{png};
     int width = 0, height = 0, channels = 0;
     Values<T> values(function(&Source::kCallbacks, &source, &width, &height, &channels, header_.channels));
     if (!values) throw Error(Status::bad_data, input_error(path_, stbi_failure_reason()));

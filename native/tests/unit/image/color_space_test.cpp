@@ -156,6 +156,7 @@ TEST_F(PngColorSpace, IsStated) {
   EXPECT_EQ(space_with({{"gAMA", gamma(45455)}}), "");
   EXPECT_EQ(space_with({{"gAMA", gamma(100000)}}), "of gamma 1");
   EXPECT_EQ(space_with({{"gAMA", gamma(55556)}}), "of gamma 1.8");
+  EXPECT_EQ(space_with({{"gAMA", gamma(10000)}}), "of gamma 10");
   EXPECT_EQ(space_with({{"gAMA", gamma(100000)}, {"sRGB", {0}}}), "");
   EXPECT_EQ(space_with({{"cICP", {1, 13, 0, 1}}}), "");
   EXPECT_EQ(space_with({{"cICP", {9, 16, 0, 1}}}), "of code points 9/16");

@@ -143,6 +143,17 @@ TEST_F(ForeignExr, LuminanceAndChroma) {
   for (size_t c = 0; c < 3; ++c) EXPECT_NEAR(picture.pixel(7, 7)[c], expected[c], 0.01f);
 }
 
+/// OpenEXR would read other names as black.
+TEST_F(ForeignExr, LuminanceAndChromaOfOtherNamesAreRefused) {
+  test::record_input("OpenEXR", "y, ry, by", "refused");
+  write(path_, {{"by", 0.0f}, {"ry", 0.0f}, {"y", 2.0f}});
+  EXPECT_EQ(refusal(path_), path_ +
+                                ": channel y of a luminance and chroma image must be named Y. Rename it, or save the "
+                                "image as RGB.");
+  write(path_, {{"BY", 0.0f}, {"RY", 0.0f}, {"Y", 2.0f}, {"a", 1.0f}});
+  EXPECT_NE(refusal(path_).find("channel a of a luminance and chroma image must be named A"), std::string::npos);
+}
+
 TEST_F(ForeignExr, PixelsLieInTheDisplayWindow) {
   test::record_input("OpenEXR", "data window inside of, or beyond, the display window",
                      "placed in the display window, black outside");
@@ -302,6 +313,24 @@ TEST_F(ForeignExr, PrimariesThatAreNoneAreRefused) {
     write(path_, channels, header);
     EXPECT_NE(refusal(path_).find("chromaticities"), std::string::npos);
   }
+}
+
+/// OpenEXR's reader of luminance and chroma needs a white, and would leak memory without one.
+TEST_F(ForeignExr, LuminanceWithoutWhiteIsRefused) {
+  Imf::Header header(kWidth, kHeight);
+  Imf::addChromaticities(header, Imf::Chromaticities());
+  {
+    Imf::RgbaOutputFile file(path_.c_str(), header, Imf::WRITE_YC);
+    const std::vector<Imf::Rgba> pixels(kWidth * kHeight, Imf::Rgba(0.5f, 0.5f, 0.5f));
+    file.setFrameBuffer(pixels.data(), 1, kWidth);
+    file.writePixels(kHeight);
+  }
+  std::vector<uint8_t> bytes = read_file(path_);
+  constexpr std::string_view kName("chromaticities\0chromaticities\0", 30);
+  const auto name = std::ranges::search(bytes, kName).end();
+  std::fill_n(name + 4 + 7 * sizeof(float), sizeof(float), uint8_t{0});  // size, then four pairs: white's y
+  write_file(path_, bytes);
+  EXPECT_NE(refusal(path_).find("white.y"), std::string::npos) << refusal(path_);
 }
 
 TEST_F(ForeignExr, InfiniteSunsStayBright) {

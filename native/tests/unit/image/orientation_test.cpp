@@ -68,6 +68,20 @@ TEST(PictureOrientation, FollowsExif) {
   }
 }
 
+TEST(PictureOrientation, IsFoundBehindManyChunks) {
+  const auto folder = test::scratch_folder();
+  const std::string path = folder / "a.png";
+  write_picture(path, {2, 1, 1, {0.0f, 1.0f}});
+  const Bytes png = test::with_chunk(read_file(path), "eXIf", exif_of(3, true));
+  constexpr std::ptrdiff_t kHeaderEnd = 8 + 12 + 13;
+  Bytes chunk = test::with_chunk(png, "teSt", {}), result(png.begin(), png.begin() + kHeaderEnd);
+  for (int i = 0; i < 5000; ++i)
+    result.insert(result.end(), chunk.begin() + kHeaderEnd, chunk.begin() + kHeaderEnd + 12);
+  result.insert(result.end(), png.begin() + kHeaderEnd, png.end());
+  write_file(path, result);
+  EXPECT_EQ(exif_orientation(PictureFormat::png, path), Orientation::turned_180);
+}
+
 TEST(PictureOrientation, OfJpeg) {
   test::record_input("JPEG", "EXIF orientation", "turned upright");
   const auto folder = test::scratch_folder();

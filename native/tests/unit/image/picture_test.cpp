@@ -9,6 +9,8 @@
 
 #include "base/error.h"
 #include "base/file.h"
+#include "support/inputs.h"
+#include "support/picture_bytes.h"
 #include "support/test_data.h"
 
 namespace velour::picture_test {
@@ -239,6 +241,21 @@ TEST(Picture, APngThatPromisesMoreThanItHasIsRefused) {
       const std::string said = refusal([&] { read_picture(path); });
       EXPECT_NE(said.find("the chunk at byte 33 has a length of 1862270976 bytes"), std::string::npos) << said;
     }
+  }
+}
+
+TEST(Picture, ApplePngsAreRefusedByName) {
+  test::record_input("PNG", "Apple-optimized (CgBI)", "refused by name");
+  const std::string path = test::scratch_folder() / "a.png";
+  write_picture(path, gradient(4, 3, 3));
+  const test::Bytes png = read_file(path), behind = test::with_chunk(png, "CgBI", {0x50, 0, 0x20, 2});
+  test::Bytes before(png.begin(), png.begin() + 8);
+  constexpr std::ptrdiff_t kHeaderEnd = 8 + 12 + 13, kChunkEnd = kHeaderEnd + 12 + 4;
+  before.insert(before.end(), behind.begin() + kHeaderEnd, behind.begin() + kChunkEnd);
+  before.insert(before.end(), png.begin() + 8, png.end());
+  for (const test::Bytes& bytes : {before, behind}) {
+    write_file(path, bytes);
+    EXPECT_EQ(refusal([&] { read_picture(path); }), path + ": is an Apple-optimized PNG; save it again as a PNG.");
   }
 }
 

@@ -7,10 +7,13 @@
 
 #include <png.h>
 #include <tiffio.h>
+#include <zlib.h>
 #include <csetjmp>
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <filesystem>
 #include <functional>
 
 #include "base/error.h"
@@ -20,6 +23,7 @@
 #include "image/openimageio/openimageio_module.h"
 #include "math/sphere/random.h"
 #include "support/inputs.h"
+#include "support/picture_bytes.h"
 #include "support/test_data.h"
 
 namespace velour::portable_picture_test {
@@ -533,6 +537,201 @@ TEST(PortablePicture, DamagedTiffIsRefused) {
   for (size_t size = 0; size < whole.size(); size += std::max<size_t>(1, whole.size() / 50)) {
     write_file(path, std::span(whole).first(size));
     EXPECT_NE(by_portable(path).error, "") << size;
+  }
+}
+
+/// A strip of 120 MB in a file of a few bytes. libtiff would name the strip that it failed to read into it.
+TEST(PortablePicture, TiffOfMoreSamplesThanItsBytesHoldAllocatesNothing) {
+  const std::string path = test::scratch_folder() / "samples.tif";
+  TIFF* tiff = TIFFOpen(path.c_str(), "w");
+  set_tags(tiff, {"samples", PHOTOMETRIC_RGB, 60000, 8});
+  TIFFSetField(tiff, TIFFTAG_IMAGEWIDTH, 2000);
+  TIFFSetField(tiff, TIFFTAG_IMAGELENGTH, 1);
+  uint8_t pixels[] = {1, 2, 3};
+  TIFFWriteRawStrip(tiff, 0, pixels, sizeof pixels);
+  TIFFClose(tiff);
+  EXPECT_NE(by_portable(path).error.find("the file is damaged"), std::string::npos) << by_portable(path).error;
+}
+
+std::string header_refusal(const std::string& path) {
+  try {
+    read_picture_header(path);
+  } catch (const Error& error) {
+    return error.what();
+  }
+  return "";
+}
+
+/// 4096 x 4096 pixels of one color take 2 to 17 KB: DEFLATE packs what a pixel stores, not the colors that it stands
+/// for.
+TEST(PortablePicture, PngsOfOneIndexedColorAreRead) {
+  constexpr int kSide = 4096;
+  struct Case {
+    int color_type, bits, colors_with_alpha;
+  };
+  for (const Case& c :
+       {Case{PNG_COLOR_TYPE_PALETTE, 8, 0}, Case{PNG_COLOR_TYPE_PALETTE, 1, 2}, Case{PNG_COLOR_TYPE_PALETTE, 4, 2},
+        Case{PNG_COLOR_TYPE_GRAY, 2, 0}, Case{PNG_COLOR_TYPE_GRAY, 8, 1}, Case{PNG_COLOR_TYPE_RGB, 8, 0}}) {
+    SCOPED_TRACE(std::to_string(c.color_type) + ", " + std::to_string(c.bits) + " bits");
+    const size_t pixel_bits = static_cast<size_t>(c.bits) * (c.color_type == PNG_COLOR_TYPE_RGB ? 3 : 1);
+    const size_t row = kSide * pixel_bits / 8 + 1;
+    std::vector<uint8_t> pixels(row * kSide), data(compressBound(row * kSide));
+    auto size = static_cast<uLongf>(data.size());
+    ASSERT_EQ(compress2(data.data(), &size, pixels.data(), pixels.size(), 9), Z_OK);
+    data.resize(size);
+    test::Bytes png;
+    test::append(png, "\x89PNG\r\n\x1a\n");
+    const auto add = [&](std::string_view type, const test::Bytes& content) {
+      test::Bytes chunk(type.begin(), type.end());
+      chunk.insert(chunk.end(), content.begin(), content.end());
+      test::append(png, content.size(), 4);
+      png.insert(png.end(), chunk.begin(), chunk.end());
+      test::append(png, test::crc_of(chunk), 4);
+    };
+    test::Bytes header;
+    test::append(header, kSide, 4);
+    test::append(header, kSide, 4);
+    for (const int field : {c.bits, c.color_type, 0, 0, 0}) header.push_back(static_cast<uint8_t>(field));
+    add("IHDR", header);
+    const bool is_palette = c.color_type == PNG_COLOR_TYPE_PALETTE;
+    if (is_palette) add("PLTE", {10, 20, 30, 40, 50, 60});
+    if (c.colors_with_alpha > 0) add("tRNS", test::Bytes(2, 0));
+    add("IDAT", data);
+    add("IEND", {});
+    const std::string path = test::scratch_folder() / "one_color.png";
+    write_file(path, png);
+    EXPECT_EQ(header_refusal(path), "");
+    png[18] = 0x80;  // 32768 x 4096
+    write_file(path, png);
+    EXPECT_NE(header_refusal(path).find("more than the file can contain"), std::string::npos);
+  }
+}
+
+/// A page of `side` x `side` white pixels; only its first rows are stored if `is_cut`.
+std::string blank_page(uint32_t side, uint16_t compression, bool is_cut = false) {
+  const std::string path = test::scratch_folder() / "page.tif";
+  const uint32_t stored = is_cut ? 10 : side;
+  TIFF* tiff = TIFFOpen(path.c_str(), "w");
+  set_tags(tiff, TiffCase("page", PHOTOMETRIC_MINISWHITE, 1, 1).packed(compression));
+  TIFFSetField(tiff, TIFFTAG_IMAGEWIDTH, side);
+  TIFFSetField(tiff, TIFFTAG_IMAGELENGTH, side);
+  TIFFSetField(tiff, TIFFTAG_ROWSPERSTRIP, side);
+  std::vector<uint8_t> rows(size_t{(side + 7) / 8} * stored);
+  TIFFWriteEncodedStrip(tiff, 0, rows.data(), static_cast<tmsize_t>(rows.size()));
+  TIFFClose(tiff);
+  return path;
+}
+
+TEST(PortablePicture, BlankPagesOfFaxesAreRead) {
+  test::record_input("TIFF", "CCITT Group 3 and 4, also blank pages", "read");
+  EXPECT_EQ(header_refusal(blank_page(10000, COMPRESSION_CCITTFAX4)), "");
+  const Decoded small = by_portable(blank_page(300, COMPRESSION_CCITTFAX4));
+  EXPECT_EQ(small.values, std::vector<float>(300 * 300, 1.0f)) << small.error;
+  EXPECT_NE(header_refusal(blank_page(30000, COMPRESSION_CCITTFAX4, true)).find("more than the file can contain"),
+            std::string::npos);
+}
+
+/// One strip of 67 MB in a few KB, which DEFLATE could not reach.
+TEST(PortablePicture, LargeStripsOfOneValueAreRead) {
+  constexpr uint32_t kSide = 2900;
+  for (const uint16_t compression : {uint16_t{COMPRESSION_ZSTD}, uint16_t{COMPRESSION_LZW}}) {
+    const std::string path = test::scratch_folder() / "strip.tif";
+    TIFF* tiff = TIFFOpen(path.c_str(), "w");
+    set_tags(tiff, TiffCase("strip", PHOTOMETRIC_MINISBLACK, 1, 64).numbers(SAMPLEFORMAT_IEEEFP).packed(compression));
+    TIFFSetField(tiff, TIFFTAG_IMAGEWIDTH, kSide);
+    TIFFSetField(tiff, TIFFTAG_IMAGELENGTH, kSide);
+    TIFFSetField(tiff, TIFFTAG_ROWSPERSTRIP, kSide);
+    std::vector<double> pixels(size_t{kSide} * kSide);
+    TIFFWriteEncodedStrip(tiff, 0, pixels.data(), static_cast<tmsize_t>(pixels.size() * sizeof(double)));
+    TIFFClose(tiff);
+    EXPECT_LT(std::filesystem::file_size(path), (uint64_t{64} << 20) / kMaxExpansion) << compression;
+    EXPECT_EQ(by_portable(path).error, "") << compression;
+  }
+}
+
+TEST(PortablePicture, SamplesOf24BitsAreReadInBothByteOrders) {
+  test::record_input("TIFF", "24 bits, both byte orders", "read");
+  const TiffCase kGray24("gray 24", PHOTOMETRIC_MINISBLACK, 1, 24);
+  const std::vector<uint8_t> bytes = random_bytes(size_t{kWidth} * kStripRows * 3, 1);  // the first strip
+  for (const TiffCase& c : {kGray24, kGray24.big_endian()}) {
+    const Decoded decoded = by_portable(written(c));
+    ASSERT_EQ(decoded.error, "");
+    for (size_t i = 0; i < bytes.size() / 3; ++i) {
+      const int code = bytes[3 * i] | bytes[3 * i + 1] << 8 | bytes[3 * i + 2] << 16;
+      ASSERT_NEAR(decoded.values[i], code / 16777215.0, 1e-6) << i << (c.is_big ? " big" : " little");
+    }
+  }
+}
+
+/// The same pixels by JPEG and by LZW.
+TEST(PortablePicture, JpegInTiffKeepsItsAlpha) {
+  test::record_input("TIFF", "JPEG with alpha", "read");
+  struct Case {
+    uint16_t photometric, samples;
+    std::vector<uint8_t> pixel;
+  };
+  for (const Case& c : {Case{PHOTOMETRIC_MINISBLACK, 1, {200}}, Case{PHOTOMETRIC_MINISBLACK, 2, {200, 60}},
+                        Case{PHOTOMETRIC_RGB, 3, {200, 150, 90}}, Case{PHOTOMETRIC_RGB, 4, {200, 150, 90, 60}}}) {
+    const auto read_by = [&](uint16_t compression) {
+      const uint16_t straight[] = {EXTRASAMPLE_UNASSALPHA};
+      const auto tags = [&](TIFF* tiff) {
+        TIFFSetField(tiff, TIFFTAG_COMPRESSION, compression);
+        if (compression == COMPRESSION_JPEG) TIFFSetField(tiff, TIFFTAG_JPEGQUALITY, 100);
+        if (c.samples % 2 == 0) TIFFSetField(tiff, TIFFTAG_EXTRASAMPLES, 1, straight);
+      };
+      return first_pixel(written_tiff("alpha", c.photometric, c.samples, tags, c.pixel));
+    };
+    const std::vector<float> expected = read_by(COMPRESSION_LZW), found = read_by(COMPRESSION_JPEG);
+    ASSERT_EQ(found.size(), expected.size());
+    for (size_t i = 0; i < found.size(); ++i) EXPECT_NEAR(found[i], expected[i], 1.5 / 255) << c.samples << ' ' << i;
+  }
+}
+
+TEST(PortablePicture, ColorsBeyondThePaletteAreBlack) {
+  test::record_input("PNG", "indices beyond the palette", "black");
+  constexpr std::ptrdiff_t kPaletteChunk = 12 + 3 * 256;
+  for (const bool has_transparency : {false, true}) {
+    const std::string path = written({PNG_COLOR_TYPE_PALETTE, 8, false, has_transparency}, 998);
+    std::vector<uint8_t> png = read_file(path);
+    const auto palette = std::ranges::search(png, std::string_view("PLTE")).begin() - 4;
+    png.erase(palette, palette + kPaletteChunk);
+    write_file(path, test::with_chunk(png, "PLTE", {10, 20, 30, 40, 50, 60}));
+    expect_same(path, "png", has_transparency ? "with tRNS" : "opaque");
+    const Decoded decoded = by_portable(path);
+    const auto channels = static_cast<size_t>(decoded.channels);
+    size_t black = 0;
+    for (size_t i = 0; i < decoded.values.size(); i += channels) {
+      black += std::all_of(&decoded.values[i], &decoded.values[i] + 3, [](float v) { return v == 0; });
+    }
+    EXPECT_GT(black, decoded.values.size() / channels * 9 / 10);
+  }
+}
+
+TEST(PortablePicture, JpegIsRefusedForLostDataOnly) {
+  test::record_input("JPEG", "odd parameters of a scan, bytes between segments", "read");
+  test::record_input("JPEG", "an early end", "refused");
+  const std::string path = written(JpegCase{"warned", 3, JCS_RGB, JCS_YCbCr, 2});
+  const std::vector<uint8_t> plain = read_file(path);
+  const std::vector<float> expected = by_portable(path).values;
+  const auto place_of = [](const std::vector<uint8_t>& bytes, uint8_t marker) {
+    const uint8_t text[] = {0xff, marker};
+    return std::ranges::search(bytes, text).begin() - bytes.begin();
+  };
+  std::vector<uint8_t> odd_scan = plain, spaced = plain;
+  constexpr std::ptrdiff_t kLastCoefficient = 2 + 2 + 1 + 2 * 3 + 1;  // marker, length, count, three components, first
+  uint8_t& last = odd_scan[static_cast<size_t>(place_of(plain, 0xda) + kLastCoefficient)];
+  ASSERT_EQ(last, 63);
+  last = 0;
+  spaced.insert(spaced.begin() + place_of(plain, 0xdb), 3, uint8_t{0});
+  for (const std::vector<uint8_t>& bytes : {odd_scan, spaced}) {
+    write_file(path, bytes);
+    expect_same(path, "jpeg", &bytes == &odd_scan ? "odd scan" : "bytes between segments");
+    EXPECT_EQ(by_portable(path).values, expected);
+  }
+  for (const std::vector<uint8_t>& bytes : {plain, odd_scan, spaced}) {
+    write_file(path, std::span(bytes).first(bytes.size() - 100));
+    EXPECT_NE(by_portable(path).error, "");
+    EXPECT_NE(by_openimageio(path, "jpeg").error, "");
   }
 }
 

@@ -9,6 +9,7 @@
 #include "image/picture.h"
 #include "support/inputs.h"
 #include "support/test_data.h"
+#include "support/warnings.h"
 
 namespace velour::radiance_picture_test {
 namespace {
@@ -124,6 +125,20 @@ TEST_F(RadiancePicture, ExposuresAreUndone) {
   const Picture picture = read_picture(path_);
   EXPECT_FLOAT_EQ(picture.pixel(0, 8)[1], value_of(3) / 2);
   EXPECT_FLOAT_EQ(picture.pixel(0, 8)[2], value_of(200) / 4);
+}
+
+/// 2^126 / 1e-10 is beyond a float; the other pixel is then the brightest.
+TEST_F(RadiancePicture, ExposuresThatMakeColorsInfiniteAreCounted) {
+  const std::string head = "#?RADIANCE\nEXPOSURE=1e-10\nFORMAT=32-bit_rle_rgbe\n\n-Y 1 +X 2\n";
+  std::vector<uint8_t> bytes(head.begin(), head.end());
+  bytes.insert(bytes.end(), {128, 128, 128, 255, 128, 128, 128, 129});
+  write_file(path_, bytes);
+  const Picture picture = read_picture(path_);
+  for (int x = 0; x < 2; ++x) EXPECT_FLOAT_EQ(picture.pixel(x, 0)[0], 1e10f) << x;
+  const Warning* found = test::find_warning(picture.warnings, WarningCode::infinite_values);
+  ASSERT_NE(found, nullptr);
+  EXPECT_EQ(test::value_of<uint64_t>(*found, "values"), 3u);
+  EXPECT_TRUE(std::isinf(read_picture(path_, {.keeps_not_finite = true}).pixel(0, 0)[0]));
 }
 
 TEST_F(RadiancePicture, NeedsNoFormatAndAnyLengthOfComments) {

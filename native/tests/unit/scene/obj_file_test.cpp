@@ -45,6 +45,12 @@ TEST(ObjFile, RefusesWhatLies) {
   EXPECT_THROW(read_obj("/no/such/file.obj"), Error);
 }
 
+/// Its negative is no number of 64 bits; as a place of 32 bits it would be the vertex after the face.
+TEST(ObjFile, RefusesTheMostNegativeIndex) {
+  EXPECT_THROW(read_obj(write_text("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 -9223372036854775808\nv 1 1 0\n")), Error);
+  EXPECT_EQ(read_obj(write_text("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 -1\nv 1 1 0\n")).triangles().size(), 1u);
+}
+
 TEST(ObjFile, ReadsTheBunny) {
   VELOUR_NEED_DATA(path, "mesh/bunny.obj");
   const Mesh mesh = read_obj(path.string());

@@ -9,6 +9,7 @@
 #include <fstream>
 
 #include "base/error.h"
+#include "base/process.h"
 #include "support/inputs.h"
 #include "support/test_data.h"
 
@@ -167,6 +168,24 @@ TEST(PlyFile, RefusesNumbersBeyondDouble) {
 }
 
 // The corners of a second list would look for normals and uvs that only the first has.
+TEST(PlyFile, TheLastLineNeedsNoEnd) {
+  test::record_input("PLY", "ascii without a line end at the end", "read");
+  const std::string bytes =
+      "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
+      "element face 1\nproperty list uchar int vertex_indices\nend_header\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2";
+  EXPECT_EQ(read_ply(written(bytes)).triangles().size(), 1u);
+  EXPECT_THROW(read_ply(written(bytes.substr(0, bytes.size() - 1))), Error);
+}
+
+TEST(PlyFile, ManyElementsTakeNoTime) {
+  std::string bytes = "ply\nformat ascii 1.0\n";
+  for (int i = 0; i < 100000; ++i) bytes.append("element e").append(std::to_string(i)).append(" 0\n");
+  bytes.append(kAscii, kAscii.find("element vertex"));
+  const double start = thread_seconds();
+  EXPECT_EQ(read_ply(written(bytes)).triangles().size(), 2u);
+  EXPECT_LT(thread_seconds() - start, 1.0);
+}
+
 TEST(PlyFile, RefusesTwoElementsOfOneName) {
   const std::string more_vertices = "element vertex 1\nproperty float x\nproperty float y\nproperty float z\n";
   std::string vertices = with("element face", more_vertices + "element face");

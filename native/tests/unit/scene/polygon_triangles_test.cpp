@@ -7,6 +7,7 @@
 #include <random>
 #include <set>
 
+#include "base/process.h"
 #include "scene/mesh_file.h"
 #include "support/inputs.h"
 
@@ -157,6 +158,22 @@ TEST(PolygonTriangles, CoverSquaresThatTouch) {
     const double scale = glm::length(glm::cross(Vec3d(0.6, 0.4, 0.3), Vec3d(-0.8, 0.3, 0)));
     ASSERT_NEAR(sum_of_areas(turned, cutter.cut(turned)), scale * static_cast<double>(group.squares.size()), 1e-4)
         << run;
+  }
+}
+
+/// The largest face takes cubic time if every corner has to be tried for every triangle.
+TEST(PolygonTriangles, CornersThatAreNotFiniteTakeNoTime) {
+  PolygonTriangles cutter;
+  for (const size_t bad : {size_t{0}, size_t{1234}}) {
+    std::vector<Vec3> polygon(PolygonTriangles::kMaxCorners);
+    for (size_t i = 0; i < polygon.size(); ++i) {
+      const double angle = 2 * kPiD * static_cast<double>(i) / static_cast<double>(polygon.size());
+      polygon[i] = Vec3(Vec3d(std::cos(angle), std::sin(angle), 0));
+    }
+    polygon[bad] = Vec3(NAN);
+    const double start = thread_seconds();
+    EXPECT_EQ(cutter.cut(polygon).size(), polygon.size() - 2);
+    EXPECT_LT(thread_seconds() - start, 1.0) << bad;
   }
 }
 

@@ -233,5 +233,12 @@ TEST_F(Krylon, CoversWhatWasMeasured) {
   EXPECT_FALSE(measurement->covers_view(radians_from(85.0f)));
 }
 
+/// 1e39 is finite, but not as a float.
+TEST(Cornell, AnglesBeyondAFloatAreNotFinite) {
+  const auto measurement = read(small_cornell(300, glossy_gray) + "0.5 1e39 0.5 0 1 1 1\n");
+  EXPECT_EQ(measurement->counts().not_finite, 1u);
+  EXPECT_EQ(measurement->counts().valid, 300u);
+}
+
 }  // namespace
 }  // namespace velour::cornell_test

@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "base/process.h"
 #include "measurement_support.h"
 #include "support/test_data.h"
 
@@ -37,6 +38,22 @@ TEST(BilinearWarp, InverseOfItself) {
     EXPECT_NEAR(back.x, u.x, 2e-5f);
     EXPECT_NEAR(back.y, u.y, 2e-5f);
   }
+}
+
+/// As many as a file may have: a search from the first would take minutes for all of them.
+TEST(BilinearWarp, ManyNodesTakeNoTime) {
+  constexpr uint32_t kNodes = 1 << 18;
+  const std::vector<float> values(2 * kNodes, 1.0f);
+  SliceMix mix;
+  mix.add(0, 1.0f);
+  const BilinearWarp wide(values, kNodes, 2), high(values, 2, kNodes);
+  const double start = thread_seconds();
+  for (int i = 0; i < 20000; ++i) {
+    const float u = (static_cast<float>(i) + 0.5f) / 20000;
+    ASSERT_NEAR(wide.warp(mix, {u, 0.5f}).x, u, 1e-4f);
+    ASSERT_NEAR(high.warp(mix, {0.5f, u}).y, u, 1e-4f);
+  }
+  EXPECT_LT(thread_seconds() - start, 1.0);
 }
 
 TEST(BilinearWarp, MarginalsOfAProductDensity) {

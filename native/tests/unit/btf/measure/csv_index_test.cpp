@@ -4,6 +4,7 @@
 
 #include <fstream>
 
+#include "base/process.h"
 #include "btf_support.h"
 #include "support/inputs.h"
 #include "support/test_data.h"
@@ -115,6 +116,14 @@ TEST_F(CsvIndexTest, WhatIsWrongIsOneSentenceWithItsLine) {
   EXPECT_EQ(refusal("file,theta_l,phi_l,theta_v,phi_v,view,light\na.png,1,0,2,0,1.5,0\n"),
             ": line 2: 'view' is '1.5'; it must be an integer.");
   EXPECT_EQ(refusal("view," + head), ": line 1: the columns 'view' and 'light' must be given together.");
+}
+
+TEST_F(CsvIndexTest, ManyColumnsTakeNoTime) {
+  std::string text = "file,theta_l,phi_l,theta_v,phi_v";
+  for (int i = 0; i < 100000; ++i) text.append(",c").append(std::to_string(i));
+  const double start = thread_seconds();
+  EXPECT_EQ(refusal(text + "\n"), ": line 1: the file lists no images.");
+  EXPECT_LT(thread_seconds() - start, 1.0);
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <fstream>
 
+#include "btf/formats/image_set.h"
 #include "btf_support.h"
 #include "support/inputs.h"
 #include "support/test_data.h"
@@ -109,6 +110,22 @@ TEST(ImageNames, WhatIsWrongIsOneSentence) {
   EXPECT_NE(
       message_of([&] { find_named_pictures(folder); }).find("preview.jpg: the file name does not contain the angles"),
       std::string::npos);
+}
+
+/// The images need not exist: a fit would otherwise run before its model turned out to be too large.
+TEST(ImageNames, TooManyDirectionsAreRefusedAtOnce) {
+  const auto refusal = [](int views, int lights) {
+    ImageSetSource source{"set.csv", "csv", {}};
+    for (int i = 0; i < std::max(views, lights); ++i) {
+      const PolarAngles view{0.01 * std::min(i, views - 1), 0}, light{0.01 * std::min(i, lights - 1), 0};
+      source.pictures.push_back({"none.png", view, light, static_cast<uint64_t>(i), static_cast<uint64_t>(i)});
+    }
+    return test::message_of([&] { load_image_set(source, {}); });
+  };
+  const std::string end = " lights; at most 4096 of each are supported. Remove the images of the others.";
+  EXPECT_EQ(refusal(4097, 1), "set.csv: has 4097 views and 1" + end);
+  EXPECT_EQ(refusal(2, 4098), "set.csv: has 2 views and 4098" + end);
+  EXPECT_EQ(refusal(4096, 4096).find("at most 4096"), std::string::npos);
 }
 
 }  // namespace

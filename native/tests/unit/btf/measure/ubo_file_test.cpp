@@ -170,5 +170,18 @@ TEST_F(UboFileTest, WhatIsWrongIsOneSentence) {
   EXPECT_EQ(refusal(e.bytes()), ": has factors of 4 and 12 rows, but there are 4 view-light pairs and 16 texels.");
 }
 
+/// A fit would otherwise run before its model turned out to be too large.
+TEST_F(UboFileTest, MoreLightsThanAModelHasAreRefused) {
+  UboExample e = example(14);
+  e.components = {1, 1, 1};
+  for (size_t v = 0; v < 2; ++v) {
+    e.lights[v].clear();
+    for (int i = 0; i < 3000; ++i) e.lights[v].push_back({0.02 * i, v == 0 ? 0.0 : 90.0});
+  }
+  e.randomize(14);
+  EXPECT_EQ(refusal(e.bytes()),
+            ": has 2 views and, in all, 6000 different lights; at most 4096 of each are supported.");
+}
+
 }  // namespace
 }  // namespace velour::ubo_file_test
