@@ -1270,7 +1270,7 @@ VLR_API vlr_status vlr_cryptomatte_id(const char* name, uint32_t* hash, float* i
 typedef struct vlr_render_options {
   uint32_t struct_size;
   uint32_t width, height;
-  uint32_t spp;     /* light directions per pixel */
+  uint32_t spp;     /* light directions per pixel; camera rays (spp / split): at most 2^24 */
   uint32_t split;   /* number of them that share one camera ray; 1..48; 8 */
   uint32_t bounces; /* indirect bounces; 0: direct illumination only */
   int32_t strategy; /* VLR_STRATEGY_* */

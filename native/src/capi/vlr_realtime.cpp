@@ -113,7 +113,8 @@ vlr_status vlr_principled_rows_create_job(const vlr_principled_desc* desc, uint3
   return guard([&] {
     require(desc, "desc");
     require(out, "out");
-    *out = rows_job([parameters = parameters_of(*desc), count = static_cast<int>(threads)](Progress& progress) {
+    const auto given = read_options(desc, vlr_principled_desc_init, "vlr_principled_desc");
+    *out = rows_job([parameters = parameters_of(given), count = static_cast<int>(threads)](Progress& progress) {
       return lobe_rows(parameters, count, progress);
     });
   });

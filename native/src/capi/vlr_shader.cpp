@@ -209,20 +209,24 @@ std::shared_ptr<const Material> principled(PrincipledParameters parameters, Prin
   const PrincipledParameters anywhere = textures.anywhere(parameters);
   const bool is_layered = parameters.formula == PrincipledFormula::layered;
   if (anywhere.coat > 0) {
-    parts.reflecting.push_back({with_normals(part(PrincipledPart::coat), normals.coat, ReliefPart::lobe)});
+    parts.reflecting.push_back({.material = with_normals(part(PrincipledPart::coat), normals.coat, ReliefPart::lobe),
+                                .lifts_views = !normals.coat});
   }
   parameters.coat = 0;
   textures.remove(&PrincipledParameters::coat);
+  const auto add_below = [&](PrincipledPart which, ReliefPart relief, std::optional<PrincipledTop> dimmed_by) {
+    parts.reflecting.push_back({.material = with_normals(part(which), normals.own, relief),
+                                .top = std::move(dimmed_by),
+                                .lifts_views = !normals.own});
+  };
   if (is_layered && anywhere.sheen > 0) {
-    parts.reflecting.push_back({with_normals(part(PrincipledPart::sheen), normals.own, ReliefPart::lobe)});
+    add_below(PrincipledPart::sheen, ReliefPart::lobe, std::nullopt);
     parameters.sheen = 0;
     textures.remove(&PrincipledParameters::sheen);
   }
-  if (anywhere.transmission > 0) {
-    parts.reflecting.push_back({with_normals(part(PrincipledPart::glass), normals.own, ReliefPart::lobe), {}, top});
-  }
-  parts.reflecting.push_back({with_normals(part(PrincipledPart::base), normals.own, ReliefPart::base), {}, top});
-  parts.reflecting.push_back({with_normals(part(PrincipledPart::specular), normals.own, ReliefPart::lobe), {}, top});
+  if (anywhere.transmission > 0) add_below(PrincipledPart::glass, ReliefPart::lobe, top);
+  add_below(PrincipledPart::base, ReliefPart::base, top);
+  add_below(PrincipledPart::specular, ReliefPart::lobe, top);
   return make_layered_material(std::move(parts));
 }
 
@@ -282,7 +286,8 @@ LayerWeight& add_layer(vlr_shader& shader, const vlr_layer_desc& layer) {
     return to.back().weight;
   }
   const Normals given{normal_of(layer).converted(), coat_normal_of(layer).converted()};
-  layers.reflecting.push_back({reflecting(layer, desc, textures, given)});
+  layers.reflecting.push_back(
+      {.material = reflecting(layer, desc, textures, given), .lifts_views = !given.own && !given.coat});
   shader.turned.push_back(nullptr);
   if (const auto correction = correction_of(desc); correction && !given.own) {
     const NormalMap corrected = surface_normal(*correction);
@@ -333,10 +338,10 @@ LayerWeight& add_measured(vlr_shader& shader, const vlr_measured_layer_desc& lay
   shader.brushed |= measured.brushed;
   shader.relief |= normal_of(layer).is_map();
   shader.sets.add(normal_of(layer).slot());
-  auto material =
-      with_normals(make_placed(std::move(measured.material), map), normal_of(layer).converted(), ReliefPart::lobe);
+  const std::optional<NormalMap> normal = normal_of(layer).converted();
+  auto material = with_normals(make_placed(std::move(measured.material), map), normal, ReliefPart::lobe);
   shader.turned.push_back(nullptr);
-  shader.layers.reflecting.push_back({.material = std::move(material), .rec709_colors = true});
+  shader.layers.reflecting.push_back({.material = std::move(material), .rec709_colors = true, .lifts_views = !normal});
   return shader.layers.reflecting.back().weight;
 }
 
@@ -438,7 +443,9 @@ vlr_status vlr_scene_add_shader_material(vlr_scene* scene, const vlr_shader* sha
     if (std::ranges::any_of(shader->turned, [](const auto& each) { return each != nullptr; })) {
       ShaderLayers other = layers;
       for (size_t i = 0; i < other.reflecting.size(); ++i) {
-        if (shader->turned[i]) other.reflecting[i].material = shader->turned[i];
+        if (!shader->turned[i]) continue;
+        other.reflecting[i].material = shader->turned[i];
+        other.reflecting[i].lifts_views = false;
       }
       turned = make_layered_material(std::move(other));
     }

@@ -63,6 +63,7 @@ void coordinates_simd(const EquirectangularImage& image, const Mat3& world_to_im
   const auto half = hn::Set(d, 0.5f), one = hn::Set(d, 1.0f);
   const auto width = hn::Set(d, static_cast<float>(image.width()));
   const auto height = hn::Set(d, static_cast<float>(image.height()));
+  const auto last_column = hn::Set(di, image.width() - 1), last_row = hn::Set(di, image.height());
   for (int at = 0; at < world.count; at += static_cast<int>(hn::Lanes(d))) {
     const auto wx = hn::Load(d, world.x + at), wy = hn::Load(d, world.y + at), wz = hn::Load(d, world.z + at);
     const auto x = row_dot(d, m, 0, wx, wy, wz), y = row_dot(d, m, 1, wx, wy, wz), z = row_dot(d, m, 2, wx, wy, wz);
@@ -76,8 +77,9 @@ void coordinates_simd(const EquirectangularImage& image, const Mat3& world_to_im
     const auto cx = hn::Floor(px);
     const auto cell = hn::IfThenElse(hn::Ge(cx, width), hn::Sub(cx, width), cx);
     const auto cy = hn::Min(hn::Floor(hn::Add(py, half)), height);
-    hn::Store(hn::ConvertTo(di, cell), di, out.x + at);
-    hn::Store(hn::ConvertTo(di, cy), di, out.y + at);
+    // Directions that are not numbers have no cell, but must not be looked up outside the image.
+    hn::Store(hn::Clamp(hn::ConvertTo(di, cell), hn::Zero(di), last_column), di, out.x + at);
+    hn::Store(hn::Clamp(hn::ConvertTo(di, cy), hn::Zero(di), last_row), di, out.y + at);
     hn::Store(hn::Sub(px, cx), d, out.fx + at);
     hn::Store(hn::Sub(hn::Add(py, half), cy), d, out.fy + at);
     const auto from_pole = hn::Min(py, hn::Sub(height, py));

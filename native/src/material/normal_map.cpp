@@ -70,8 +70,7 @@ class NormalMappedMaterial final : public Material {
   const PreparedBrdf* prepare(const Vec3& wv, const SurfaceSite& site, const PrepareOptions& options,
                               ScratchArena& arena) const override {
     const Frame seen = frame_of(part_ != ReliefPart::diffuse, wv, site);
-    Vec3 local = seen.to_local(wv);
-    if (local.z < kMinViewCosine) local = glm::normalize(Vec3(local.x, local.y, kMinViewCosine));
+    const Vec3 local = above_horizon(seen.to_local(wv));
     const PreparedBrdf* const material = material_->prepare(local, site, options, arena);
     return arena.make<PreparedNormalMapped>(material, part_ == ReliefPart::base ? frame_of(false, wv, site) : seen,
                                             part_ == ReliefPart::lobe ? ReliefCorrection::none : map_.correction,

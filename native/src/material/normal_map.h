@@ -43,6 +43,11 @@ inline NormalMap surface_normal(ReliefCorrection correction) { return {.correcti
 /// Least cosine of a view with a mapped normal.
 inline constexpr float kMinViewCosine = 1e-3f;
 
+/// `wv`, moved up to kMinViewCosine if it is lower.
+inline Vec3 above_horizon(const Vec3& wv) {
+  return wv.z < kMinViewCosine ? glm::normalize(Vec3(wv.x, wv.y, kMinViewCosine)) : wv;
+}
+
 /// Applies a normal map to `material`, uniform or textured: f about the mapped normal times the ratio of the light's
 /// cosines with the mapped and the surface normal, 0 where the light is behind either. A view behind the mapped normal
 /// is moved to its horizon. Unless the correction excludes it, the normal is turned towards the geometric normal until

@@ -213,7 +213,8 @@ class LayeredMaterial final : public Material {
       if (from.top) layer.weight *= from.top->through(wv, site, options.filter);
       layer.to_working = from.rec709_colors && layers_.rec709_to_working ? &*layers_.rec709_to_working : nullptr;
       layer.above_only = transmits_ && !from.material->transmits();
-      layer.point = layer.weight != Rgb(0.0f) ? from.material->prepare(wv, site, options, arena) : nullptr;
+      const Vec3 view = from.lifts_views ? above_horizon(wv) : wv;
+      layer.point = layer.weight != Rgb(0.0f) ? from.material->prepare(view, site, options, arena) : nullptr;
       layer.share = luminance(layer.weight) * albedo_[i];
       if (options.of_path && layer.point != nullptr) {
         layer.point->delta_lobes(layer.deltas);
@@ -292,7 +293,7 @@ class LayeredMaterial final : public Material {
 
 Rgb PrincipledTop::through(const Vec3& wv, const SurfaceSite& site, const LobeFilter& filter) const {
   const auto cosine = [&](const std::optional<NormalMap>& map) {
-    return map ? std::max(glm::dot(wv, map->normal(true, wv, site)), kMinViewCosine) : wv.z;
+    return map ? std::max(glm::dot(wv, map->normal(true, wv, site)), kMinViewCosine) : above_horizon(wv).z;
   };
   const PrincipledParameters at = textures.varies() ? textures.at(site, parameters) : parameters;
   return through_top(at, cosine(normal), cosine(coat_normal), filter);

@@ -58,6 +58,9 @@ struct ReflectingLayer {
   LayerWeight weight{};
   std::optional<PrincipledTop> top{};  // dims the layer
   bool rec709_colors = false;  // f is Rec. 709 (measured) and is converted to the working space; false: already there
+  /// The material has no normals of its own, so that views below the horizon, which SurfaceMaterial::turned passes on,
+  /// are moved up to it (above_horizon()).
+  bool lifts_views = false;
 };
 
 /// A transparent layer with a color, or an emissive layer with a radiance.

@@ -31,6 +31,17 @@ void require_limit(const char* name, float value) {
                                             "; it must be a finite number of at least 0 (0: off).");
 }
 
+/// Sums of pixels are floats: beyond 2^24 camera rays of the same radiance they no longer grow.
+void require_summable(const RenderOptions& options) {
+  constexpr int kMaxCameraRays = 1 << 24;
+  const int rays = options.spp / options.split + (options.spp % options.split != 0 ? 1 : 0);
+  if (rays <= kMaxCameraRays) return;
+  throw Error(Status::invalid_argument, "Render options spp and split ask for " + std::to_string(rays) +
+                                            " camera rays per pixel; a film can add up at most " +
+                                            std::to_string(kMaxCameraRays) +
+                                            ". Render several images with different seeds and average them.");
+}
+
 }  // namespace
 
 void require_range(const char* options, const char* name, int value, int low, int high) {
@@ -80,6 +91,7 @@ RenderOptions checked(RenderOptions options) {
     throw Error(Status::invalid_argument,
                 "Render option time_limit is " + std::to_string(options.time_limit) + "; it must be at least 0.");
   options.split = std::min(options.split, options.spp);
+  require_summable(options);
   const bool is_part = options.samples.begin > 0 || options.samples.end > 0 || options.crop != PixelRect{};
   if (is_part && options.noise > 0.0) {
     throw Error(Status::invalid_argument,

@@ -25,7 +25,7 @@ struct RenderReport {
   double samples_per_second = 0;    // pixels x spp / seconds
   std::optional<double> ray_share;  // seconds of the recorded rays alone / seconds of their tiles
   std::vector<RenderStage> stages;  // in order; `seconds` are those of "pilot" and "render"
-  uint64_t nan_samples = 0;         // light directions dropped because they were not finite
+  uint64_t nan_samples = 0;         // light directions and emissions dropped because they were not finite
   uint64_t spp = 0;                 // maximum number of light directions of a pixel
   uint64_t passes = 0;
   double noise = 0;        // estimated RMS error of a pixel's luminance / mean luminance; 0 while unknown

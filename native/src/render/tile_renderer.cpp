@@ -33,7 +33,10 @@ SurfaceSample SurfaceRecorder::record(const PassOptions& options, const Vertex& 
   if (options.has(pass::kMist)) s.clear = (1.0f - options.mist.at(distance(vertex.position))) * s.seen;
   if (options.has(pass::kAlbedo | pass::kDenoisingAlbedo | pass::kHalves))
     s.albedo = throughput * albedo_.estimate(vertex, numbers);
-  if (options.has(pass::kDenoisingAlbedo | pass::kHalves)) s.shine = throughput * vertex.emission();
+  if (options.has(pass::kDenoisingAlbedo | pass::kHalves)) {
+    const Rgb emitted = throughput * vertex.emission();
+    if (std::isfinite(emitted.r + emitted.g + emitted.b)) s.shine = emitted;
+  }
   if (options.has(pass::kVector)) find_motion(hit, s);
   return s;
 }
@@ -234,8 +237,9 @@ void TileRenderer::follow(size_t index, int depth) {
     }
   }
   const LightPathOptions& light_paths = context_.options.light_paths;
-  if (depth == 0 || !flight_.light.counts_emissive(hit)) {
-    sample.radiance += clamped(path.throughput * vertex.emission(), light_paths.limit(depth - 1));
+  if (depth == 0 || !flight_.light.counts_emissive(hit, path.counted_all_emissive)) {
+    const Rgb emitted = path.throughput * vertex.emission();
+    if (flight_.light.keeps(emitted)) sample.radiance += clamped(emitted, light_paths.limit(depth - 1));
   }
   const Mixing* const mixing = depth == 0 && !context_.mixing.empty() ? &context_.mixing[material] : nullptr;
   const int most = depth == 0 ? context_.options.split : std::min(context_.options.split, kIndirectDirections);

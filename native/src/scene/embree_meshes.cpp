@@ -139,6 +139,10 @@ void EmbreeMeshes::set(uint32_t number, std::span<const Vec3> positions, std::sp
 }
 
 void EmbreeMeshes::build(std::span<const uint32_t> numbers, int threads, const Progress* progress) {
+  std::unique_lock lock(building_, std::defer_lock);
+  while (!lock.try_lock_for(kTurn)) {
+    if (progress != nullptr) progress->check();
+  }
   if (build_) {
     build_->keep(unbuilt_scenes(numbers));
     await(progress);
@@ -159,8 +163,13 @@ std::vector<RTCScene> EmbreeMeshes::unbuilt_scenes(std::span<const uint32_t> num
   return scenes;
 }
 
+RTCGeometry EmbreeMeshes::geometry_of(uint32_t number) const {
+  const std::lock_guard lock(handles_);
+  return api_.rtcGetGeometry(scenes_.at(number), 0);
+}
+
 RTCGeometry EmbreeMeshes::placed(uint32_t number, const Affine& place) const {
-  RTCGeometry mesh = api_.rtcGetGeometry(scenes_.at(number), 0);
+  RTCGeometry mesh = geometry_of(number);
   RTCGeometry geometry = api_.rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_TRIANGLE);
   const auto [vertices, triangles, steps] = sizes_[number];
   if (triangles == 0) return geometry;
@@ -230,7 +239,8 @@ RTCScene EmbreeMeshes::scene_of(std::span<const Vec3> positions, std::span<const
 }
 
 /// Replaces a scene whose build has failed: Embree does not specify what building it again does.
-void EmbreeMeshes::renew(RTCScene& scene) const {
+void EmbreeMeshes::renew(RTCScene& scene) {
+  const std::lock_guard lock(handles_);
   RTCScene fresh = new_scene();
   api_.rtcAttachGeometryByID(fresh, api_.rtcGetGeometry(scene, 0), 0);
   api_.rtcReleaseScene(std::exchange(scene, fresh));

@@ -5,6 +5,7 @@
 #include <atomic>
 #include <cstdint>
 #include <memory>
+#include <mutex>
 #include <span>
 #include <vector>
 
@@ -15,6 +16,7 @@
 
 namespace velour {
 
+/// Any number of threads may call build() and the const functions at once; add() and set() need the meshes alone.
 class EmbreeMeshes {
  public:
   EmbreeMeshes();
@@ -40,7 +42,11 @@ class EmbreeMeshes {
   RTCDevice device() const { return device_; }
   /// Whether Embree was built with ray masks, an option that is off by default in Embree 3.
   bool has_masks() const { return has_masks_; }
-  RTCScene scene(uint32_t number) const { return scenes_.at(number); }
+  /// Built, and therefore not replaced by a build that fails.
+  RTCScene scene(uint32_t number) const {
+    const std::lock_guard lock(handles_);
+    return scenes_.at(number);
+  }
   size_t size() const { return scenes_.size(); }
   int64_t bytes() const { return bytes_.load(std::memory_order_relaxed); }
 
@@ -53,9 +59,11 @@ class EmbreeMeshes {
   RTCScene scene_of(std::span<const Vec3> positions, std::span<const glm::uvec3> triangles, unsigned steps) const;
   /// The unbuilt scenes among `numbers`.
   std::vector<RTCScene> unbuilt_scenes(std::span<const uint32_t> numbers) const;
+  /// Stays the same while the mesh does, whatever its scene.
+  RTCGeometry geometry_of(uint32_t number) const;
   /// Waits until build_ has ended and takes the meshes that it built from unbuilt_.
   void await(const Progress* progress);
-  void renew(RTCScene& scene) const;
+  void renew(RTCScene& scene);
 
   const EmbreeApi& api_ = embree();
   std::atomic<int64_t> bytes_{0};
@@ -65,6 +73,8 @@ class EmbreeMeshes {
   std::vector<Size> sizes_;
   std::vector<uint32_t> unbuilt_;  // numbers of the meshes without a hierarchy
   std::unique_ptr<Build> build_;   // running, or not yet waited for
+  std::timed_mutex building_;      // held by build(), for unbuilt_ and build_
+  mutable std::mutex handles_;     // held while a handle of scenes_ is read or replaced
 };
 
 }  // namespace velour

@@ -26,6 +26,35 @@ void require_finite(const Affine& map, const char* what) {
   if (!map.finite()) refuse(std::string("The transform of ") + what + " contains a number that is not finite.");
 }
 
+/// Throws Error(invalid_argument) unless all rays of the camera are finite.
+void require_rays(const Camera& camera) {
+  const auto require_place = [](const Affine& place) {
+    require_finite(place, "the camera");
+    if (!place.invertible()) refuse("The transform of the camera is singular; its axes must span space.");
+  };
+  const auto require_window = [](std::span<const float, 4> edges) {
+    const bool is_finite = std::ranges::all_of(edges, [](float x) { return std::isfinite(x); });
+    if (is_finite && edges[0] != edges[1] && edges[2] != edges[3]) return;
+    refuse(
+        "The window of the camera is empty or contains a number that is not finite; left and right, bottom and top "
+        "must be different numbers.");
+  };
+  require_place(camera.camera_to_world);
+  for (const Affine& step : camera.steps) require_place(step);
+  require_window(camera.window);
+  for (const auto& edges : camera.windows) require_window(edges);
+  const Aperture& a = camera.aperture;
+  if (!(a.radius >= 0.0f) || !std::isfinite(a.radius + a.rotation)) {
+    refuse("The aperture of the camera must have a finite radius of at least 0 and a finite rotation.");
+  }
+  if (!(a.focus > 0.0f) || !(a.ratio > 0.0f) || !std::isfinite(a.focus) || !std::isfinite(a.ratio)) {
+    refuse("The focus distance and the aperture ratio of the camera must be finite and positive.");
+  }
+  if (!std::isfinite(camera.clip_start) || std::isnan(camera.clip_end)) {
+    refuse("The clip distances of the camera must be numbers; only the end may be infinite.");
+  }
+}
+
 void require_steps(std::span<const Affine> steps, const char* what) {
   if (steps.empty() || steps.size() > kMaxMotionSteps) {
     refuse(std::string("The motion of ") + what + " has " + std::to_string(steps.size()) +
@@ -225,8 +254,7 @@ void Scene::look_up_background(const DirectionBatch& world, RgbBatch& radiance) 
 }
 
 void Scene::set_camera(const Camera& camera) {
-  require_finite(camera.camera_to_world, "the camera");
-  for (const Affine& step : camera.steps) require_finite(step, "the camera");
+  require_rays(camera);
   if (camera.shutter.has_value() != camera_.shutter.has_value()) {  // which decides whether rays meet what moves
     geometry_changed();
     for (uint32_t m = 0; m < meshes_.size(); ++m) {

@@ -148,6 +148,15 @@ TEST(Misuse, StructsOfOtherSizesAreRefused) {
   light.struct_size = 0;
   EXPECT_STATUS(VLR_VERSION_MISMATCH, vlr_scene_add_light(scene, &light));
   vlr_scene_free(scene);
+  vlr_principled_desc surface;
+  vlr_principled_desc_init(&surface);
+  for (const uint32_t size : {uint32_t{0}, surface.struct_size + 4}) {
+    surface.struct_size = size;
+    vlr_job* job = nullptr;
+    EXPECT_STATUS(VLR_VERSION_MISMATCH, vlr_principled_rows_create_job(&surface, 1, &job));
+    vlr_job_free(job);
+    vlr_principled_desc_init(&surface);
+  }
 }
 
 TEST(Misuse, MaterialsThatAreNotThereCannotBeReplaced) {

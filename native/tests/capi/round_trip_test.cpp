@@ -1,6 +1,7 @@
 // Measurement -> fit -> model file -> model, through the C API alone.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <cstring>
@@ -98,6 +99,79 @@ TEST_P(RoundTrip, AModelTakesThePlaceOfAMaterialInACommittedScene) {
   EXPECT_GT(measured[2], measured[0] + 0.2) << "0.5 pi (0.3 - 0.1) of the base";
   EXPECT_EQ(VLR_INVALID_ARGUMENT, vlr_scene_set_model_material(scene.scene, 1, model_, 0));
   EXPECT_NE(std::strstr(vlr_last_error(), "Material 1 does not exist"), nullptr) << vlr_last_error();
+}
+
+/// Leaves in `scene` only a square whose interpolated normals lean so far away that the camera is below their horizon,
+/// of a measured layer and a black one. Returns its material.
+uint32_t keep_leaning_square(const TestScene& scene, const vlr_measurement* measurement, int32_t surface_correction) {
+  vlr_shader* shader = nullptr;
+  EXPECT_EQ(VLR_OK, vlr_shader_create(&shader));
+  vlr_principled_desc black;
+  vlr_principled_desc_init(&black);
+  std::fill_n(black.base_color, 3, 0.0f);
+  black.specular = 0;
+  black.surface_correction = surface_correction;
+  vlr_layer_desc layer;
+  vlr_layer_desc_init(&layer);
+  layer.surface = &black;
+  EXPECT_EQ(VLR_OK, vlr_shader_add_layer(shader, &layer)) << vlr_last_error();
+  vlr_measured_layer_desc measured;
+  vlr_measured_layer_desc_init(&measured);
+  measured.measurement = measurement;
+  EXPECT_EQ(VLR_OK, vlr_shader_add_measured_layer(shader, &measured)) << vlr_last_error();
+  EXPECT_EQ(VLR_OK, vlr_scene_clear_instances(scene.scene)) << vlr_last_error();
+  const float positions[12] = {-1, -1, 0, 1, -1, 0, 1, 1, 0, -1, 1, 0};
+  const float normals[12] = {0.9f, 0, 0.4f, 0.9f, 0, 0.4f, 0.9f, 0, 0.4f, 0.9f, 0, 0.4f};
+  const uint32_t triangles[6] = {0, 1, 2, 0, 2, 3};
+  vlr_mesh_desc desc{};
+  desc.struct_size = sizeof desc;
+  desc.vertex_count = 4;
+  desc.triangle_count = 2;
+  desc.positions = positions;
+  desc.triangles = triangles;
+  desc.vertex_normals = normals;
+  uint32_t mesh = 0, dropped = 0, material = 0;
+  EXPECT_EQ(VLR_OK, vlr_scene_add_mesh(scene.scene, &desc, &mesh, &dropped)) << vlr_last_error();
+  EXPECT_EQ(VLR_OK, vlr_scene_add_shader_material(scene.scene, shader, &material)) << vlr_last_error();
+  vlr_shader_free(shader);
+  const float identity[12] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};
+  EXPECT_EQ(VLR_OK, vlr_scene_add_instance(scene.scene, mesh, identity, &material, 1)) << vlr_last_error();
+  const float eye[3] = {-4, 0, 3}, target[3] = {0, 0, 0};
+  EXPECT_EQ(VLR_OK, vlr_scene_look_at(scene.scene, eye, target, 0.1f, 1.0f));
+  EXPECT_EQ(VLR_OK, vlr_scene_commit(scene.scene)) << vlr_last_error();
+  return material;
+}
+
+/// Observes a material and reads the observation from its file.
+vlr_status status_of_read_observation(const TestScene& scene, uint32_t material) {
+  vlr_observe_options options;
+  vlr_observe_options_init(&options);
+  options.width = options.height = 8;
+  vlr_job* job = nullptr;
+  vlr_observation *observed = nullptr, *read = nullptr;
+  EXPECT_EQ(VLR_OK, vlr_observe_create_job(scene.scene, material, &options, &job)) << vlr_last_error();
+  EXPECT_EQ(VLR_OK, vlr_job_start(job));
+  EXPECT_EQ(VLR_OK, vlr_job_wait(job, -1, nullptr, nullptr, nullptr)) << vlr_last_error();
+  EXPECT_EQ(VLR_OK, vlr_job_result_observation(job, &observed)) << vlr_last_error();
+  const std::string path = scratch_folder() / "observation.json";
+  EXPECT_EQ(VLR_OK, vlr_observation_save(observed, path.c_str())) << vlr_last_error();
+  const vlr_status status = vlr_observation_load(path.c_str(), &read);
+  vlr_observation_free(read);
+  vlr_observation_free(observed);
+  vlr_job_free(job);
+  return status;
+}
+
+TEST(MeasuredLayer, IsSeenAboveItsHorizonWhereTheNormalsOfAnotherLayerAreCorrected) {
+  vlr_measurement* measurement = nullptr;
+  ASSERT_EQ(VLR_OK, vlr_measurement_load(write_merl_file(scratch_folder()).c_str(), &measurement)) << vlr_last_error();
+  const TestScene bent, corrected;
+  keep_leaning_square(bent, measurement, VLR_RELIEF_AS_IT_IS);
+  const uint32_t material = keep_leaning_square(corrected, measurement, VLR_RELIEF_TURNED);
+  vlr_measurement_free(measurement);
+  const auto expected = mean_of(bent), found = mean_of(corrected);
+  for (size_t c = 0; c < 3; ++c) EXPECT_NEAR(found[c] / expected[c], 1, 0.6) << c;
+  EXPECT_EQ(VLR_OK, status_of_read_observation(corrected, material)) << vlr_last_error();
 }
 
 /// As an add-on does whose user cancels: `handle` is freed while `add` reads it.

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 
 #include "denoise/denoiser.h"
 
@@ -44,6 +45,7 @@ std::vector<PixelRect> blocks_of(const PixelRect& picture) {
 
 double BlockError::relative_to(double picture_luminance) const {
   const double scale_sq = luminance * luminance + 0.01 * picture_luminance * picture_luminance;
+  if (!std::isfinite(variance) || !std::isfinite(scale_sq)) return std::numeric_limits<double>::infinity();
   return scale_sq > 0.0 ? std::sqrt(variance / scale_sq) : 0.0;
 }
 

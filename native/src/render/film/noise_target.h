@@ -20,7 +20,7 @@ struct BlockError {
   bool known = false;  // every pixel has at least one camera ray in each half
 
   /// sqrt(variance) relative to sqrt(L_b^2 + 0.01 L^2), with L_b the mean luminance of the block and L that of the
-  /// image: as in relmse, a dark block needs no more accuracy than the eye sees.
+  /// image: as in relmse, a dark block needs no more accuracy than the eye sees. Infinite if one of them is not finite.
   double relative_to(double picture_luminance) const;
 };
 BlockError block_error(std::span<const PixelSum> pixels);

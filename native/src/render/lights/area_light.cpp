@@ -122,6 +122,7 @@ void Lamp::set_area(const Light& light) {
   const float quarter = glm::length(normal);
   area_ = quarter * (type_ == Light::Type::disk ? kPi : 4.0f);
   if (!(area_ > 0.0f)) return;  // without extent it emits nothing: power stays 0
+  inverse_halves_ = 1.0f / Vec2(glm::length(half_x_), glm::length(half_y_));
   axis_ = normal / quarter;
   if (glm::dot(axis_, map.column(2)) > 0.0f) axis_ = -axis_;
   constexpr float kStraight = 1e-6f;  // 1 - cosine
@@ -224,7 +225,7 @@ Vec3 Lamp::sample(const Vec3& position, const Vec2& u) const {
 
 Lamp::Sight Lamp::hit(const Vec3& position, const Vec3& direction) const {
   if (is_round()) {
-    Vec3 axis;
+    Vec3 axis(0.0f);
     const float extent = cone(position, axis);
     const float drop = drop_between(direction, axis);
     if (!(extent > 0.0f) || drop > reach(extent)) return {};
@@ -268,8 +269,16 @@ Vec3 Lamp::sample_area(const Vec3& position, const Vec2& u) const {
   if (!(part.area > 0.0f)) return Vec3(0.0f);
   const Vec2 place = disk && cot_spread_ == 0.0f ? sample_uniform_disk(u) : glm::mix(part.low, part.high, u);
   if (disk && glm::dot(place, place) > 1.0f) return Vec3(0.0f);
-  const Vec3 to_lamp = center_ + place.x * half_x_ + place.y * half_y_ - position;
+  // Differences first: far from the origin, sums of positions lose the digits of small lights.
+  const Vec3 to_lamp = (center_ - position) + place.x * half_x_ + place.y * half_y_;
   return shines_on(position, to_lamp) ? glm::normalize(to_lamp) : Vec3(0.0f);
+}
+
+Vec2 Lamp::slack_at(float distance) const {
+  constexpr float kRounding = 4e-7f;  // of a unit direction
+  constexpr float kMinSlack = 1e-4f;
+  const Vec2 slack = kRounding * distance * inverse_halves_;
+  return {slack.x < kMinSlack ? 0.0f : slack.x, slack.y < kMinSlack ? 0.0f : slack.y};
 }
 
 Lamp::Sight Lamp::hit_area(const Vec3& position, const Vec3& direction) const {
@@ -277,10 +286,13 @@ Lamp::Sight Lamp::hit_area(const Vec3& position, const Vec3& direction) const {
   const float height = glm::dot(position - center_, axis_);
   const float distance = height / facing;
   if (!shines_on(position, direction) || !(distance > 0.0f) || !std::isfinite(distance)) return {};
-  const Vec2 place = coordinates(position + distance * direction - center_);
+  const Vec2 place = coordinates((position - center_) + distance * direction);
   const Part part = part_seen(position);
-  const bool inside = glm::all(glm::lessThanEqual(part.low, place)) && glm::all(glm::lessThanEqual(place, part.high));
-  if (!inside || (type_ == Light::Type::disk && glm::dot(place, place) > 1.0f) || !(part.area > 0.0f)) return {};
+  const Vec2 slack = slack_at(distance);
+  const bool inside =
+      glm::all(glm::lessThanEqual(part.low - slack, place)) && glm::all(glm::lessThanEqual(place, part.high + slack));
+  const Vec2 round = place / (1.0f + slack);
+  if (!inside || (type_ == Light::Type::disk && glm::dot(round, round) > 1.0f) || !(part.area > 0.0f)) return {};
   return {distance, distance * distance / (std::abs(facing) * part.area)};
 }
 

@@ -62,6 +62,8 @@ class Lamp {
   Vec2 coordinates(const Vec3& place) const;
   /// Whether an area light illuminates `position` along `direction` (to the light): only in front of its center.
   bool shines_on(const Vec3& position, const Vec3& direction) const;
+  /// How far sample_area() may miss an area light by rounding, in units of its half axes; 0 where that is negligible.
+  Vec2 slack_at(float distance) const;
   Vec3 sample_area(const Vec3& position, const Vec2& u) const;
   Sight hit_area(const Vec3& position, const Vec3& direction) const;
   /// Whether the light looks like a circular cone from every position.
@@ -84,6 +86,7 @@ class Lamp {
   Vec3 axis_{0.0f};      // sun: toward it; spot: direction of emission; rectangle, disk: unit normal on that side
   Vec3 shine_{0.0f};     // rectangle, disk: direction of emission; differs from axis_ if sheared
   Vec3 half_x_{0.0f}, half_y_{0.0f};
+  Vec2 inverse_halves_{0.0f};  // one over their lengths
   // Spot: rows of the map from world directions to those in which its cone is circular, if not circular about axis_.
   Vec3 narrow_x_{0.0f}, narrow_y_{0.0f}, narrow_z_{0.0f};
   float one_minus_cos_ = 0;  // sun

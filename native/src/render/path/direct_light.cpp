@@ -62,6 +62,8 @@ void DirectLight::prepare(const Receiver& receiver, bool go_on, Output output, W
   work.goes_on_along_all = go_on && output.is_incident();
   const bool lit = lighting_.has_extended() && work.deltas.rest > 0.0f, explores = !lit && work.goes_on_along_all;
   work.shares = explores ? Shares{0.0f, 1.0f, 0.0f} : shares_at(receiver, view, work);
+  // Products may be too narrow to meet an emitter, so that a path that continues leaves it to its continuation.
+  work.counts_all_emissive = work.shares.surface > 0.0f || (!go_on && work.shares.product > 0.0f);
   PathNumbers& numbers = *receiver.numbers;
   const auto all = numbers.all(lit || explores ? receiver.directions : 0, receiver.full);
   const auto [rest, product] = numbers.deal(all, work.shares.product, Purpose::product_side);
@@ -276,8 +278,9 @@ void DirectLight::settle_emissive(std::span<const Receiver> receivers, Output ou
   }
   terms_.look_up_emissive(lighting_, views_, aims_, {rays, count}, {kinds, count});
   for (const LightTerms::EmissiveTerm& g : terms_.emissive) {
-    const Receiver& receiver = receivers[terms_.receiver[g.direction]];
-    if (along_deltas_ && !counts_emissive(g.hit)) continue;
+    const size_t place = terms_.receiver[g.direction];
+    const Receiver& receiver = receivers[place];
+    if (!counts_emissive(g.hit, counts_all_emissive(place))) continue;
     if (lighting_.emissive().is_hidden(g.hit, kinds[g.direction])) continue;
     const auto [radiance, far] = lighting_.emissive().light(rays[g.direction], g.hit, receiver.vertex.cone);
     const Rgb light = g.weight * radiance * terms_.reflected.get(g.direction);
@@ -298,12 +301,14 @@ Rgb DirectLight::reflectance(const Vertex& vertex, int direction) const {
   return in_working_space(working_space_, vertex, f_.get(direction));
 }
 
+bool DirectLight::keeps(const Rgb& light) {
+  if (finite(light)) return true;
+  ++nan_samples_;
+  return false;
+}
+
 bool DirectLight::waits(const Receiver& receiver, const Contribution& c, Output output) {
-  if (zero(c.light)) return false;
-  if (!finite(c.light)) {
-    ++nan_samples_;
-    return false;
-  }
+  if (zero(c.light) || !keeps(c.light)) return false;
   if (!c.casts_shadow) (*output.samples)[receiver.sample].radiance += clamped(c.light, c.limit);
   return c.casts_shadow;
 }

@@ -159,12 +159,19 @@ class DirectLight {
   /// Light of the last gather() that depends on rays of extend().
   std::span<const AwaitedLight> awaited() const { return awaited_; }
 
-  /// Whether the terms of gather() include the emission of the surface hit by a ray from its vertex. Otherwise extend()
-  /// must add it: emitters that are not light-sampled, under a strategy that samples no directions from the surface.
-  bool counts_emissive(const Hit& hit) const {
-    const EmissiveMeshes& emissive = lighting_.emissive();
-    return shares(mixing_).surface > 0.0f ? emissive.holds(hit) : emissive.draws(hit);
+  /// Whether the terms of vertex `place` of the last gather() include the light of all emitters. Otherwise they include
+  /// that of light-sampled emitters alone, since the vertex samples no directions from the surface.
+  bool counts_all_emissive(size_t place) const { return work_[place].counts_all_emissive; }
+  /// The same for all vertices of gather_incident().
+  bool counts_all_emissive() const { return shares(mixing_).surface > 0.0f; }
+  /// Whether the terms of a vertex include the emission of the surface hit by a ray from there. Otherwise extend() must
+  /// add it. `all`: counts_all_emissive() of the vertex.
+  bool counts_emissive(const Hit& hit, bool all) const {
+    return all ? lighting_.emissive().holds(hit) : lighting_.emissive().draws(hit);
   }
+
+  /// Whether light is finite; otherwise it must be dropped, and is counted in nan_samples().
+  bool keeps(const Rgb& light);
 
   /// Continuation ray of vertex `place` of the last gather(), sampled from the surface alone, or along one of its lobes
   /// without width, by their shares of the light. gather() included no
@@ -175,7 +182,7 @@ class DirectLight {
   /// PathPast of the path that continues from that vertex with the ray of extend().
   PathPast past_after(const Receiver& receiver, size_t place, const Continuation& continuation) const;
 
-  /// Number of directions dropped so far because their term was not finite.
+  /// Number of directions and emissions dropped so far because their light was not finite.
   uint64_t nan_samples() const { return nan_samples_; }
 
   static constexpr int kDeltaLights = 4;
@@ -188,6 +195,7 @@ class DirectLight {
     const PreparedBrdf* under_sky;  // in arena_; replaces `prepared` under an environment of one color if not null
     LobeMixture product;            // world frame
     Shares shares;
+    bool counts_all_emissive;
     PathNumbers::Run from_product, from_surface, from_lights;
     int product_point, surface_point, light_point;  // index of the first of each in points_
     int product_direction;                          // index of the first in towards_products_

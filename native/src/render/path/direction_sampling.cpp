@@ -3,6 +3,7 @@
 #include <cmath>
 #include <limits>
 
+#include "material/normal_map.h"
 #include "math/sphere/frame.h"
 #include "math/sphere/warp.h"
 
@@ -43,8 +44,8 @@ PreparedSurface::PreparedSurface(SurfaceSampling sampling, const Vertex& vertex,
       sampling_(sampling),
       transmits_(vertex.transmits),
       ggx_(vertex.ggx) {
-  if (sampling == SurfaceSampling::ggx) ggx_->prepare(vertex.wv, ggx_point_);
-  if (sampling == SurfaceSampling::table) vertex.table->prepare(vertex.wv, table_);
+  if (sampling == SurfaceSampling::ggx) ggx_->prepare(above_horizon(vertex.wv), ggx_point_);
+  if (sampling == SurfaceSampling::table) vertex.table->prepare(above_horizon(vertex.wv), table_);
 }
 
 void PreparedSurface::sample_one_side(std::span<const Vec2> u, DirectionBatch& wl) const {

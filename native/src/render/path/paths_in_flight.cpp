@@ -56,7 +56,8 @@ void PathsInFlight::extend(std::span<const Receiver> batch) {
     const PathPast past = light.past_after(receiver, k, *continuation);
     receiver.numbers->next_vertex();
     path_of[k] = next_.size();
-    next_.push_back({*receiver.numbers, continuation->throughput, receiver.sample, receiver.vertex.cone, past});
+    next_.push_back({*receiver.numbers, continuation->throughput, receiver.sample, receiver.vertex.cone, past,
+                     light.counts_all_emissive(k)});
     next_rays_.push_back(continuation->ray);
   }
   for (const AwaitedLight& a : light.awaited()) awaited_.push_back({path_of[a.place], a.light, a.limit, a.far});
@@ -70,7 +71,12 @@ void IndirectLight::clear() {
 }
 
 void IndirectLight::add(const Ray& ray, const RayCone& cone, const Hit& hit, const PathNumbers& numbers) {
-  flight_.paths.push_back({numbers, Rgb(1.0f), static_cast<uint32_t>(flight_.samples.size()), cone});
+  flight_.paths.push_back({numbers,
+                           Rgb(1.0f),
+                           static_cast<uint32_t>(flight_.samples.size()),
+                           cone,
+                           {},
+                           flight_.light.counts_all_emissive()});
   flight_.rays.push_back(ray);
   flight_.hits.push_back(hit);
   flight_.samples.emplace_back();
@@ -90,8 +96,10 @@ void IndirectLight::meet_surfaces() {
     if (flight_.hits[i].instance == kNoHit) continue;
     Path& path = flight_.paths[i];
     const Vertex vertex = Vertex::seen(scene_, flight_.rays[i], flight_.hits[i], path.cone, nullptr);
-    if (!flight_.light.counts_emissive(flight_.hits[i]))
-      flight_.samples[path.sample].radiance += path.throughput * vertex.emission();
+    if (!flight_.light.counts_emissive(flight_.hits[i], path.counted_all_emissive)) {
+      const Rgb emitted = path.throughput * vertex.emission();
+      if (flight_.light.keeps(emitted)) flight_.samples[path.sample].radiance += emitted;
+    }
     flight_.receivers.push_back(
         {vertex, &path.numbers, path.throughput, path.sample, kIndirectDirections, kIndirectDirections});
   }

@@ -18,6 +18,7 @@ struct Path {
   uint32_t sample;
   RayCone cone;  // at the origin of its ray
   PathPast past{};
+  bool counted_all_emissive = false;  // DirectLight::counts_all_emissive() of the vertex that its ray left
 };
 
 /// The owner turns hits into `receivers`, alternating with trace() and gather(), and adds the emission of surfaces.

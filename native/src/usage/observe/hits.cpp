@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "material/material.h"
+#include "material/normal_map.h"
 #include "material/surface_site.h"
 #include "render/path/shadow_queue.h"
 #include "usage/observation.h"
@@ -68,7 +69,7 @@ void ViewTracer::meet(size_t path, int depth, SeenWeights& seen) {
 void ViewTracer::see(const Vertex& vertex, const Path& path, int depth, SeenWeights& seen) {
   const double weight = static_cast<double>(luminance(path.throughput));
   if (!(weight > 0.0)) return;
-  seen.view[view_bin(vertex.wv)] += weight;
+  seen.view[view_bin(above_horizon(vertex.wv))] += weight;
   if (material_.material->varies()) see_surface(vertex, weight, seen.surface);
   // The position is part of the stream, so that frames with the same seed sample independently.
   auto place = static_cast<uint64_t>(depth);
@@ -80,7 +81,7 @@ void ViewTracer::see_surface(const Vertex& vertex, double weight, SurfaceDomain&
   // On a tile with so many texels that no footprint is smaller than one of them.
   const Vec2 finest = tile_ * (kFinestTexels / std::max(tile_.x, tile_.y));
   add_seen(surface, footprint_taps(vertex.site.footprint, finest).level, vertex.site.uv, weight);
-  const Vec3& wv = vertex.wv;
+  const Vec3 wv = above_horizon(vertex.wv);
   add_view(surface.views, {wv.x, wv.y, vertex.site.back ? -wv.z : wv.z}, weight);
 }
 

@@ -8,6 +8,7 @@
 #include <string>
 #include "base/parallel.h"
 #include "material/material.h"
+#include "material/normal_map.h"
 #include "math/sphere/directions.h"
 #include "render/path/vertex.h"
 #include "render/preparation.h"
@@ -110,8 +111,8 @@ class Observer {
     const auto first = static_cast<uint32_t>(wl.size());
     wl.insert(wl.end(), found.wl.begin(), found.wl.end());
     light.insert(light.end(), found.light.begin(), found.light.end());
-    hits.push_back({key, vertex.wv, first, first + found.middle, static_cast<uint32_t>(wl.size()), found.light_density,
-                    vertex.site.back});
+    hits.push_back({key, above_horizon(vertex.wv), first, first + found.middle, static_cast<uint32_t>(wl.size()),
+                    found.light_density, vertex.site.back});
     domain.light_density = std::max(domain.light_density, static_cast<double>(found.light_density));
   }
 

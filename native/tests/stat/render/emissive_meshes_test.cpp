@@ -6,8 +6,10 @@
 
 #include "material/shader_layers.h"
 #include "render/lights/lighting.h"
+#include "render/tile_renderer.h"
 #include "support/level.h"
 #include "support/polygon_irradiance.h"
+#include "support/proof_materials.h"
 #include "support/proof_strategies.h"
 #include "support/renders.h"
 #include "support/sampler_proof.h"
@@ -159,6 +161,45 @@ TEST(EmissiveMeshes, WhatNoRaysAreDrawnToIsFoundByBouncesAlone) {
   options.strategy = Strategy::mis;
   options.bounces = 0;
   EXPECT_NEAR(test::mean_of(test::rendered(scene, options)), expected, 0.03 * expected);
+}
+
+/// Mean of a render whose first vertices mix their directions as given, as after a pilot.
+double mean_mixed(const Scene& scene, const RenderOptions& options, const Mixing& mixing) {
+  Progress progress;
+  RenderContext context(scene, options, progress);
+  context.mixing.assign(scene.materials().size(), mixing);
+  Film film(options.width, options.height);
+  TileRenderer(context).render(film.window(), 0, context.camera_rays(), film, nullptr, progress);
+  std::vector<float> pixels(static_cast<size_t>(4 * film.width() * film.height()));
+  film.read_pass("Combined", pixels);
+  return test::mean_of(pixels);
+}
+
+/// A vertex may add an emission with its own directions or leave it to its continuation, but not both: under a share of
+/// 1, the strategy samples nothing from the surface, yet the directions of a pilot or of products meet emitters.
+TEST(EmissiveMeshes, EmittersThatAreNotLightSampledCountOnceWhateverMeetsThem) {
+  Scene scene;
+  const uint32_t floor = scene.add_material({test::highlight_material(4), Rgb(0.0f), false}),
+                 ceiling = scene.add_material(emissive(kRadiance));
+  scene.add_instance(scene.add_mesh(test::square(100)), {}, {floor});
+  scene.add_instance(scene.add_mesh(test::square(1)), test::shift({0, 0, 2}), {ceiling}, {}, hidden::kFromCamera);
+  std::vector<float> sky(3 * 32 * 16, 0.05f);
+  std::fill_n(sky.begin(), sky.size() / 4, 0.5f);
+  scene.set_environment(Environment::image({32, 16, 3, sky}, 1, Mat3(1.0f)));
+  scene.set_camera(test::camera_above(0.001f));
+  scene.set_drawn_to(ceiling, false);
+  scene.commit(1);
+  RenderOptions options = test::small_options(Strategy::mis, 4096);
+  options.bounces = 1;
+  const double expected = test::mean_of(test::rendered(scene, options));
+  options.light_share = 1;
+  EXPECT_NEAR(test::mean_of(test::rendered(scene, options)), expected, 0.02 * expected);
+  EXPECT_NEAR(mean_mixed(scene, options, {false, 0.75f}), expected, 0.02 * expected);
+  options.strategy = Strategy::product;
+  EXPECT_NEAR(test::mean_of(test::rendered(scene, options)), expected, 0.02 * expected);
+  options.light_share = 0.5f;
+  options.bounces = 0;  // nothing is left to bounces
+  EXPECT_NEAR(test::mean_of(test::rendered(scene, options)), expected, 0.02 * expected);
 }
 
 /// Three floors of light above each other: each hides those above it, unless shadow rays or all bounces pass it.

@@ -1,5 +1,6 @@
 // The environment's kernels against a scalar reference in double, on every instruction set.
 #include <cmath>
+#include <limits>
 
 #include "light/equirectangular.h"
 #include "math/sphere/random.h"
@@ -140,6 +141,26 @@ TEST(EquirectangularKernels, CoordinatesMatchTheScalarReferenceOnEveryTarget) {
         const double sine = std::sin(kPiD * p.y / kHeight);
         EXPECT_NEAR(at.inverse_sin[i] * sine, std::min(1.0, 2 * from_pole), 2e-5);
       }
+    }
+  });
+}
+
+/// Cells of directions that are not numbers must exist, because they are read.
+TEST(EquirectangularKernels, CellsOfBrokenDirectionsLieInTheImage) {
+  const Fixture f;
+  constexpr float kNan = std::numeric_limits<float>::quiet_NaN(), kInfinity = std::numeric_limits<float>::infinity();
+  test::on_every_simd_target([&] {
+    DirectionBatch batch;
+    for (const Vec3& w : {Vec3(kNan), Vec3(kInfinity), Vec3(0, kNan, 1), Vec3(1, 0, kNan), Vec3(3e38f), Vec3(0.0f)}) {
+      batch.push(w);
+      batch.push(-w);
+    }
+    batch.pad();
+    EquirectangularCoordinates at;
+    equirectangular_coordinates(f.image, kTurn, batch, at);
+    for (int i = 0; i < batch.count; ++i) {
+      EXPECT_TRUE(at.x[i] >= 0 && at.x[i] < kWidth) << i << ' ' << at.x[i];
+      EXPECT_TRUE(at.y[i] >= 0 && at.y[i] <= kHeight) << i << ' ' << at.y[i];
     }
   });
 }

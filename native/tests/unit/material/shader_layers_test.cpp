@@ -9,6 +9,7 @@
 #include "math/sphere/random.h"
 #include "support/albedo.h"
 #include "support/materials.h"
+#include "support/proof_materials.h"
 #include "support/textured_materials.h"
 #include "support/through_btfs.h"
 
@@ -252,6 +253,31 @@ TEST(ShaderLayers, MeasuredLayersAreWeightedAndTinted) {
       expect_near(f_at(*mix, site, wv, wl), measured + Rgb(wl.z > 0 ? 0.7f / kPi : 0.0f, 0, 0));
     }
   }
+}
+
+/// On coarse meshes the view may be below the shading horizon where the normals of other layers are corrected.
+TEST(ShaderLayers, LayersWithoutNormalsOfTheirOwnSeeNoViewBelowTheHorizon) {
+  ShaderLayers layers;
+  layers.reflecting = {
+      {.material = test::measured(test::gaussian_highlight(10)), .rec709_colors = true, .lifts_views = true}};
+  layers.reflecting[0].top = PrincipledTop{.parameters = {.coat = 1}};
+  const auto material = make_layered_material(layers);
+  const Vec3 low = glm::normalize(Vec3(0.6f, 0.7f, -0.3f)), lifted = above_horizon(low);
+  EXPECT_GT(lifted.z, 0);
+  EXPECT_EQ(above_horizon(lifted + Vec3(0, 0, 0.1f)), lifted + Vec3(0, 0, 0.1f));
+  ScratchArena arena;
+  const PreparedBrdf *const below = material->prepare(low, arena), *const at = material->prepare(lifted, arena);
+  Rgb light(0.0f);
+  for (const Vec3& wl : hemisphere_fibonacci(40)) {
+    const auto found = test::eval_one(*below, wl), expected = test::eval_one(*at, wl);
+    EXPECT_EQ(found.f, expected.f);
+    EXPECT_EQ(found.pdf, expected.pdf);
+    light += found.f;
+  }
+  EXPECT_GT(light.g, 0);
+  EXPECT_EQ(below->sample_one({0.3f, 0.6f}), at->sample_one({0.3f, 0.6f}));
+  const Rgb passed = layers.reflecting[0].top->through(low, {}, {});
+  EXPECT_TRUE(passed.g >= 0 && passed.g <= 1) << passed.g;
 }
 
 TEST(ShaderLayers, TintsAbsorb) {

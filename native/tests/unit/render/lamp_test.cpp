@@ -166,6 +166,32 @@ TEST(Lamp, SmallBallsKeepTheirLightFromAfar) {
   }
 }
 
+/// Positions so far from the origin are a centimeter apart, but differences between them are exact.
+TEST(Lamp, AreasFarFromTheOriginKeepTheirLight) {
+  const auto irradiance = [](Light light, const Vec3& position) {
+    light.light_to_world.m[3] = position.x + 0.25f;
+    light.light_to_world.m[7] = position.y - 0.25f;
+    light.light_to_world.m[11] = position.z + 2;
+    const Lamp lamp(light);
+    RandomStream random(4, 5, 6);
+    constexpr int kSamples = 100000;
+    double sum = 0;
+    for (int i = 0; i < kSamples; ++i) {
+      const Vec3 w = lamp.sample(position, random.next2());
+      const Lamp::Sight sight = lamp.hit(position, w);
+      if (sight.pdf > 0) sum += static_cast<double>(w.z / sight.pdf * lamp.radiance(w).g) / kSamples;
+    }
+    return sum;
+  };
+  for (const Light::Type type : {Light::Type::rectangle, Light::Type::disk}) {
+    Light light;
+    light.type = type;
+    light.size = {0.1f, 0.1f};
+    const double expected = irradiance(light, Vec3(0.0f));
+    EXPECT_NEAR(irradiance(light, {1e5f, -5e4f, 3e4f}) / expected, 1, 1e-3);
+  }
+}
+
 TEST(Lamp, PowerOfAreaLampsIsWhatTheyEmit) {
   // One side, Lambertian: pi A L.
   const Lamp rectangle(lamp_above(Light::Type::rectangle, {2, 3}));

@@ -2,9 +2,9 @@
 
 #include <gtest/gtest.h>
 
-#include <array>
-
 #include <algorithm>
+#include <array>
+#include <limits>
 
 #include "render/path/direction_sampling.h"
 #include "render/path/path_numbers.h"
@@ -60,6 +60,16 @@ TEST(BlockError, IsRelativeToBlockAndPicture) {
   EXPECT_NEAR(error.relative_to(0), 0.5, 1e-6);
   EXPECT_NEAR(error.relative_to(1000), 0.01, 1e-5);  // dark beside the picture
   EXPECT_FALSE(block_error(std::vector<PixelSum>(4, pixel({1}))).known);
+}
+
+/// Otherwise a single pixel that is not finite would end the render at once.
+TEST(BlockError, IsInfiniteUnlessBlockAndPictureAreFinite) {
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  for (const double broken : {kInfinity, std::numeric_limits<double>::quiet_NaN()}) {
+    EXPECT_EQ((BlockError{.variance = broken, .luminance = 1, .known = true}).relative_to(1), kInfinity);
+    EXPECT_EQ((BlockError{.variance = 1, .luminance = broken, .known = true}).relative_to(1), kInfinity);
+    EXPECT_EQ((BlockError{.variance = 1, .luminance = 1, .known = true}).relative_to(broken), kInfinity);
+  }
 }
 
 /// A film of one block whose pixels' halves differ by `spread` of their mean.

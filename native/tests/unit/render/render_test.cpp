@@ -92,6 +92,38 @@ double seconds_to_cancel(const Scene& scene) {
   return std::chrono::duration<double>(ended - asked).count();
 }
 
+/// On the surface that the camera sees, and on one that only bounces meet because it is not light-sampled.
+TEST(Render, LeavesOutAndCountsEmissionThatIsNotFinite) {
+  constexpr float kInfinity = std::numeric_limits<float>::infinity();
+  for (const bool is_seen : {true, false}) {
+    Scene scene;
+    const auto lambert = std::make_shared<test::Lambert>(0.5f);
+    const uint32_t emitter = scene.add_material({lambert, Rgb(kInfinity, 1, 1), false}),
+                   matte = scene.add_material({lambert, Rgb(0.0f), false}), square = scene.add_mesh(test::square(9));
+    scene.set_drawn_to(emitter, false);
+    scene.add_instance(square, {}, {is_seen ? emitter : matte});
+    if (!is_seen) scene.add_instance(square, test::shift({0, 0, 6}), {emitter});
+    scene.set_environment(Environment::constant(Rgb(0.5f)));
+    scene.set_camera(test::camera_above(0.5f));
+    scene.commit(1);
+    RenderOptions options = small_options(Strategy::light, 16);
+    options.split = 1;
+    options.bounces = 1;
+    RenderReport report;
+    EXPECT_TRUE(std::isfinite(test::mean_of(rendered(scene, options, "Combined", &report)))) << is_seen;
+    EXPECT_GT(report.nan_samples, 500u) << is_seen;
+    options.bounces = 0;
+    PassOptions passes;
+    passes.asked = pass::kDenoisingAlbedo;
+    Film film(options.window(), passes);
+    Progress progress;
+    render(scene, options, film, progress);
+    std::vector<float> albedo(static_cast<size_t>(3 * options.width * options.height));
+    film.read_pass("Denoising Albedo", albedo);
+    EXPECT_TRUE(std::isfinite(test::mean_of(albedo, 0, 3))) << is_seen;
+  }
+}
+
 TEST(Render, CancelEndsItWithinATenthOfASecond) {
   const Scene scene = busy_scene();
   double best = 1;  // of a few: other programs may hold the processor
@@ -243,6 +275,7 @@ TEST(Render, RefusesWrongOptionsByName) {
   };
   refused([](RenderOptions& o) { o.spp = 0; }, "spp");
   refused([](RenderOptions& o) { o.split = 100; }, "split");
+  refused([](RenderOptions& o) { o.spp = o.split * ((1 << 24) + 1), o.time_limit = 1e-3; }, "seeds");
   refused([](RenderOptions& o) { o.bounces = -1; }, "bounces");
   refused([](RenderOptions& o) { o.width = 9; }, "size");
   refused([](RenderOptions& o) { o.time_limit = -1; }, "time_limit");

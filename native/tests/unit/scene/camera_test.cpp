@@ -3,7 +3,12 @@
 
 #include <gtest/gtest.h>
 
+#include <limits>
+#include <string>
+
+#include "base/error.h"
 #include "math/sphere/random.h"
+#include "scene/scene.h"
 
 namespace velour::camera_test {
 namespace {
@@ -35,6 +40,45 @@ TEST(Camera, RaysOfAPixelMeetInThePlaneInFocus) {
       EXPECT_NEAR(-(ray.origin + ray.far * ray.direction).z, 8, 1e-4f);
     }
   }
+}
+
+TEST(Camera, WithoutRaysIsRefused) {
+  constexpr float kNan = std::numeric_limits<float>::quiet_NaN(), kInfinity = std::numeric_limits<float>::infinity();
+  Scene scene;
+  const Camera usual = with_lens(Camera::Type::perspective);
+  scene.set_camera(usual);
+  const auto refused = [&](auto change, const char* named) {
+    Camera camera = usual;
+    change(camera);
+    try {
+      scene.set_camera(camera);
+      ADD_FAILURE() << named;
+    } catch (const Error& error) {
+      EXPECT_EQ(error.status(), Status::invalid_argument);
+      EXPECT_NE(std::string(error.what()).find(named), std::string::npos) << error.what();
+    }
+  };
+  for (const float broken : {kNan, kInfinity, -kInfinity, usual.window[0]}) {
+    refused([&](Camera& c) { c.window[1] = broken; }, "window");
+    refused([&](Camera& c) { c.windows = {{-1, 1, -1, 1}, {usual.window[0], broken, -1, 1}}; }, "window");
+  }
+  refused([&](Camera& c) { c.camera_to_world.m[3] = kNan; }, "transform");
+  refused([&](Camera& c) { c.camera_to_world.m[0] = 0; }, "transform");
+  refused([&](Camera& c) { c.steps.assign(2, Affine{{1, 0, 0, 0, 1, 0, 0, 0, 0, 0, 1, 0}}); }, "transform");
+  for (const float broken : {kNan, kInfinity, -1.0f}) {
+    refused([&](Camera& c) { c.aperture.radius = broken; }, "aperture");
+    refused([&](Camera& c) { c.aperture.focus = broken; }, "focus");
+    refused([&](Camera& c) { c.aperture.ratio = broken; }, "ratio");
+  }
+  refused([&](Camera& c) { c.aperture.focus = 0; }, "focus");
+  refused([&](Camera& c) { c.aperture.rotation = kNan; }, "rotation");
+  refused([&](Camera& c) { c.clip_start = kNan; }, "clip");
+  refused([&](Camera& c) { c.clip_end = kNan; }, "clip");
+  Camera mirrored = usual;  // a flipped picture, sheared axes and no far end are fine
+  std::swap(mirrored.window[0], mirrored.window[1]);
+  mirrored.camera_to_world.m[1] = 0.5f;
+  mirrored.clip_end = kInfinity;
+  EXPECT_NO_THROW(scene.set_camera(mirrored));
 }
 
 /// Mean of x^2 and y^2, and of the share of places farther out than `radius`.

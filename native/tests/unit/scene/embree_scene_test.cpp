@@ -5,6 +5,7 @@
 
 #include <chrono>
 #include <functional>
+#include <memory>
 #include <thread>
 #include <vector>
 
@@ -129,6 +130,39 @@ TEST(EmbreeScene, TakesTwoLevelsWhereMeshesRepeat) {
   for (int i = 0; i < 3; ++i) scene.add_instance(mesh, scaled(Vec3(1), {0, 0, static_cast<float>(i)}));
   scene.commit(1, nullptr, EmbreeScene::Levels::one);
   EXPECT_EQ(scene.levels(), EmbreeScene::Levels::two);
+}
+
+/// Renders of one committed scene do so for its emissive meshes, whose hierarchies the scene itself may not need.
+TEST(EmbreeScene, ScenesThatShareMeshesMayBeCommittedAtOnce) {
+  constexpr uint32_t kMeshes = 4, kScenes = 4;
+  for (int round = 0; round < 20; ++round) {
+    EmbreeScene base;
+    for (uint32_t m = 0; m < kMeshes; ++m) {
+      base.add_instance(base.add_mesh(kCorners, kTriangle), scaled(Vec3(1.0f), {2.0f * static_cast<float>(m), 0, 0}));
+    }
+    base.commit(1, nullptr, EmbreeScene::Levels::one);
+    std::vector<std::unique_ptr<EmbreeScene>> scenes;
+    std::vector<std::thread> threads;
+    for (uint32_t k = 0; k < kScenes; ++k) {
+      scenes.push_back(std::make_unique<EmbreeScene>());
+      EmbreeScene& scene = *scenes.back();
+      scene.share_meshes(base);
+      for (uint32_t m = 0; m < kMeshes; ++m) {
+        scene.add_instance(m, scaled(Vec3(1.0f), {2.0f * static_cast<float>(m), 0, 0}));
+      }
+    }
+    for (const auto& scene : scenes) {
+      threads.emplace_back([&scene] { scene->commit(1, nullptr, EmbreeScene::Levels::two); });
+    }
+    for (std::thread& thread : threads) thread.join();
+    for (const auto& scene : scenes) {
+      for (uint32_t m = 0; m < kMeshes; ++m) {
+        Hit hit;
+        scene->intersect({{0.25f + 2.0f * static_cast<float>(m), 0.25f, 1}, 0, {0, 0, -1}}, hit);
+        EXPECT_EQ(hit.instance, m);
+      }
+    }
+  }
 }
 
 TEST(EmbreeScene, CoherentBatchesAgreeWithSingleRays) {
