@@ -6,6 +6,7 @@ import unittest
 import bpy
 from mathutils import Matrix
 
+from parity.shaders import node_group
 from support import inputs, scenes
 from support.notes import NotesTest
 
@@ -93,6 +94,24 @@ class Materials(NotesTest):
         node = tree.nodes.new("ShaderNodeVolumeScatter")
         tree.links.new(node.outputs[0], tree.nodes["Material Output"].inputs["Volume"])
         self.assert_said("Material 'Bare'", "olume")
+
+    def test_inputs_that_a_group_sets(self):
+        """Inside they are 0."""
+        tree = self._tree()
+        principled = tree.nodes["Principled BSDF"]
+        name = next(n for n in ("Subsurface Weight", "Subsurface") if n in principled.inputs)
+        self.assertEqual(self.notes(), [])
+        group, given, end = node_group({"Depth": "NodeSocketFloat"}, "BSDF")
+        inner = group.nodes.new("ShaderNodeBsdfPrincipled")
+        group.links.new(given.outputs[0], inner.inputs[name])
+        group.links.new(inner.outputs[0], end.inputs[0])
+        node = tree.nodes.new("ShaderNodeGroup")
+        node.node_tree = group
+        tree.links.new(node.outputs[0], tree.nodes["Material Output"].inputs["Surface"])
+        node.inputs[0].default_value = 0.0
+        self.assertEqual(self.notes(), [])
+        node.inputs[0].default_value = 0.5
+        self.assert_said("Material 'Bare'", f"'{name}' is not supported")
 
     def test_movies_and_sequences(self):
         tree = self._tree()

@@ -25,7 +25,7 @@ _LAMPS = {
     "AREA": {"shape", "size", "size_y", "spread", "is_portal"},
 }
 _EVERY_LAMP = {"type", "color", "energy"}
-_NEWER = {"use_temperature", "temperature", "exposure", "normalize", "use_soft_falloff", "use_shadow"}
+_NEWER = {"use_temperature", "temperature", "exposure", "normalize", "use_soft_falloff"}
 _OF_NO_LAMP = ("context", "preview", "animation", "custom_props")
 _NOT_READ = ("freestyle", "stereoscopy", "DATA_PT_falloff_curve", "OBJECT_PT_shading", "EEVEE_light")
 _MENUS = ("NODE_MT_category_SH_NEW_SHADER", "NODE_MT_category_shader_shader")  # of 3.4, of 4.0 and newer
@@ -44,17 +44,10 @@ class Panels(BlenderTest):
             if kind == "AREA":
                 lamp.shape = "ELLIPSE"
             shown = self._shown("data", light=lamp)
-            wanted = _EVERY_LAMP | shape | {name for name in _NEWER if hasattr(lamp, name)}
+            shadow = "cast_shadow" if hasattr(lamp.cycles, "cast_shadow") else "use_shadow"
+            wanted = _EVERY_LAMP | shape | {shadow} | {name for name in _NEWER if hasattr(lamp, name)}
             self.assertEqual({name: shown[name] for name in wanted}, dict.fromkeys(wanted, 1), kind)
             self.assertFalse({name for name in shown if name.endswith("_factor")}, kind)
-
-    def test_shadow_taken_away_by_cycles(self):
-        lamp = bpy.data.lights.new("Lamp", "POINT")
-        if not hasattr(lamp.cycles, "cast_shadow"):
-            self.skipTest("one switch for all engines")
-        self.assertEqual(self._shown("data", light=lamp)["cast_shadow"], 0)
-        lamp.cycles.cast_shadow = False
-        self.assertEqual(self._shown("data", light=lamp)["cast_shadow"], 1)
 
     def test_world(self):
         world = bpy.data.worlds.new("World")

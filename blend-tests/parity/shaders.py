@@ -5,6 +5,8 @@ import itertools
 import bpy
 import numpy as np
 
+from support import scenes
+
 from . import stage
 from .case import ParityTest
 
@@ -78,6 +80,27 @@ class Tree:
 
 def _rgba(color):
     return color if isinstance(color, bpy.types.NodeSocket) else (*color, 1)
+
+
+def node_group(inputs, *output):
+    """A group and the nodes at its ends. `inputs`: types of sockets by name; `output`: name and type."""
+    group = scenes.new_group("Group", *output, inputs=inputs)
+    return group, group.nodes.new("NodeGroupInput"), group.nodes.new("NodeGroupOutput")
+
+
+def mapped_picture(idname, picture, coordinates):
+    """A group that maps the coordinates of a picture by its inputs Turn and Size."""
+    vectors = {"Turn": "NodeSocketVector", "Size": "NodeSocketVector"}
+    group, given, end = node_group(vectors, "Color", "NodeSocketColor")
+    mapping, texture = group.nodes.new("ShaderNodeMapping"), group.nodes.new(idname)
+    texture.image = picture
+    links = group.links
+    links.new(group.nodes.new("ShaderNodeTexCoord").outputs[coordinates], mapping.inputs["Vector"])
+    links.new(given.outputs["Turn"], mapping.inputs["Rotation"])
+    links.new(given.outputs["Size"], mapping.inputs["Scale"])
+    links.new(mapping.outputs[0], texture.inputs["Vector"])
+    links.new(texture.outputs["Color"], end.inputs[0])
+    return group
 
 
 def image(seed=2, size=8, low=0.1, high=0.9, alpha=False):

@@ -125,6 +125,14 @@ class Lights(BoxTest):
             lamp.data.use_shadow = False
         self.assert_parity("Light: casts no shadow")
 
+    def test_shadow_of_eevee(self):
+        """Cycles 3.4 has a switch of its own."""
+        lamp = stage.lamp("POINT", 300, (1, 0.5, 3), shadow_soft_size=0.2).data
+        if not (hasattr(lamp.cycles, "cast_shadow") and hasattr(lamp, "use_shadow")):
+            self.skipTest("one switch for all engines")
+        lamp.use_shadow = False
+        self.assert_parity("Light: casts no shadow in EEVEE")
+
     def test_many(self):
         for i in range(12):
             x, y = 2.5 * math.cos(i), 2.0 * math.sin(2 * i)

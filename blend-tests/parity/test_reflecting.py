@@ -25,6 +25,14 @@ class NormalMaps(ShaderTest):
         self.tree.end(self.tree.diffuse(Normal=self._map()))
         self.assert_parity("Normal Map: Diffuse")
 
+    def test_directx(self):
+        normal = self._map()
+        if not hasattr(normal.node, "convention"):
+            self.skipTest("before 5.2 all normal maps are OpenGL's")
+        normal.node.convention = "DIRECTX"
+        self.tree.end(self.tree.diffuse(Normal=normal))
+        self.assert_parity("Normal Map: DirectX")
+
     def test_glossy(self):
         """Steep facets show what a roughness of 1 shows of flat ones."""
         self.tree.end(self.tree.glossy(0.6, Normal=self._map(low=0.35, high=0.65)))

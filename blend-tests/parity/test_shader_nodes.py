@@ -255,6 +255,7 @@ class Textures(BoardTest):
             self._of("TexBrick", {"Scale": 1.2, "Mortar Smooth": 0.2, "Mortar Size": 0.1}, squash=1.3),
             self._of("TexMagic", {"Scale": 0.8, "Distortion": 1.2}, turbulence_depth=3),
             self._of("TexWhiteNoise", {}, 0),
+            lambda nodes: nodes.halved(nodes.add("TexWhiteNoise").outputs[1]),  # one color for all
         ]
         kinds = ("LINEAR", "QUADRATIC", "EASING", "DIAGONAL", "SPHERICAL", "QUADRATIC_SPHERE", "RADIAL")
         builds += [self._of("TexGradient", {}, 1, gradient_type=kind) for kind in kinds]

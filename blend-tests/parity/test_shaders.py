@@ -3,7 +3,7 @@
 import bpy
 
 from parity import stage
-from parity.shaders import ShaderTest, image
+from parity.shaders import ShaderTest, image, mapped_picture, node_group
 
 
 class Mixed(ShaderTest):
@@ -94,6 +94,18 @@ class Mixed(ShaderTest):
         tree.end(principled)
         self.assert_parity("Principled BSDF: emission by an image, alpha")
 
+    def test_only_a_volume(self):
+        """What lies behind the border of a volume is seen; Velour leaves the volume itself out."""
+        absorption = self.tree.node("ShaderNodeVolumeAbsorption", Density=0.0)
+        output = self.tree.nodes.new("ShaderNodeOutputMaterial")
+        self.tree.links.new(absorption, output.inputs["Volume"])
+        self.assert_parity("Material Output: a volume alone")
+
+    def test_colors_in_place_of_shaders(self):
+        tree = self.tree
+        tree.end(tree.mix(0.6, tree.picture(image(6)), tree.diffuse((0.5, 0.5, 0.5))))
+        self.assert_parity("Mix Shader: an image in place of a shader")
+
     def test_add(self):
         tree = self.tree
         tree.end(tree.add(tree.diffuse((0.5, 0.5, 0.5)), tree.emission()))
@@ -138,17 +150,9 @@ class Groups(ShaderTest):
     """Shaders inside a node group, whose inputs are set outside."""
 
     def _group(self):
-        group = bpy.data.node_groups.new("Leaf", "ShaderNodeTree")
-        if hasattr(group, "interface"):  # 4.0 and newer
-            for name, kind in (("Amount", "NodeSocketFloat"), ("Tint", "NodeSocketColor")):
-                group.interface.new_socket(name=name, in_out="INPUT", socket_type=kind)
-            group.interface.new_socket(name="Shader", in_out="OUTPUT", socket_type="NodeSocketShader")
-        else:
-            group.inputs.new("NodeSocketFloat", "Amount")
-            group.inputs.new("NodeSocketColor", "Tint")
-            group.outputs.new("NodeSocketShader", "Shader")
+        inputs = {"Amount": "NodeSocketFloat", "Tint": "NodeSocketColor"}
+        group, given, end = node_group(inputs, "Shader")
         nodes, links = group.nodes, group.links
-        given, end = nodes.new("NodeGroupInput"), nodes.new("NodeGroupOutput")
         mix, diffuse = nodes.new("ShaderNodeMixShader"), nodes.new("ShaderNodeBsdfDiffuse")
         links.new(given.outputs["Amount"], mix.inputs[0])
         links.new(given.outputs["Tint"], diffuse.inputs["Color"])
@@ -171,3 +175,10 @@ class Groups(ShaderTest):
         settings = {"node_tree": self._group()}
         tree.end(tree.node("ShaderNodeGroup", settings=settings, Amount=0.6, Tint=picture))
         self.assert_parity("Node group with inputs")
+
+    def test_mapping(self):
+        """The numbers of its Mapping node are set outside of the group."""
+        settings = {"node_tree": mapped_picture("ShaderNodeTexImage", image(9), "UV")}
+        placed = self.tree.node("ShaderNodeGroup", settings=settings, Turn=(0, 0, 0.6), Size=(2.5, 0.7, 1))
+        self.tree.end(self.tree.diffuse(placed))
+        self.assert_parity("Node group: mapping by its inputs")

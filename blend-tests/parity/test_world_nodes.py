@@ -7,6 +7,7 @@ import numpy as np
 
 from parity import stage
 from parity.case import ParityTest
+from parity.shaders import mapped_picture
 
 
 class WorldNodes(ParityTest):
@@ -42,7 +43,12 @@ class WorldNodes(ParityTest):
         return self._new("TexCoord").outputs[name]
 
     def _environment(self, vector=None, scale=1.0, **settings):
-        """A smooth sky, another color on every side."""
+        return self._new(
+            "TexEnvironment", {"Vector": vector} if vector else None, image=self._sky(scale), **settings
+        )
+
+    def _sky(self, scale=1.0):
+        """Another color on every side."""
         image = bpy.data.images.new("sky", 64, 32, float_buffer=True)
         u, v = np.meshgrid((np.arange(64) + 0.5) / 64, (np.arange(32) + 0.5) / 32)
         pixels = np.ones((32, 64, 4), np.float32)
@@ -52,7 +58,7 @@ class WorldNodes(ParityTest):
         pixels[..., :3] *= scale
         image.pixels.foreach_set(pixels.ravel())
         image.pack()
-        return self._new("TexEnvironment", {"Vector": vector} if vector else None, image=image, **settings)
+        return image
 
     def test_a_ramp_of_the_height(self):
         height = self._new("SeparateXYZ", {"Vector": self._direction()}).outputs["Z"]
@@ -76,6 +82,18 @@ class WorldNodes(ParityTest):
         inputs = {"Vector": self._direction(), "Location": (0.2, 0, 0.4), "Scale": (1, 1, 0.5)}
         self._colored(self._environment(self._new("Mapping", inputs).outputs[0]).outputs[0])
         self.assert_parity("World: location and uneven scale of a mapping")
+
+    def test_an_image_that_a_group_turns(self):
+        group = self._new(
+            "Group", node_tree=mapped_picture("ShaderNodeTexEnvironment", self._sky(), "Generated")
+        )
+        group.inputs["Turn"].default_value, group.inputs["Size"].default_value = (0, 0, 1.2), (1, 1, 1)
+        self._colored(group.outputs[0])
+        self.assert_parity("World: rotation by an input of a node group")
+
+    def test_an_image_in_place_of_a_shader(self):
+        self._shown(self._environment(self._direction()))
+        self.assert_parity("World Output: environment texture")
 
     def test_a_mirror_ball(self):
         self._colored(self._environment(projection="MIRROR_BALL").outputs[0])

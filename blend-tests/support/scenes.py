@@ -122,13 +122,18 @@ def former_material(data, name="Former"):
     return material
 
 
-def new_group(name, output):
-    """A node group with one shader as its output."""
+def new_group(name, output, kind="NodeSocketShader", inputs=None):
+    """A node group with one output of this kind. `inputs`: kinds of sockets by name."""
     group = bpy.data.node_groups.new(name, "ShaderNodeTree")
-    if hasattr(group, "interface"):  # 4.0 and newer
-        group.interface.new_socket(name=output, in_out="OUTPUT", socket_type="NodeSocketShader")
+    for socket, each in (inputs or {}).items():
+        if hasattr(group, "interface"):  # 4.0 and newer
+            group.interface.new_socket(name=socket, in_out="INPUT", socket_type=each)
+        else:
+            group.inputs.new(each, socket)
+    if hasattr(group, "interface"):
+        group.interface.new_socket(name=output, in_out="OUTPUT", socket_type=kind)
     else:
-        group.outputs.new("NodeSocketShader", output)
+        group.outputs.new(kind, output)
     return group
 
 

@@ -5,6 +5,7 @@ from typing import NamedTuple
 import numpy as np
 from mathutils import Euler, Matrix
 
+from .conversions import own_numbers
 from .newer import UNKNOWN, choice
 from .nodes import is_model_texture
 from .plugs import fed_by
@@ -133,12 +134,13 @@ def _coordinates(plug):
 
 def _mapping_matrix(plug):
     node = plug.node
-    if any(fed_by(plug.input(name)) for name in ("Location", "Rotation", "Scale")):
+    # Newer Blender versions have a location only for types that use it.
+    location, turn, size = inputs = [plug.input(name) for name in ("Location", "Rotation", "Scale")]
+    if any(map(fed_by, inputs)):
         raise UnsupportedError(f"'{node.name}' has linked inputs")
-    rotation = Euler(node.inputs["Rotation"].default_value).to_matrix().to_4x4()
-    scale = Matrix.Diagonal((*node.inputs["Scale"].default_value, 1.0))
-    location = node.inputs.get("Location")  # newer Blender versions have it only for types that use it
-    shift = Matrix.Translation(location.default_value) if location is not None else Matrix()
+    rotation = Euler(own_numbers(turn)).to_matrix().to_4x4()
+    scale = Matrix.Diagonal((*own_numbers(size), 1.0))
+    shift = Matrix.Translation(own_numbers(location)) if location else Matrix()
     kinds = {
         "POINT": lambda: shift @ rotation @ scale,
         "TEXTURE": lambda: (shift @ rotation @ scale).inverted_safe(),

@@ -19,6 +19,16 @@ def refuse_missing_libraries(scene):
             raise ExportError(f"{kind} '{block.name}': its library {path!r} is missing; {FIND}.")
 
 
+def library_files():
+    """Paths of the libraries that are files, those of missing ones left out."""
+    paths = [
+        _path(library)
+        for library in bpy.data.libraries
+        if not (library.packed_file or getattr(library, "is_archive", False))  # Blender 5 packs data-blocks
+    ]
+    return [path for path in paths if os.path.isfile(path)]
+
+
 def _is_there(library):
     return library.packed_file is not None or os.path.isfile(_path(library))
 

@@ -138,6 +138,6 @@ def _is_mirrored(lamp):
 
 
 def _casts_shadow(lamp):
-    # Older versions have a shadow switch for ray tracers in Cycles' settings, while that is enabled.
+    # Older versions have a shadow switch for ray tracers in Cycles' settings; the other one is EEVEE's then.
     cycles = getattr(lamp, "cycles", None)
-    return int(getattr(lamp, "use_shadow", True) and getattr(cycles, "cast_shadow", True))
+    return int(getattr(cycles, "cast_shadow", getattr(lamp, "use_shadow", True)))

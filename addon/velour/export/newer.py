@@ -15,3 +15,8 @@ def choice(table, value, usual, owner, what, notes):
 def has_nodes(owner):
     """Whether a material, world or light uses its node tree; from Blender 6.0 on, it always does."""
     return bool(owner.node_tree) and getattr(owner, "use_nodes", True)
+
+
+def is_directx(normal_map):
+    """Whether the green of a Normal Map node points down (5.2 and newer)."""
+    return getattr(normal_map, "convention", "OPENGL") == "DIRECTX"

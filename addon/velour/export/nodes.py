@@ -65,6 +65,17 @@ def former_node(material):
     return MeasuredNode(texture) if texture is not None else None
 
 
+def all_nodes(tree, seen=None):
+    """The nodes of a tree and of the groups in it, each group once."""
+    seen = set() if seen is None else seen
+    for node in tree.nodes:
+        yield node
+        group = getattr(node, "node_tree", None)
+        if group and group.as_pointer() not in seen:  # a broken file may nest a group in itself
+            seen.add(group.as_pointer())
+            yield from all_nodes(group, seen)
+
+
 def measured_nodes(tree, seen=None):
     """The MeasuredNodes of a tree and of the groups in it, each once."""
     seen = set() if seen is None else seen

@@ -71,9 +71,9 @@ _DRAW_SHAPE = {"SUN": _draw_sun, "POINT": _draw_point, "SPOT": _draw_spot, "AREA
 
 
 def _draw_shadow(column, light):
-    """Cycles' own shadow switch of 3.4 counts, too; it is shown only if it disables the shadow."""
-    if hasattr(light, "use_shadow"):
-        column.prop(light, "use_shadow", text="Cast Shadow")
+    """Cycles has a shadow switch of its own before 4.2; that of the light is EEVEE's there."""
     cycles = getattr(light, "cycles", None)
-    if not getattr(cycles, "cast_shadow", True):
-        column.prop(cycles, "cast_shadow", text="Cast Shadow in Cycles")
+    if hasattr(cycles, "cast_shadow"):
+        column.prop(cycles, "cast_shadow", text="Cast Shadow")
+    elif hasattr(light, "use_shadow"):
+        column.prop(light, "use_shadow", text="Cast Shadow")

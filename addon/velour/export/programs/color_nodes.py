@@ -1,9 +1,9 @@
 """Color nodes: mixes, ramps, curves, adjustments, channels."""
 
 from ...native import table
+from ..conversions import luminance_of
 from ..image_nodes import UnsupportedError
 from .blackbody import blackbody
-from .conversions import luminance_of
 from .curves import curve_range, curve_table, ramp_table
 from .math_nodes import by_identifier, known
 

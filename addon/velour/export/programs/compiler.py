@@ -1,8 +1,8 @@
 """Compiles the nodes that feed an input."""
 
+from ..conversions import converted, numbers_of, own_numbers
 from ..image_nodes import UnsupportedError
 from ..plugs import fed_by, types_between
-from .conversions import converted, numbers_of, own_numbers
 from .draft import MOST_INSTRUCTIONS, Draft
 from .nodes import NODES
 

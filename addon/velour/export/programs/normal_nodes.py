@@ -1,6 +1,8 @@
 """Nodes of the normal and the view."""
 
+from ..conversions import own_numbers
 from ..image_nodes import UnsupportedError
+from ..newer import is_directx
 
 
 def _normal(c, plug):
@@ -37,7 +39,7 @@ def bumped(c, plug, normal, heights, distance):
     """A normal bent by the height at the point and beside it. `distance`: scene length per unit of height."""
     width = plug.input("Filter Width")  # newer Blenders
     if width:
-        c.draft.width = min(c.draft.width, max(width.socket.default_value, 1e-3))
+        c.draft.width = min(c.draft.width, max(own_numbers(width)[0], 1e-3))
     strength = plug.input("Strength")
     steps = c.draft.source("step_x"), c.draft.source("step_y")
     inputs = c.input(strength) if strength else c.draft.number(1.0), distance, *heights, normal, *steps
@@ -77,6 +79,9 @@ def _normal_map(c, plug):
     c.draft.relief_maps.append(node.uv_map)
     axes = [c.draft.source(f"map_{name}") for name in ("tangent", "bitangent", "normal")]
     color, strength = c.input(plug.input("Color")), c.input(plug.input("Strength"))
+    if is_directx(node):
+        green = c.draft.math("subtract", 1.0, color.component(1))
+        color = c.draft.joined(color.component(0), green, color.component(2))
     strength = c.draft.math("maximum", strength, 0.0)
     return c.draft.one("normal_map", (color, strength, *axes, c.surface_normal()), 3)
 

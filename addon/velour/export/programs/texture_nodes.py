@@ -143,8 +143,10 @@ def _magic(c, plug):
 
 
 def _white_noise(c, plug):
+    """Unlike the coordinates of other textures, its own are a constant."""
     dimensions = _dimensions(plug.node, "noise_dimensions")
-    inputs = _placed(c, plug, dimensions)
+    vector = c.input(plug.input("Vector")) if dimensions > 1 else c.draft.vector((0, 0, 0))
+    inputs = vector, c.input(plug.input("W")) if dimensions in (1, 4) else c.draft.number(0.0)
     value, color = c.draft.step("white_noise", inputs, (1, 3), (dimensions - 1,))
     return color if plug.socket.name == "Color" else value
 

@@ -2,6 +2,8 @@
 
 import numpy as np
 
+from ..conversions import converted
+from ..image_nodes import UnsupportedError
 from ..plugs import fed_by
 
 
@@ -12,6 +14,12 @@ def radiance_of(plug, reader):
     if reader.steps_left <= 0:
         return black
     reader.steps_left -= 1
+    if plug.socket.type != "SHADER":  # an emission of this color, as in Cycles
+        try:
+            return converted(draft, compiler.output(plug), (plug.socket.type, "RGBA"))
+        except UnsupportedError as reason:
+            reader.note(plug, f"it is not supported ({reason}); rendered black.")
+            return black
     if node.bl_idname in ("ShaderNodeBackground", "ShaderNodeEmission"):
         color, strength = compiler.input(plug.input("Color")), compiler.input(plug.input("Strength"))
         scaled = _folded(draft, lambda c, s: c * s, color, strength)

@@ -8,6 +8,7 @@ from ..color import luminance_weights
 from ..plugs import fed_by
 from .layer import BLACK, Factor, Layer, diffuse
 from .relief import read_coat_relief, read_relief
+from .values import own_value
 
 # Velour's parameter: Blender's input, which may be textured.
 _PRINCIPLED = {
@@ -268,7 +269,7 @@ def _label(node, name):
 
 def _note_anisotropy(plug, reader):
     amount = plug.input("Anisotropy")  # 4.0 and newer; a separate node before
-    if amount and (fed_by(amount) or abs(amount.socket.default_value) > 1e-6):
+    if amount and (fed_by(amount) or abs(own_value(amount)) > 1e-6):
         reader.note(plug, "'Anisotropy' is not supported; ignored.")
 
 
@@ -281,6 +282,8 @@ def _glow(color, strength, reader):
     """An emission Layer; None if it emits nothing."""
     color, picture = reader.number(color)
     strength, gain = reader.number(strength)
+    if gain is None and strength == 0.0:
+        return None
     if picture is None and gain is None:
         radiance = tuple(strength * c for c in color)
         return Layer("emission", {"base_color": radiance}, {}) if any(radiance) else None
@@ -343,5 +346,5 @@ def _note_ignored(plug, reader):
 def _note_unused(plug, reader, name):
     """Notes an unsupported input that has an effect."""
     socket = plug.input(name)
-    if socket and (abs(socket.socket.default_value) > 1e-6 or fed_by(socket)):
+    if socket and (fed_by(socket) or abs(own_value(socket)) > 1e-6):
         reader.note(plug, f"'{name}' is not supported; ignored.")

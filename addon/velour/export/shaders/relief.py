@@ -3,6 +3,7 @@
 import bpy
 
 from ..image_nodes import Picture, UnsupportedError
+from ..newer import is_directx
 from ..plugs import fed_by
 from .layer import Relief
 
@@ -50,7 +51,7 @@ def _relief_of(socket, reader):
         strength, varies = reader.number(fed.input("Strength"))
         if (picture is None and color == _UNTILTED) or (varies is None and strength <= 0.0):
             return None
-        if isinstance(picture, Picture) and varies is None:
+        if isinstance(picture, Picture) and varies is None and not is_directx(fed.node):
             return Relief(picture, strength, fed.node.uv_map)
     if not _has_unit_length(fed.node):
         reader.note(

@@ -1,11 +1,12 @@
 """Reads the layers of a material's surface from its active output."""
 
+from ..conversions import converted
 from ..image_nodes import UnsupportedError
 from ..newer import has_nodes
 from ..nodes import active_output, former_node, model_texture
 from ..plugs import Plug, fed_by, inside, is_measured
 from ..programs import displaced
-from .layer import Factor, black, diffuse, gray, simplified, split
+from .layer import Factor, Layer, black, diffuse, gray, simplified, split
 from .measured import former_layer, read_measured
 from .readers import READERS
 from .values import Reader
@@ -28,12 +29,14 @@ def surface_layers(material, notes, unit=1.0, opens_measured=False):
         return [diffuse(tuple(material.diffuse_color[:3]))]  # the viewport color, as in Cycles
     owner = f"Material '{material.name}'"
     output = active_output(material.node_tree, "ShaderNodeOutputMaterial")
-    plug = fed_by(Plug(output.inputs["Surface"])) if output else None
+    plug, volume = (fed_by(Plug(output.inputs[name])) if output else None for name in ("Surface", "Volume"))
+    if volume:
+        notes.add(f"{owner}: volume is not supported; ignored.")
+    if plug is None and volume:  # its surface is the border of the volume
+        return [Layer("transparent", {"base_color": (1.0, 1.0, 1.0)}, {})]
     if plug is None:
         notes.add(f"{owner}: it has no surface shader; rendered black.")
         return [black()]
-    if fed_by(Plug(output.inputs["Volume"])):
-        notes.add(f"{owner}: volume is not supported; ignored.")
     reader = Reader(owner, notes, unit, opens_measured)
     _read_displacement(fed_by(Plug(output.inputs["Displacement"])), material, reader)
     layers = simplified(_read(plug, reader))
@@ -96,6 +99,8 @@ def _read(plug, reader):
         return []
     reader.steps_left -= 1
     node = plug.node
+    if plug.socket.type != "SHADER":
+        return _read_color(plug, reader)
     if node.bl_idname == "ShaderNodeMixShader":
         return _read_mix(plug, reader)
     if node.bl_idname == "ShaderNodeAddShader":
@@ -112,6 +117,22 @@ def _read(plug, reader):
         )
         return [gray()]
     return read(plug, reader)
+
+
+def _read_color(plug, reader):
+    """What is linked to a shader's input and is none: an emission of that color or number, as in Cycles."""
+    compiler = reader.compiler
+    try:
+        value = converted(compiler.draft, compiler.output(plug), (plug.socket.type, "RGBA"))
+        if value.first < 0:
+            return [Layer("emission", {"base_color": compiler.draft.constants_of(value)}, {})]
+        if found := compiler.draft.output(value, "color"):
+            return [Layer("emission", {"base_color": (1.0, 1.0, 1.0)}, {"base_color": found})]
+        reason = "the material has too many computed inputs"
+    except UnsupportedError as why:
+        reason = why
+    reader.note(plug, f"its emission is not supported ({reason}); ignored.")
+    return []
 
 
 def _shaders(plug, reader):

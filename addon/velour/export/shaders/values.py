@@ -1,10 +1,10 @@
 """Values, colors and pictures of a node's inputs."""
 
+from ..conversions import numbers_of, own_numbers
 from ..corner_colors import corner_colors_of
 from ..image_nodes import UnsupportedError, picture_of, uv_placement
 from ..plugs import fed_by, types_between
 from ..programs import Compiler
-from ..programs.conversions import numbers_of, own_numbers
 
 _MOST_STEPS = 256
 

@@ -7,10 +7,11 @@ import numpy as np
 from mathutils import Matrix
 
 from ..color import is_linear_rec709, luminance_weights
+from ..conversions import own_numbers
 from ..files import absolute_path
 from ..image_nodes import maps_coordinates
 from ..newer import has_nodes
-from ..nodes import active_output
+from ..nodes import active_output, all_nodes
 from ..notes import ExportError
 from ..picture_files import linear_file
 from ..pixels import multiplies_floats, working_pixels
@@ -39,7 +40,7 @@ def shown_world(depsgraph):
 def has_moving_picture(world):
     """Whether it uses a sequence or movie; Blender does not report that their frame changes."""
     tree = world.node_tree if world and has_nodes(world) else None
-    images = [getattr(node, "image", None) for node in tree.nodes] if tree else []
+    images = [getattr(node, "image", None) for node in all_nodes(tree)] if tree else []
     return any(image and image.source in _MOVING for image in images)
 
 
@@ -88,9 +89,9 @@ def _add_nodes(light, world, frame, notes):
     surface = fed_by(Plug(output.inputs["Surface"])) if output else None
     if surface is None:
         return _add_color(light, (0.0, 0.0, 0.0))
-    picture = _lone_environment(surface)
-    if picture is not None:
-        strength = own_value(surface.input("Strength"))
+    lone = _lone_environment(surface)
+    if lone is not None:
+        *picture, strength = lone
         if strength < 0.0:
             return _add_negative(light, owner, notes)
         _add_environment(light, owner, *picture, strength, frame, notes)
@@ -108,19 +109,21 @@ def _add_nodes(light, world, frame, notes):
 
 
 def _lone_environment(surface):
-    """The Environment Texture node of a Background that is nothing but an image, and its rotation; else None.
+    """Node, rotation and strength of a world that is nothing but an Environment Texture; else None.
 
     Such an image lights the scene with its own texels, and may be one of a sequence.
     """
-    if surface.node.bl_idname != "ShaderNodeBackground" or fed_by(surface.input("Strength")):
-        return None
-    color = fed_by(surface.input("Color"))
+    color, strength = surface, 1.0
+    if surface.node.bl_idname == "ShaderNodeBackground":
+        if fed_by(surface.input("Strength")):
+            return None
+        color, strength = fed_by(surface.input("Color")), own_value(surface.input("Strength"))
     if color is None or color.node.bl_idname != "ShaderNodeTexEnvironment":
         return None
     rotation = _rotation(fed_by(color.input("Vector")))
     if rotation is None or color.node.projection != "EQUIRECTANGULAR" or maps_coordinates(color.node):
         return None
-    return color.node, rotation
+    return color.node, rotation, strength
 
 
 def _rotation(vector):
@@ -134,23 +137,24 @@ def _rotation(vector):
     before = _rotation(fed_by(vector.input("Vector"))) if fed_by(vector.input("Vector")) else None
     if before is None:
         return None
-    rotation = _euler_matrix(vector.node.inputs["Rotation"].default_value)
+    rotation = _euler_matrix(own_numbers(vector.input("Rotation")))
     inverse = vector.node.vector_type == "TEXTURE"
     return np.array(rotation.transposed() if inverse else rotation, np.float32) @ before
 
 
 def _only_rotates(mapping):
     """Whether a Mapping node maps directions by a rotation and a positive factor."""
-    node, names = mapping.node, ("Location", "Rotation", "Scale")
-    if any(fed_by(mapping.input(name)) for name in names if mapping.input(name)):
+    node = mapping.node
+    location, rotation, size = (mapping.input(name) for name in ("Location", "Rotation", "Scale"))
+    if any(map(fed_by, (location, rotation, size))):
         return False
-    scale, location = node.inputs["Scale"].default_value, mapping.input("Location")
+    scale = own_numbers(size)
     if node.vector_type == "NORMAL" or not all(
         math.isclose(s, scale[0], rel_tol=1e-5) and s > 0 for s in scale
     ):
         return False
     moves = node.vector_type in ("POINT", "TEXTURE") and location is not None
-    return not moves or all(abs(c) <= 1e-6 for c in location.socket.default_value)
+    return not moves or all(abs(c) <= 1e-6 for c in own_numbers(location))
 
 
 def _add_environment(light, owner, node, rotation, strength, frame, notes):

@@ -5,8 +5,8 @@ from itertools import pairwise
 import bpy
 import numpy as np
 
-from ..color import luminance_weights
-from ..plugs import INLINES, followed, is_passed_through, is_within_tree, types_between
+from .color import luminance_weights
+from .plugs import INLINES, followed, is_passed_through, is_within_tree, types_between
 
 _NUMBERS = ("VALUE", "INT", "BOOLEAN")
 _EQUAL = (1.0 / 3.0,) * 3
