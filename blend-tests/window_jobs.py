@@ -12,10 +12,11 @@ _QUICK = {"tolerance": 0.2, "max_lobes": 2}
 
 def start(folder):
     """Called by the harness once the window is there."""
-    of_a_fit = (renamed, copied, deleted, undone, new_file, loaded_file, scene_removed)
+    of_a_fit = (renamed, copied, deleted, undone, undone_before_its_approximation, saved_meanwhile)
+    of_its_file = (new_file, loaded_file, scene_removed)
     of_its_measurement = (measurement_cleared, measurement_replaced)
     in_line = (outline_after_a_fit, approximation_after_a_fit, scene_fit_after_a_fit, waiting_given_up)
-    window.run(folder, (*of_a_fit, *of_its_measurement, *in_line, scene_fit_renamed))
+    window.run(folder, (*of_a_fit, *of_its_file, *of_its_measurement, *in_line, scene_fit_renamed))
 
 
 def _cube_with_fit(**settings):
@@ -94,6 +95,42 @@ def _cancelled():
     assert not state.running, "a fit of a file that is gone"
     assert state.waiting == 0
     _cube_with_fit(tolerance=0.2, max_lobes=2)
+    yield from window.at_rest()
+
+
+def undone_before_its_approximation(folder):
+    """A redo brings the model back: the fit may have taken long."""
+    with mock.patch.object(module("operators.approximate"), "_LONG_SECONDS", 0.0):
+        _material, before = _cube_with_fit()
+        yield from window.until(lambda: _model("Paint") != before, "a model")
+        after = _model("Paint")
+        with window.override():
+            bpy.ops.ed.undo()
+        assert _model("Paint") == before
+        yield from window.at_rest()
+    with window.override():
+        bpy.ops.ed.redo()
+    assert _model("Paint") == after
+
+
+def saved_meanwhile(folder):
+    """As Blender saves temporary files, which it does not while an operator is modal."""
+    autosave = module("operators.background_job")._autosave
+    asked = bpy.context.preferences.filepaths
+    asked.temporary_directory = str(folder)
+    assert asked.use_auto_save_temporary_files
+    _cube_with_fit(tolerance=1e-6, max_lobes=24)
+    autosave._saved -= 60 * asked.auto_save_time + 1
+    with mock.patch.object(module("operators.autosave"), "_QUIET_SECONDS", 0.0):
+        yield from window.until(lambda: list(folder.glob("*_autosave.blend")), "an autosave")
+    assert bpy.context.window_manager.velour.running
+    assert bpy.data.filepath == ""
+    with window.override():
+        bpy.ops.ed.undo_push(message="changed")
+        assert bpy.data.is_dirty
+        module("operators.autosave").save(str(folder))
+        assert bpy.data.is_dirty, "Blender would not ask before it closes"
+    bpy.context.window_manager.velour.cancel_requested = True
     yield from window.at_rest()
 
 

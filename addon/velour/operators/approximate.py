@@ -12,6 +12,8 @@ from .convert import convert
 from .job_target import JobTarget
 from .shared_group import AsksUsers
 
+_LONG_SECONDS = 10.0  # of a fit that no undo may lose, whatever the undo is meant for
+
 
 class MakesModel(AsksUsers, JobsInSteps):
     """Mixin for an operator whose first job makes a model. The material gets it at once; the approximation
@@ -37,12 +39,17 @@ class MakesModel(AsksUsers, JobsInSteps):
             self._user, self._what = JobTarget(material, node), "The approximation"
             self._after_cancel = "; other engines do not show the new model"
             self._steps = approximation_group.steps(model)
+            if self._ticket is not None and self._seconds > _LONG_SECONDS:
+                bpy.ops.ed.undo_push(message=self.bl_label)
         if self._advance():
             return None
         (material, node), digest = self._user.find(), sha256(self._data)
         image = node.image if node is not None else None
-        if image is not None and image.velour.sha256 == digest:  # an undo may have taken it back
-            approximation_group.put(node, material, self._steps.result, self._info, digest)
+        if (
+            image is None or image.velour.sha256 != digest
+        ):  # an undo took it back; a step here would end its redo
+            return {"CANCELLED"}
+        approximation_group.put(node, material, self._steps.result, self._info, digest)
         return {"FINISHED"}
 
     def _fail(self, error):

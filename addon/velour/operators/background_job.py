@@ -6,15 +6,32 @@ import bpy
 
 from ..export import ExportError
 from ..native import Status, VelourError
+from .autosave import Autosave
 
 TABS = ("MATERIAL", "OBJECT", "COLLECTION")  # tabs of the Properties editor whose panels show the progress
 _line = []  # queue of tickets; the first one runs
+_autosave = Autosave()
+
+
+_SECONDS, _WAITING_SECONDS = 0.1, 2.0  # between looks at the job that runs, and at one that is queued
 
 
 class _Ticket:
-    """A place in the queue."""
+    """A place in the queue, and the timer that wakes its operator."""
 
     is_given_up = False
+    _timer = _window = None
+
+    def wake(self, context, seconds, window=None):
+        """Wakes the operator at this interval from now on, in the window in which it was started."""
+        self.sleep(context)
+        self._window = window or self._window
+        self._timer = context.window_manager.event_timer_add(seconds, window=self._window)
+
+    def sleep(self, context):
+        if self._timer is not None:
+            context.window_manager.event_timer_remove(self._timer)
+            self._timer = None
 
 
 class BackgroundJob:
@@ -26,8 +43,8 @@ class BackgroundJob:
     Never use REGISTER: Adjust Last Operation and Repeat Last call `execute`, which blocks the window.
     """
 
-    _timer = None
     _ticket = None
+    _looked = 0.0  # time of the last step: the timers of other operators wake this one, too
 
     def _enter(self, context, subject):
         """Queues work that is ready to begin; returns the result of `invoke`."""
@@ -43,16 +60,17 @@ class BackgroundJob:
         except BaseException:
             self._leave(context)
             raise
-        self._timer = context.window_manager.event_timer_add(0.1, window=context.window)
+        self._ticket.wake(context, _SECONDS if _line[0] is self._ticket else _WAITING_SECONDS, context.window)
         context.window_manager.modal_handler_add(self)
         return {"RUNNING_MODAL"}
 
     def modal(self, context, event):
+        _autosave.notice(event)
         try:
             if self._ticket.is_given_up:
                 raise VelourError(Status.CANCELLED, "The job was removed from the queue.")
             result = self._wants_to_stop(context, event) and self._stop()
-            if not result and event.type == "TIMER" and self._has_turn(context):
+            if not result and event.type == "TIMER" and self._is_due() and self._has_turn(context):
                 result = self._step(context)
         except (ExportError, VelourError) as error:
             result = self._fail(error)
@@ -60,6 +78,13 @@ class BackgroundJob:
             self._leave(context)
             raise
         return self._end(context, result) if result else {"PASS_THROUGH"}
+
+    def _is_due(self):
+        now = time.monotonic()
+        if now - self._looked < 0.9 * _SECONDS:
+            return False
+        self._looked = now
+        return True
 
     def _has_turn(self, context):
         """Whether it is first in the queue; starts the work as soon as it is."""
@@ -95,9 +120,9 @@ class BackgroundJob:
             _line.remove(self._ticket)
         state = context.window_manager.velour
         state.waiting = len(_line) - int(state.running)  # includes the next job until its timer event
-        if self._timer is not None:
-            context.window_manager.event_timer_remove(self._timer)
-            self._timer = None
+        self._ticket.sleep(context)
+        if _line and not state.running:
+            _line[0].wake(context, _SECONDS)
         redraw(context)
 
 
@@ -169,6 +194,9 @@ class OneJob(BackgroundJob):
 
     def cancel(self, context):
         """Called when Blender closes the window or loads another file."""
+        state = context.window_manager.velour
+        state.canceled = f"{self._what} was canceled: its window was closed, or another file was opened."
+        state.canceled_subject = getattr(self, "_subject", "")
         self._leave(context)
         if self._job is not None:
             self._job.close()
@@ -182,6 +210,7 @@ class OneJob(BackgroundJob):
 
     def _step(self, context):
         if not self._job.wait(timeout=0.0):
+            _autosave.step(context)
             state = self._job.poll()
             self._show(context, state.stage, state.fraction, state.seconds_left)
             return None

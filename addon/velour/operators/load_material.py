@@ -162,7 +162,8 @@ class VELOUR_OT_load_material(PutsInSlot, OneJob, bpy.types.Operator, ImportHelp
 
     def _paths(self):
         names = [file.name for file in self.files if file.name]
-        return [os.path.join(self.directory, name) for name in names] or [bpy.path.abspath(self.filepath)]
+        folder = bpy.path.abspath(self.directory)
+        return [os.path.join(folder, name) for name in names] or [bpy.path.abspath(self.filepath)]
 
     def _load(self, file):
         if file.data is None:
