@@ -257,6 +257,22 @@ class FrameParts(BlenderTest):
         words = "belongs to another render, as the blend differs.*remove it, or choose another folder"
         self._refused(words, blend, "merged", "--velour-parts", self.parts)
 
+    def test_another_state_of_a_library_is_refused(self):
+        library = self.folder / "parts.blend"
+        mesh = bpy.data.meshes.new("Linked")
+        bpy.data.libraries.write(str(library), {mesh}, fake_user=True)
+        blend = self._save(samples=16, size=16)
+        with bpy.data.libraries.load(str(library), link=True) as (_, wanted):
+            wanted.meshes = ["Linked"]
+        bpy.context.collection.objects.link(bpy.data.objects.new("Linked", wanted.meshes[0]))
+        bpy.ops.wm.save_as_mainfile(filepath=str(blend))
+        self._render(blend, "first", "--velour-parts", self.parts, "--velour-samples", "1/2")
+        bpy.ops.wm.read_homefile(use_empty=True)
+        mesh = bpy.data.meshes.new("Linked")
+        mesh.from_pydata([(0, 0, 0)], [], [])
+        bpy.data.libraries.write(str(library), {mesh}, fake_user=True)
+        self._refused("the linked data differs", blend, "other", "--velour-parts", self.parts)
+
     def test_a_damaged_part_is_refused(self):
         blend = self._save()
         self._render(blend, "part", "--velour-parts", self.parts, "--velour-samples", "0:8")

@@ -8,6 +8,7 @@ from pathlib import Path
 
 import bpy
 
+from regression import user_check
 from support.check_folder import CheckFolderTest
 
 
@@ -102,11 +103,21 @@ class Trouble(CheckFolderTest):
         self.save("shot")
         mine = self.folder / "pictures"
         mine.mkdir()
-        (mine / "holiday.png").write_bytes(b"")
+        for name in ("holiday.png", "report.json"):  # other programs write reports, too
+            (mine / name).write_bytes(b"")
         status, said, _ = self.check("--update", "--output", mine)
         self.assertEqual(status, 1)
         self.assertIn("name another --output", said)
         self.assertTrue((mine / "holiday.png").is_file())
+
+    def test_only_an_earlier_page_is_removed(self):
+        page = self.folder / "page"
+        user_check._make_room(page)
+        for name in ("index.html", "report.json", "notes.txt"):
+            (page / name).write_bytes(b"")
+        (page / "pictures").mkdir()
+        user_check._make_room(page)
+        self.assertEqual({path.name for path in page.iterdir()}, {user_check.PAGE_MARK, "notes.txt"})
 
 
 _TROUBLE = {

@@ -196,6 +196,25 @@ def test_inputs_are_not_replaced(tmp_path, model_file, mesh_file, world_file):
     (folder / "btf.json").write_text("{}")
     assert "would replace a file of the input" in refused("compress", folder, "-o", folder / "btf.json")
     assert (folder / "btf.json").read_text() == "{}"
+    votf = ["votf", mesh_file, "--material", model_file]
+    assert "would replace the input" in refused(*votf, "-o", mesh_file)
+    assert "would replace the input" in refused(*votf, "-o", tmp_path / "s.velour", "--json-file", model_file)
+
+
+def test_words_are_no_inputs(tmp_path, monkeypatch, model_file):
+    """Results are replaced in folders whose names are a verb, a tile, or the value of an option."""
+    monkeypatch.chdir(tmp_path)
+    for name in ("tile", "weave", "gltf"):
+        (tmp_path / name).mkdir()
+    votf = ["votf", "weave", "--material", model_file, "--texels", 8, "--check-views", 0]
+    calls = [("tile", "weave", "-o", f"{name}/weave.obj") for name in ("tile", "weave")]
+    for call in [
+        *calls,
+        ("export", model_file, "--to", "gltf", "-o", "gltf/m.gltf"),
+        [*votf, "-o", "weave/s.velour"],
+    ] * 2:
+        status, _, err = velour(*call)
+        assert status == 0, err
 
 
 def test_a_full_disk_is_named_with_the_file(tmp_path):

@@ -307,6 +307,15 @@ def test_a_denoised_picture_is_closer_to_the_truth_and_says_how_close(render_arg
     assert result.json["samples"] == []  # such pictures are not merged
 
 
+def test_a_stopped_render_leaves_the_noisy_image_before(render_arguments, tmp_path, denoiser):
+    noisy = tmp_path / "noisy.exr"
+    noisy.write_text("of an earlier run")
+    limit = ("--time-limit", 0.05, "--spp", 1 << 20, "--denoise", "--noisy-image", noisy)
+    at = render_arguments.index("--spp")
+    assert velour(*render_arguments[:at], *render_arguments[at + 2 :], *limit).status == 3
+    assert noisy.read_text() == "of an earlier run"
+
+
 def test_a_noise_target_is_that_of_the_denoised_picture(render_arguments, denoiser):
     at = render_arguments.index("--spp")
     arguments = render_arguments[:at] + render_arguments[at + 2 :]

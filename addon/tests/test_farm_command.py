@@ -100,6 +100,17 @@ def test_a_blend_is_known_by_what_is_in_it(farm, tmp_path):
     assert (status, "is of another .blend" in said) == (1, True)
 
 
+def test_links_are_not_followed(farm, tmp_path, monkeypatch):
+    """A node's link may lead elsewhere, and Blender looks for the files of a link beside it."""
+    versions = tmp_path / "versions"
+    versions.mkdir()
+    (tmp_path / "shot.blend").rename(versions / "shot_v12.blend")
+    (tmp_path / "shot.blend").symlink_to(versions / "shot_v12.blend")
+    assert farm("--no-submit")[0] == 0
+    made = job.load(tmp_path / "frames")
+    assert (made.blend, made.folder) == (str(tmp_path / "shot.blend"), tmp_path / "frames/farm")
+
+
 @pytest.mark.parametrize("name", ['a "quote"', "{shot}", "back\\slash"])
 def test_paths_that_engines_read_otherwise(farm, tmp_path, name):
     status, said = farm("--no-submit", "--output", str(tmp_path / name))

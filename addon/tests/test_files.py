@@ -24,6 +24,15 @@ def test_a_failing_writer_leaves_the_old_file_and_nothing_else(tmp_path):
     assert list(tmp_path.iterdir()) == [path]
 
 
+def test_a_link_stays_and_its_target_is_replaced(tmp_path):
+    target, link = tmp_path / "v003.json", tmp_path / "latest.json"
+    target.write_text("old")
+    link.symlink_to(target.name)
+    files.write_text(link, "new")
+    assert link.is_symlink()
+    assert target.read_text() == "new"
+
+
 def test_a_folder_that_takes_no_files_is_named_by_the_file_that_was_asked_for(tmp_path):
     path = tmp_path / "missing" / "report.json"
     with pytest.raises(OSError, match="No such file") as raised:

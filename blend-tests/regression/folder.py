@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import re
 from collections.abc import Iterable
 from pathlib import Path
@@ -29,13 +30,18 @@ def own_reference(blend: Path) -> Path:
 
 def _blends(path: Path) -> list[Path]:
     if path.is_dir():
-        found = sorted(path.resolve().glob("*.blend"))
+        found = sorted(_absolute(path).glob("*.blend"))
         if not found:
             raise FolderError(f"{path} holds no .blend file; name a folder that does.")
         return found
     if path.suffix != ".blend" or not path.is_file():
         raise FolderError(f"{path} is neither a folder nor a .blend file.")
-    return [path.resolve()]
+    return [_absolute(path)]
+
+
+def _absolute(path: Path) -> Path:
+    """Links stay: references lie beside a link, and Blender looks there for relative paths."""
+    return Path(os.path.abspath(path))
 
 
 def _references(blend: Path, frames: list[int] | None) -> dict[int | None, Path]:

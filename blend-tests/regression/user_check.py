@@ -28,7 +28,8 @@ STAGE = TESTS.parent / "build/release/blender"
 JOBS = min(2, os.cpu_count() or 1)  # starting and reading keep one core busy
 SECONDS = 900  # that all renders of a .blend may take
 INTERRUPTED = 130
-PAGE_MARK = "report.json"  # in every folder that velour-check made
+PAGE_MARK = ".velour-check"  # in every folder that velour-check made
+MADE = ("index.html", "report.json", "pictures", "work", "new")  # what it leaves there
 
 
 def main() -> int:
@@ -86,11 +87,12 @@ def _default_output(first: Path) -> Path:
 
 
 def _make_room(output: Path) -> None:
-    """An earlier page goes; what is no page is left alone."""
+    """An earlier page goes, and nothing else."""
     if output.is_dir() and any(output.iterdir()) and not (output / PAGE_MARK).is_file():
         raise folder.FolderError(f"{output} holds something else than a page; name another --output.")
-    shutil.rmtree(output, ignore_errors=True)
-    output.mkdir(parents=True)
+    for path in (output / name for name in MADE):
+        shutil.rmtree(path) if path.is_dir() else path.unlink(missing_ok=True)
+    output.mkdir(parents=True, exist_ok=True)
     (output / PAGE_MARK).touch()
 
 

@@ -8,6 +8,7 @@ import sys
 import tempfile
 from pathlib import Path
 
+from ..farm.blender import environment
 from ..native.errors import refuse
 from . import files
 
@@ -42,7 +43,12 @@ def _run(blender, package, order):
     arguments = ["--", str(package.parent), f"{package.name}.{_WRITER}", str(order)]
     try:
         done = subprocess.run(
-            [*command, *arguments], capture_output=True, text=True, errors="replace", check=False
+            [*command, *arguments],
+            capture_output=True,
+            text=True,
+            errors="replace",
+            check=False,
+            env=environment(blender),
         )
     except OSError as error:
         raise refuse(

@@ -20,12 +20,16 @@ _BLOCK = 1 << 20  # bytes between two checks for a cancel
 
 
 def write_atomic(path: str | os.PathLike, write: Callable[[Path], object]) -> None:
-    """Calls `write(temporary)` with a path beside `path`, then renames it; a failure leaves no trace."""
+    """Calls `write(temporary)` with a path beside `path`, then renames it; a failure leaves no trace.
+
+    A link stays: its target is replaced.
+    """
     path = Path(path)
-    temporary = _new_beside(path)
+    target = Path(os.path.realpath(path)) if path.is_symlink() else path
+    temporary = _new_beside(target)
     try:
         write(temporary)
-        os.replace(temporary, path)
+        os.replace(temporary, target)
     except BaseException as error:
         temporary.unlink(missing_ok=True)
         if isinstance(error, OSError) and error.errno and error.filename in (None, str(temporary)):

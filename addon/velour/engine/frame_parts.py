@@ -5,9 +5,10 @@ from pathlib import Path
 
 import bpy
 
-from ..core.files import sha256
 from ..core.film_parts import FilmParts
 from ..core.stopping import Stopping
+from ..export.libraries import library_files
+from ..farm.sources import sha256
 from ..native.errors import refuse
 from ..native.version import version_text
 from . import written_file
@@ -38,6 +39,7 @@ def frame_parts(given, depsgraph, view, options, models, shown):
         "split": min(options["split"], options["spp"]),
         "version": version_text(),
         "blend": _blend_hash(),
+        "linked_data": sorted(map(sha256, library_files())),
         "scene": scene.name,
         "layer": layer.name,
         "frame": scene.frame_current,

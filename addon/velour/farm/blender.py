@@ -59,7 +59,7 @@ def execute(command: list[str], log: Path) -> int:
                 stdin=subprocess.DEVNULL,
                 stdout=file,
                 stderr=subprocess.STDOUT,
-                env=_environment(command),
+                env=environment(command[0]),
             )
         except OSError as error:
             file.write(f"Error: {command[0]} cannot be started ({error.strerror})\n".encode())
@@ -92,13 +92,13 @@ def heeding_sigterm() -> Iterator[list[subprocess.Popen]]:
         signal.signal(signal.SIGTERM, earlier or signal.SIG_DFL)
 
 
-def _environment(command: list[str]) -> dict[str, str]:
+def environment(program: str) -> dict[str, str]:
     """Puts Blender's folder first on PATH, where a distribution's Blender looks for its Python: it must not
     find that of a version manager."""
-    program = shutil.which(command[0])
-    if not program:
+    found = shutil.which(program)
+    if not found:
         return dict(os.environ)
-    folder = str(Path(program).resolve().parent)
+    folder = str(Path(found).resolve().parent)
     return {**os.environ, "PATH": os.pathsep.join((folder, os.environ.get("PATH", os.defpath)))}
 
 

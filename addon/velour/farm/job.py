@@ -110,7 +110,7 @@ def load(path: Path) -> Job:
     if found is None:
         raise JobError(f"{path} holds no job; scripts/farm makes one from a .blend.")
     try:
-        return Job(**json.loads(found.read_text(encoding="utf-8")), folder=found.resolve().parent)
+        return Job(**json.loads(found.read_text(encoding="utf-8")), folder=found.absolute().parent)
     except (ValueError, TypeError) as error:
         raise JobError(f"{found} cannot be read ({error}); remove it, and make the job anew.") from error
 

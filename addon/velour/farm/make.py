@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import json
+import os
 import tempfile
 from pathlib import Path
 
@@ -14,10 +15,11 @@ HERE = Path(__file__).resolve().parent
 
 def make(given: argparse.Namespace) -> job.Job:
     """Saves nothing. An existing job must have the same .blend, the same models and the same Velour."""
-    blend = given.path.resolve()
+    # Links stay: nodes may have others of the same names, and Blender looks beside a link for relative paths.
+    blend = Path(os.path.abspath(given.path))
     if not blend.is_file():
         raise job.JobError(f"{blend} is no file.")
-    folder = (given.output or blend.parent / "frames").resolve() / job.FOLDER
+    folder = Path(os.path.abspath(given.output or blend.parent / "frames")) / job.FOLDER
     _check_path(folder.parent)
     made = job.Job(
         blend=str(blend),

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import contextlib
 from dataclasses import dataclass
+from pathlib import Path
 
 from . import frame, ranges
 from .frame import DONE, FAILED, UNFINISHED
@@ -36,14 +38,21 @@ def look(job: Job) -> Status:
     """Reads every picture: one that another program damaged does not count as done."""
     done, failed, left = [], {}, []
     for number in job.frames:
-        why = job.failures(number)
+        why = [said for path in job.failures(number) if (said := _read(path))]
         if not frame.problem(job, job.picture(number)):
             done.append(number)
         elif why:
-            failed[number] = " ".join(path.read_text(encoding="utf-8").strip() for path in why)
+            failed[number] = " ".join(why)
         else:
             left.append(number)
     return Status(done, failed, left)
+
+
+def _read(path: Path) -> str:
+    """The text of a file, which a running task may have removed by now."""
+    with contextlib.suppress(FileNotFoundError):
+        return path.read_text(encoding="utf-8").strip()
+    return ""
 
 
 def tasks_left(job: Job, status: Status) -> list[int]:

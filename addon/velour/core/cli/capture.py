@@ -127,7 +127,7 @@ def run(args: argparse.Namespace) -> dict:
         raise refuse("Give either a tile or mesh to capture, or --microsurface.")
     other = _MESOSTRUCTURE if args.microsurface else _MICROSURFACE
     for name in other:
-        if getattr(args, name) not in (None, False):
+        if getattr(args, name) is not None and getattr(args, name) is not False:
             kind = "--microsurface" if args.microsurface else "captures of mesostructure"
             raise refuse(f"--{name.replace('_', '-')} does not apply to {kind}; leave it out.")
     return _capture_microsurface(args) if args.microsurface else _capture_tile(args)

@@ -38,8 +38,7 @@ def main(arguments: list[str] | None = None) -> int:
         output.set_up_log("error" if args.quiet else args.log_level)
         if args.simd:
             library.select_simd(args.simd)
-        if args.verb != "votf":  # which may add to a model in place
-            output.check_inputs_remain(args)
+        output.check_inputs_remain(args)
         if args.json_file:
             output.check_writable(args.json_file)
         output.deliver(args, args.run(args))

@@ -7,6 +7,7 @@ import logging
 import os
 import sys
 import tempfile
+from collections.abc import Iterator
 from pathlib import Path
 
 from .. import files
@@ -102,29 +103,43 @@ def _shown(value) -> str:
     return str(value)
 
 
+# Names of arguments, by what their paths are for.
 _OUTPUTS = ("output", "noisy_image", "json_file")
+_INPUTS = (
+    *("input", "file", "model", "parts", "subject", "measurement", "held_out", "merge"),
+    *("mesh", "material", "proposal", "world", "reference", "full_model", "for_scene"),
+)
+_IN_PLACE = ("votf", "output", "material")  # verb, output and input: a model may get its silhouette in place
 
 
 def check_inputs_remain(args: argparse.Namespace) -> None:
     """Raises OSError if an output would replace an input or, except models, a file in the folder of one."""
-    given = {name: value if isinstance(value, list) else [value] for name, value in vars(args).items()}
-    outputs = [
-        Path(path) for name in _OUTPUTS for path in given.get(name, []) if path and Path(path).exists()
-    ]
-    inputs = [
-        Path(path)
-        for name, values in given.items()
-        for path in values
-        if name not in _OUTPUTS and isinstance(path, str) and path and os.path.exists(path)
-    ]
-    for written in outputs:
-        for read in inputs:
+    for output, written in _existing(args, _OUTPUTS):
+        for name, read in _existing(args, _INPUTS):
+            if (args.verb, output, name) == _IN_PLACE:
+                continue
             inside = read.is_dir() and written.suffix != ".velour" and _is_inside(written, read)
             if inside or written.samefile(read):
                 raise OSError(
                     f"The output {written} would replace {'a file of ' if inside else ''}the input {read};"
                     " choose another name."
                 )
+
+
+def _existing(args: argparse.Namespace, names: tuple[str, ...]) -> Iterator[tuple[str, Path]]:
+    """The files and folders that the arguments `names` name. A tile is none, whatever lies beside it."""
+    for name in names:
+        value = getattr(args, name, None)
+        for path in value if isinstance(value, list) else [value]:
+            is_path = isinstance(path, str) and not (name == "subject" and _is_tile(path))
+            if is_path and os.path.exists(path):
+                yield name, Path(path)
+
+
+def _is_tile(name: str) -> bool:
+    from .subject import is_tile  # with numpy, which other verbs need not wait for
+
+    return is_tile(name)
 
 
 def _is_inside(path: Path, folder: Path) -> bool:

@@ -162,14 +162,14 @@ def run(args: argparse.Namespace) -> dict:
             output.log.info("Rendering samples %d:%d.", *left.ranges[0])
             job.wait(output.progress_of(args))
             report = job.report() | {"denoised": None}
-            picture = job.read_pass("Combined")
+            noisy = picture = job.read_pass("Combined")
             if args.denoise and report["passes"]:
-                if args.noisy_image:
-                    images.write(args.noisy_image, picture)
                 picture, report["denoised"], report["stages"]["denoise"] = _denoised(job, args)
             rendered = time.perf_counter()
             new = replace(left, ranges=render_part.rendered(left, report), read=lambda: picture)
             whole = unfinished.deliver(part, before, new, report)
+            if args.noisy_image:
+                images.write(args.noisy_image, noisy)
         written = time.perf_counter()
         info = described.info()
     report["biased_by"] = biases(options)

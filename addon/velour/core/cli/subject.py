@@ -19,6 +19,11 @@ UPS = tuple(_UP)
 MESHES = (".obj", ".ply")
 
 
+def is_tile(name: str) -> bool:
+    """Whether a subject is a tile: its name means the tile even if there is a folder of that name."""
+    return any(kind["name"] == name.lower() for kind in Tile.kinds())
+
+
 def add_place_arguments(group) -> None:
     group.add_argument(
         "--period",

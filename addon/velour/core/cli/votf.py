@@ -83,4 +83,5 @@ def _job(args: argparse.Namespace, model: Model, handles: contextlib.ExitStack):
 
 def _is_data(name: str) -> bool:
     """Whether `name` is a file or folder but not a mesh."""
-    return Path(name).exists() and Path(name).suffix.lower() not in subject.MESHES
+    is_mesh = Path(name).suffix.lower() in subject.MESHES
+    return Path(name).exists() and not is_mesh and not subject.is_tile(name)
