@@ -40,6 +40,20 @@ void read_bsdf_xml(const std::string& path) {
   measurement->eval(Vec3(0, 0.6f, 0.8f), {&wl, 1}, {&f, 1}, {&valid, 1});
 }
 
+/// Blank pages of faxes have many more pixels than bytes: of such pictures only the headers are read.
+bool is_small(const Picture& header) {
+  constexpr double kMaxPixels = 16e6;
+  return static_cast<double>(header.width) * header.height < kMaxPixels;
+}
+
+void read_colors(const std::string& path) {
+  if (is_small(read_picture_header(path, {}))) read_picture(path);
+}
+
+void read_channels(const std::string& path) {
+  if (is_small(read_picture_channels_header(path))) read_picture_channels(path);
+}
+
 using Reader = void (*)(const std::string& path);
 struct Named {
   const char* name;
@@ -48,8 +62,8 @@ struct Named {
 };
 
 constexpr Named kReaders[] = {
-    {"picture", "", [](const std::string& path) { read_picture(path); }},
-    {"channels", ".exr", [](const std::string& path) { read_picture_channels(path); }},
+    {"picture", "", read_colors},
+    {"channels", ".exr", read_channels},
     {"measurement", "", [](const std::string& path) { load_measurement(path); }},
     {"bsdf_xml", "", read_bsdf_xml},
     {"btf", ".btf", read_btf},

@@ -75,25 +75,6 @@ struct Storage {
   size_t samples_together() const { return is_planar ? 1 : samples; }
 };
 
-/// Maximum number of bytes of pixels per byte of the file.
-uint64_t expansion_of(uint16_t compression) {
-  switch (compression) {
-    case COMPRESSION_NONE:
-      return 1;
-    case COMPRESSION_CCITTFAX3:
-    case COMPRESSION_CCITTFAX4:
-      return 1 << 16;  // a bit repeats the row above: eight rows of at most 65536 pixels
-    case COMPRESSION_LZW:
-      return 2560;  // a code of 12 bits: a string as long as the table
-    case COMPRESSION_LZMA:
-      return 8192;  // 14 choices of at least 0.022 bits each: 273 bytes
-    case COMPRESSION_ZSTD:
-      return 1 << 15;  // 4 bytes: a block of 128 KB
-    default:
-      return kMaxExpansion;
-  }
-}
-
 template <typename T>
 T tag(TIFF* tiff, uint32_t name, T otherwise) {
   T value = otherwise;
@@ -123,6 +104,15 @@ Storage storage_of(TIFF* tiff) {
   }
   s.colors = s.is_cmyk ? 4 : s.photometric == PHOTOMETRIC_RGB || s.photometric == PHOTOMETRIC_LOGLUV ? 3 : 1;
   return s;
+}
+
+/// Maximum number of bytes of pixels per byte of the file. Zstandard and LZMA could have more, with which a few bytes
+/// would be gigabytes.
+uint64_t expansion_of(const Storage& s) {
+  const bool is_fax = s.compression == COMPRESSION_CCITTFAX3 || s.compression == COMPRESSION_CCITTFAX4;
+  if (is_fax && s.samples == 1 && s.bits == 1) return 1 << 16;  // a bit repeats a row: eight of at most 65536 pixels
+  if (s.compression == COMPRESSION_LZW) return 2560;            // a code of 12 bits: a string as long as the table
+  return s.compression == COMPRESSION_NONE ? 1 : kMaxExpansion;
 }
 
 /// Sample with the alpha of a pixel; -1: none. Unless the file says otherwise, the first after the colors.
@@ -224,7 +214,7 @@ class ByLibtiff : public OpenPicture {
 
   const PictureHeader& header() const override { return header_; }
   std::optional<std::string> text(const std::string&) const override { return std::nullopt; }
-  uint64_t expansion() const override { return std::max(kMaxExpansion, expansion_of(storage_.compression)); }
+  uint64_t expansion() const override { return std::max(kMaxExpansion, expansion_of(storage_)); }
 
   void read(std::span<float> values) override {
     complaint_.text.clear();
@@ -316,7 +306,7 @@ class ByLibtiff : public OpenPicture {
   /// than are read.
   std::vector<uint8_t> buffer(uint64_t bytes) const {
     constexpr uint64_t kSmall = uint64_t{64} << 20;
-    if (bytes > std::max(expansion_of(storage_.compression) * bytes_.size(), kSmall)) {
+    if (bytes > std::max(expansion_of(storage_) * bytes_.size(), kSmall)) {
       throw Error(Status::bad_data,
                   input_error(path_, "a strip or tile has " + std::to_string(bytes) +
                                          " bytes, more than the file can contain. Save it with DEFLATE or in smaller "

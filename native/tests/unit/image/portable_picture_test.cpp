@@ -631,8 +631,8 @@ TEST(PortablePicture, BlankPagesOfFaxesAreRead) {
             std::string::npos);
 }
 
-/// One strip of 67 MB in a few KB, which DEFLATE could not reach.
-TEST(PortablePicture, LargeStripsOfOneValueAreRead) {
+/// One strip of 67 MB in a few KB, which DEFLATE could not reach: of Zstandard a few bytes could be gigabytes.
+TEST(PortablePicture, LargeStripsOfOneValueAreReadUnlessTheirCodeIsADenseOne) {
   constexpr uint32_t kSide = 2900;
   for (const uint16_t compression : {uint16_t{COMPRESSION_ZSTD}, uint16_t{COMPRESSION_LZW}}) {
     const std::string path = test::scratch_folder() / "strip.tif";
@@ -645,7 +645,8 @@ TEST(PortablePicture, LargeStripsOfOneValueAreRead) {
     TIFFWriteEncodedStrip(tiff, 0, pixels.data(), static_cast<tmsize_t>(pixels.size() * sizeof(double)));
     TIFFClose(tiff);
     EXPECT_LT(std::filesystem::file_size(path), (uint64_t{64} << 20) / kMaxExpansion) << compression;
-    EXPECT_EQ(by_portable(path).error, "") << compression;
+    const std::string error = by_portable(path).error;
+    EXPECT_EQ(error.find("Save it with DEFLATE") != std::string::npos, compression == COMPRESSION_ZSTD) << error;
   }
 }
 
