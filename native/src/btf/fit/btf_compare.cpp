@@ -68,9 +68,13 @@ double percentile_99(const BtfMeasurement& measurement, const Progress& progress
     below += count[at];
     if (static_cast<double>(below) >= 0.99 * static_cast<double>(total)) break;
   }
+  if (at == 0) {
+    for (at = kInfinity - 1; at > 0 && count[at] == 0; --at) {
+    }
+  }
   float value = 0;
   halves_to_floats({&at, 1}, {&value, 1});
-  return static_cast<double>(value);
+  return at == 0 ? 1.0 : static_cast<double>(value);
 }
 
 BtfErrors compare_btf(const BtfMeasurement& truth, const BtfImages& images, const BtfJudgement& by, int threads,

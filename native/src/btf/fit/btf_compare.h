@@ -18,7 +18,8 @@ struct BtfErrors {
   uint64_t pairs = 0;
 };
 
-/// The 99th percentile of all finite values of f, over texels, channels and pairs; exact.
+/// The 99th percentile of all finite values of f, over texels, channels and pairs; exact. If it is 0, the largest
+/// value, or 1 if all are 0.
 double percentile_99(const BtfMeasurement& measurement, const Progress& progress);
 
 /// f of every texel for a pair of directions, [row][column][channel].

@@ -154,6 +154,7 @@ BtfErrors compare_with_table(const BtfMeasurement& truth, const BtfMeasurement& 
         if (weight == 0) continue;
         table.read_pairs(table.layout().first(view->index[v]) + light->index[l], 1, halves);
         halves_to_floats(halves, corner);
+        mend_image(corner);
         for (size_t i = 0; i < rgb.size(); ++i) rgb[i] += weight * corner[i];
       }
     }

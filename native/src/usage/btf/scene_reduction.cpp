@@ -21,9 +21,12 @@ namespace velour {
 namespace {
 
 /// Number of times `grid` must be halved to have `width` texels.
-uint32_t halvings_to(const TexelGrid& grid, uint32_t width) {
+uint32_t halvings_to(TexelGrid grid, const TexelGrid& target) {
   uint32_t halvings = 0;
-  for (uint32_t w = grid.width; w > width; w /= 2) ++halvings;
+  for (; grid.width > target.width || grid.height > target.height; ++halvings) {
+    grid.width = half_of(grid.width);
+    grid.height = half_of(grid.height);
+  }
   return halvings;
 }
 
@@ -103,7 +106,7 @@ std::vector<float> SeenPictures::picture_of(const BtfImages& images, const Texel
     images({light.wl, wv}, rgb);
     for (size_t i = 0; i < sum.size(); ++i) sum[i] += light.amount * rgb[i];
   }
-  return halved_image(std::move(sum), grid, 3, halvings_to(grid, truth_.grid().width) + 1);
+  return halved_image(std::move(sum), grid, 3, halvings_to(grid, truth_.grid()) + 1);
 }
 
 double SeenPictures::error(const ModelBody& body, const Progress& progress) const {

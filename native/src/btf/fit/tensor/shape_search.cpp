@@ -242,10 +242,15 @@ uint64_t cluster_bytes(const TensorShape& shape, const TensorExtent& extent) {
   return shape.clusters * ((core + factors) * sizeof(HalfBits) + r.texel * sizeof(ByteScale));
 }
 
+/// Largest texel and light rank that evaluators and model files hold for each of so many clusters.
+uint32_t max_rank(uint32_t clusters) {
+  return static_cast<uint32_t>(TensorBtf::kMaxClusterRanks / clusters / kRankPadding * kRankPadding);
+}
+
 /// Sets the light rank to `lights`, and the view and texel ranks to match.
 TensorShape with_lights(TensorShape shape, uint32_t lights, const TensorExtent& extent) {
   const auto views = static_cast<uint32_t>(std::lround(kViewsOfLights * lights));
-  shape.rank.light = std::min(lights, extent.light_rank);
+  shape.rank.light = std::min({lights, extent.light_rank, max_rank(shape.clusters)});
   shape.rank.view = std::clamp<uint32_t>(views, 1, extent.view_rank);
   shape.rank.texel = std::min(shape.rank.texel, shape.rank.view * shape.rank.light * shape.rank.color);
   return shape;
@@ -261,8 +266,9 @@ std::optional<TensorShape> largest_shape(const ShapeChoice& choice, const Tensor
   TensorShape shape{choice.clusters, choice.members, {1, 1, 1, choice.colors}};
   const double a_texel = choice.texel_share * static_cast<double>(bytes) / static_cast<double>(extent.texels);
   const double rank = std::floor((a_texel - (extent.relief ? 2.0 : 0.0)) / choice.members) - 1;
-  const auto most = static_cast<double>(std::min<uint64_t>({TensorBtf::kMaxRank, extent.functions / choice.clusters,
-                                                            (extent.finest + choice.clusters - 1) / choice.clusters}));
+  const auto most = static_cast<double>(
+      std::min<uint64_t>({TensorBtf::kMaxRank, max_rank(choice.clusters), extent.functions / choice.clusters,
+                          (extent.finest + choice.clusters - 1) / choice.clusters}));
   if (rank < 1 || most < 1) return std::nullopt;
   shape.rank.texel = static_cast<uint32_t>(std::min(rank, most));
   std::optional<TensorShape> found;

@@ -50,5 +50,14 @@ TEST(BtfCompare, FindsThePercentile) {
   EXPECT_EQ(percentile_99(flat, Progress()), 0.25);
 }
 
+/// Errors are divided by it: they would be no numbers.
+TEST(BtfCompare, APercentileIsNeverZero) {
+  uint32_t count = 0;
+  const auto one_bright = [&](auto&&...) { return Rgb(count++ == 5 ? 3.0f : 0.0f, 0.0f, 0.0f); };
+  EXPECT_EQ(percentile_99(test::MemoryBtf(few_pairs(), kComparedGrid, one_bright), Progress()), 3.0);
+  const test::MemoryBtf black(few_pairs(), kComparedGrid, [](auto&&...) { return Rgb(0.0f); });
+  EXPECT_EQ(percentile_99(black, Progress()), 1.0);
+}
+
 }  // namespace
 }  // namespace velour::btf_compare_test

@@ -151,6 +151,16 @@ TEST_F(Refit, PicturesTellGoodModelsFromBadOnes) {
   EXPECT_NEAR(pictures.error(model.body, progress_), 0.01, 0.002);
 }
 
+/// Of two texels by 64, without their finest two levels: one by 16, whose width is reached before its height.
+TEST_F(Refit, PicturesOfNarrowTilesAreAsLargeAsTheirTruth) {
+  btf_ = test::striped_btf({2, 64});
+  const SceneObservation scene = seen_from(20, 4.0 / 32);
+  const auto seen = scene_btf(btf_, 2, pairs_around(btf_.layout(), scene.domain.directions()));
+  const SeenPictures pictures(*seen, scene, progress_);
+  options_.companding = Companding::none;
+  EXPECT_LT(pictures.error(full().body, progress_), 1e-3);
+}
+
 TEST_F(Refit, AnEighthOfTheBytesServesAFarScene) {
   const Model full_model = full(), model = reduced(seen_from(20, 4.0 / 32));
   ASSERT_TRUE(model.scene);

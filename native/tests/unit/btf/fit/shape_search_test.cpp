@@ -29,5 +29,19 @@ TEST(ShapeSearch, GoesOnWhereSharesMakeTheSameShape) {
   EXPECT_LT(shape.best.error, 0.7 * shape.trials[0].expected);
 }
 
+/// Files and evaluators refuse larger ones.
+TEST(ShapeSearch, RanksFitTheStorageOfAllClusters) {
+  const TensorExtent extent{
+      .texels = 87381, .finest = 65536, .views = 105, .lights = 105, .view_rank = 105, .light_rank = 105};
+  const auto largest = [&](uint32_t clusters) { return largest_shape({clusters, 1, 3, 0.3}, extent, 1 << 26).value(); };
+  for (const uint32_t clusters : {65u, 128u, 256u}) {
+    const TensorSide::Ranks rank = largest(clusters).rank;
+    for (const uint32_t each : {rank.texel, rank.light}) {
+      EXPECT_LE(clusters * padded_rank(each), TensorBtf::kMaxClusterRanks) << clusters;
+    }
+  }
+  EXPECT_GT(largest(8).rank.light, 64u) << "the control: few clusters have larger ranks";
+}
+
 }  // namespace
 }  // namespace velour::shape_search_test
