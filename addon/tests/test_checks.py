@@ -94,6 +94,9 @@ def test_a_campaign_repeats_only_what_a_change_may_break(tmp_path):
     for name in all_groups:
         one = beside if name == "fuzz" else run
         assert one.kept(name) is None
+        for outcomes in ([SKIPPED], [PASSED, FAILED]):  # what was not run, or has failed, is not kept
+            one.keep(name, [Case(name, outcome, 1.0) for outcome in outcomes])
+            assert campaign.Campaign(file, tmp_path / "tree").kept(name) is None
         one.keep(name, [Case(name, PASSED, 1.0)])
 
     def repeated():

@@ -163,8 +163,17 @@ def test_heights_are_those_of_the_surface():
     normals = np.dstack([-along_x, -along_y, np.ones_like(x)])
     normals /= np.linalg.norm(normals, axis=-1, keepdims=True)
     np.testing.assert_allclose(heights_of(normals), wanted, atol=1e-6)
+    long = np.dstack(
+        [-along_x, -along_y / 3, np.ones_like(x)]
+    )  # the same heights on a tile three times as long
+    np.testing.assert_allclose(heights_of(long, 3.0), wanted, atol=1e-6)
     turned = np.dstack([normals[..., 1], normals[..., 0], normals[..., 2]])
     assert np.abs(heights_of(turned) - wanted).max() > 0.01, "axes may be exchanged"
+
+
+def test_the_lowest_cost_may_be_at_an_end():
+    costs = np.array([[0.2, 1.0, 1.1, 1.1], [3.0, 2.8, 2.5, 1.0], [4.0, 1.0, 0.0, 1.0]]).T
+    np.testing.assert_allclose(tile_maps._lowest(costs), [0, 3, 2])
 
 
 def test_a_relief_has_heights(maps):

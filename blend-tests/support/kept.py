@@ -38,8 +38,9 @@ class Kept:
         return None
 
     def keep(self, name, program, tests):
-        """Keeps them at once if none failed, so that an interrupted run loses nothing."""
-        if not self._path or any(test.outcome == report.FAILED for test in tests):
+        """Keeps them at once, so that an interrupted run loses nothing, if some passed and none failed."""
+        outcomes = {test.outcome for test in tests}
+        if not self._path or report.FAILED in outcomes or report.PASSED not in outcomes:
             return
         self._files[name] = {"hash": self._hash(program), "tests": [test._asdict() for test in tests]}
         self._path.parent.mkdir(parents=True, exist_ok=True)

@@ -90,7 +90,8 @@ class Steps:
                 yield job
                 picture = job.read_pass("Combined")
             colors = map_of(picture, values["principled"]["base_color"])
-            yield (job := TileMapsJob(model, values["principled"], values.get("diffuse"), colors))
+            shown = values["principled"], values.get("diffuse"), colors
+            yield (job := TileMapsJob(model, *shown, info.get("tile_metres")))
             maps = job.result()
             values |= {
                 "color_map": colors,

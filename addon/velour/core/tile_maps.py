@@ -49,15 +49,25 @@ class TileMaps(NamedTuple):
 class TileMapsJob(ReadJob):
     """Renders the model's tile under all lights; result() is a TileMaps.
 
-    principled, diffuse: values of the approximation; colors: its color map, RGBA.
+    principled, diffuse: values of the approximation; colors: its color map, RGBA; metres: size of the tile,
+    if it is known.
     """
 
-    def __init__(self, model: Model, principled: dict, diffuse: tuple | None, colors: np.ndarray):
+    def __init__(
+        self,
+        model: Model,
+        principled: dict,
+        diffuse: tuple | None,
+        colors: np.ndarray,
+        metres: tuple[float, float] | None = None,
+    ):
         super().__init__(self._make)
         rows, columns = (min(side, _MOST_TEXELS) for side in colors.shape[:2])
         self._model, self._size = model, (columns, rows)
         self._principled, self._diffuse, self._colors = principled, diffuse, colors
         self._lights, self._judges = _rings(_RINGS, _AZIMUTHS), _rings(_JUDGES, _JUDGE_AZIMUTHS)
+        metres = metres or colors.shape[1::-1]  # texels are square
+        self._aspect = metres[1] / metres[0]
         self._done = 0
         self._all = len(self._lights) + 4 * len(self._judges) + len(_ROUGHNESS) * _SHOWS_HIGHLIGHTS
         self._all += 2 * len(_VIEWS) * len(self._judges)
@@ -85,7 +95,7 @@ class TileMapsJob(ReadJob):
         errors.append(self._distance(truth, normals, found))
         if errors[-1] <= (1 - _LEAST_GAIN) * (errors[0] if normals is None else errors[1]):
             roughness = found
-        height = None if normals is None else heights_of(normals)
+        height = None if normals is None else heights_of(normals, self._aspect)
         if height is not None and np.sqrt((height**2).mean()) < _LEAST_HEIGHT:
             height = None
         by_view = {
@@ -172,11 +182,12 @@ def _blurred(values: np.ndarray) -> np.ndarray:
 
 def _lowest(costs: np.ndarray) -> np.ndarray:
     """Place along the first axis of the lowest cost, between entries by a parabola through three of them."""
-    at = np.clip(costs.argmin(0), 1, len(costs) - 2)
+    best = costs.argmin(0)
+    at = np.clip(best, 1, len(costs) - 2)
     before, middle, after = (np.take_along_axis(costs, at[None] + i, axis=0)[0] for i in (-1, 0, 1))
     bend = before - 2 * middle + after
     shift = 0.5 * (before - after) / np.where(bend > 0, bend, 1)
-    return at + np.where(bend > 0, np.clip(shift, -1, 1), 0)
+    return np.where(bend > 0, at + np.clip(shift, -1, 1), best)
 
 
 def _resized(pixels: np.ndarray, shape: tuple[int, int]) -> np.ndarray:

@@ -10,7 +10,7 @@ import re
 import subprocess
 from pathlib import Path
 
-from .cases import Case
+from .cases import FAILED, PASSED, Case, count
 from .groups import ROOT
 
 # What runs the groups; the tests of this itself are in Python.
@@ -55,8 +55,11 @@ class Campaign:
             return None
 
     def keep(self, name: str, found: list[Case]) -> None:
-        """Call it after kept() returned None and the group passed. What a run of other groups beside this
-        one has added to the file stays."""
+        """Keeps a group if some of it passed and none failed: what was skipped may run another time. Call it
+        after kept() returned None. What a run of other groups beside this one has added to the file stays."""
+        counts = count(found)
+        if counts[FAILED] or not counts[PASSED]:
+            return
         self._ended |= self._read()
         self._ended[name] = {"sources": self._at_first[name], "cases": found}
         self._file.parent.mkdir(parents=True, exist_ok=True)

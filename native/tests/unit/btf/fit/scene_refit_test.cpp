@@ -151,7 +151,7 @@ TEST_F(Refit, PicturesTellGoodModelsFromBadOnes) {
   EXPECT_NEAR(pictures.error(model.body, progress_), 0.01, 0.002);
 }
 
-/// Of two texels by 64, without their finest two levels: one by 16, whose width is reached before its height.
+/// Two texels by 64 without their finest two levels are one by 16, whose width is reached before its height.
 TEST_F(Refit, PicturesOfNarrowTilesAreAsLargeAsTheirTruth) {
   btf_ = test::striped_btf({2, 64});
   const SceneObservation scene = seen_from(20, 4.0 / 32);
