@@ -160,6 +160,7 @@ class Notes(NotesTest):
         mesh = bpy.context.object.data
         emission = "Emission Color" if "Emission Color" in node.inputs else "Emission"
         inputs_of = ("Base Color", "Metallic", "Roughness", "Alpha", emission)
+        node.inputs["Emission Strength"].default_value = 1.0  # 0 in newer Blenders
         for i, socket in enumerate(inputs_of):
             self.assertEqual(self.notes(), [])
             shown = tree.nodes.new("ShaderNodeAttribute")

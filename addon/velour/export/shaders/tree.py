@@ -120,7 +120,7 @@ def _read(plug, reader):
 
 
 def _read_color(plug, reader):
-    """What is linked to a shader's input and is none: an emission of that color or number, as in Cycles."""
+    """An emission of the color or number that is linked where a shader belongs, as in Cycles."""
     compiler = reader.compiler
     try:
         value = converted(compiler.draft, compiler.output(plug), (plug.socket.type, "RGBA"))
