@@ -124,6 +124,12 @@ def saved_meanwhile(folder):
     with mock.patch.object(module("operators.autosave"), "_QUIET_SECONDS", 0.0):
         yield from window.until(lambda: list(folder.glob("*_autosave.blend")), "an autosave")
     assert bpy.context.window_manager.velour.running
+    asked.temporary_directory = str(folder / "missing")
+    autosave._saved = before = autosave._saved - 60 * asked.auto_save_time - 1
+    with mock.patch.object(module("operators.autosave"), "_QUIET_SECONDS", 0.0):
+        yield from window.until(lambda: autosave._saved != before, "an attempt that fails")
+    yield 0.3
+    assert bpy.context.window_manager.velour.running, "a file that cannot be saved ended the job"
     assert bpy.data.filepath == ""
     with window.override():
         bpy.ops.ed.undo_push(message="changed")

@@ -28,7 +28,10 @@ class Autosave:
         # Saving leaves the edit modes, and takes what is half dragged for done.
         if is_due and now - self._touched > _QUIET_SECONDS and context.mode == "OBJECT":
             self._saved = now
-            save(asked.temporary_directory)
+            try:
+                save(asked.temporary_directory)
+            except RuntimeError as error:  # a full disk, which must not end the job
+                print(f"Velour: the temporary file could not be saved: {str(error).strip()}", flush=True)
 
 
 def save(folder=""):

@@ -40,7 +40,7 @@ TEST(BilinearWarp, InverseOfItself) {
   }
 }
 
-/// As many as a file may have: a search from the first would take minutes for all of them.
+/// A file may have 2^20 nodes a side; a search from the first would take minutes for all of them.
 TEST(BilinearWarp, ManyNodesTakeNoTime) {
   constexpr uint32_t kNodes = 1 << 18;
   const std::vector<float> values(2 * kNodes, 1.0f);
