@@ -12,6 +12,7 @@ from bench import page
 from bench.pages import test_times
 from checks import campaign, cases, groups, measured_pages, running
 from checks.cases import FAILED, PASSED, SKIPPED, Case
+from checks.sources import sources
 
 
 def _report(path, *found):
@@ -77,9 +78,19 @@ def test_progress_is_read_from_the_log():
     assert running.matches(r": (ok|FAILED), ", "files")("a: ok, 3 passed\nb: FAILED, 1\nnoise\n") == "2 files"
 
 
+def test_sources_are_what_gitignore_does_not_match(tmp_path):
+    ignored = (".git/config", "build/a", "addon/__pycache__/a.py", "addon/a.pyc")
+    kept = (".gitignore", "addon/a.py", "addon/build/a")
+    for name in (*ignored, *kept):
+        (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
+        (tmp_path / name).touch()
+    (tmp_path / ".gitignore").write_text("/build/\n__pycache__/\n*.pyc\n")
+    assert sources(tmp_path) == sorted(kept)
+
+
 def test_a_campaign_repeats_only_what_a_change_may_break(tmp_path):
-    subprocess.run(["git", "init", "-q", tmp_path / "tree"], check=True)
     for name in (
+        ".gitignore",
         "native/src/a.cpp",
         "addon/velour/a.py",
         "native/tests/a_test.cpp",

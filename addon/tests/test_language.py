@@ -5,7 +5,6 @@ from __future__ import annotations
 import importlib.machinery
 import importlib.util
 import re
-import subprocess
 
 import pytest
 from conftest import ROOT
@@ -29,7 +28,7 @@ def test_a_rule_knows_good_from_bad(rule):
 
 @pytest.fixture
 def tree(tmp_path):
-    subprocess.run(["git", "init", "-q", tmp_path], check=True)
+    (tmp_path / ".gitignore").write_text("/build/\n")
 
     def violations(name, text):
         path = tmp_path / name
@@ -44,6 +43,10 @@ def test_a_violation_is_named_with_its_place_and_remedy(tree):
     assert tree("native/src/a.h", "int color;\nint colour;\n") == [
         "native/src/a.h:2: 'colour'; write color",
     ]
+
+
+def test_what_is_built_has_no_rules(tree):
+    assert tree("build/a.h", "int colour;\n") == []
 
 
 def test_rules_apply_to_the_files_that_they_name(tree):

@@ -7,11 +7,11 @@ import hashlib
 import json
 import os
 import re
-import subprocess
 from pathlib import Path
 
 from .cases import FAILED, PASSED, Case, count
 from .groups import ROOT
+from .sources import sources
 
 # What runs the groups; the tests of this itself are in Python.
 _RUNNER = ("scripts/lib/checks/", "scripts/lib/test_run.py")
@@ -72,13 +72,11 @@ class Campaign:
         return self._sources(name, _SEEN_BY_FILES)
 
     def _sources(self, name: str, without: re.Pattern[str] | None = None) -> str:
-        """A hash of all files that git does not ignore, except those that no test of the group reads and
-        what `without` matches. "blender 5.2" reads the same as "blender"."""
+        """A hash of all sources, except those that no test of the group reads and what `without` matches.
+        "blender 5.2" reads the same as "blender"."""
         unread = _UNREAD.get(name.split()[0], ())
-        listed = ["git", "-C", self._root, "ls-files", "--cached", "--others", "--exclude-standard", "-z"]
-        names = subprocess.run(listed, capture_output=True, check=True).stdout.split(b"\0")[:-1]
         digest = hashlib.sha256()
-        for file in sorted(map(os.fsdecode, names)):
+        for file in sources(self._root):
             if file.startswith(unread) or (without and without.match(file)):
                 continue
             if (path := self._root / file).is_file():
