@@ -64,6 +64,7 @@ def test_a_tool_that_fails_without_a_failed_test_is_a_failure(tmp_path, capsys):
     judged = groups._judged("ctest", 8, passed, tmp_path / "none.log")
     assert cases.count(judged) == {PASSED: 1, FAILED: 1}
     assert groups._judged("ctest", 0, passed, tmp_path / "none.log") == passed
+    assert cases.count(groups._judged("ctest", 0, [], tmp_path / "none.log")) == {FAILED: 1}
 
 
 def test_a_check_that_fails_shows_its_log(tmp_path, capsys, monkeypatch):

@@ -205,13 +205,14 @@ def fuzz(run: Run) -> list[Case]:
 
 
 def _judged(name: str, status: int, found: list[Case], log: Path, leave_out: str | None = None) -> list[Case]:
-    """A run that failed without a failed test counts as a failed test."""
-    if status == 0:
+    """A run that failed without a failed test, or that has no tests, counts as a failed test."""
+    if status == 0 and found:
         return found
     running.show_end(log, leave_out)
     running.say(f"all of it: {log}")
     if not any(case.outcome == FAILED for case in found):
-        found = [*found, Case(f"{name} (exit status {status})", FAILED)]
+        why = f"exit status {status}" if status else "no tests"
+        found = [*found, Case(f"{name} ({why})", FAILED)]
     return found
 
 
