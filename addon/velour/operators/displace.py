@@ -5,7 +5,7 @@ from bpy.props import BoolProperty
 
 from ..export import ExportError
 from ..export.nodes import active_output
-from . import approximation_group, measured
+from . import approximation_group, measured, measured_group
 from .approximation_image import images_of
 
 
@@ -31,17 +31,17 @@ class VELOUR_OT_displace(measured.OfMaterial, bpy.types.Operator):
                     f"Material '{material.name}' has no relief for other engines; press Refresh under"
                     " Approximation. A flat BTF has none."
                 )
+            socket = _displacement_socket(material, node)
         except ExportError as error:
             self.report({"ERROR"}, str(error))
             return {"CANCELLED"}
-        self._displace(material, node)
+        # Materials that share the group keep their normal map: their outputs are not linked here.
+        self._displace(material, measured_group.make_single_user(node), socket)
         return {"FINISHED"}
 
-    def _displace(self, material, node):
-        tree = node.group.node_tree
-        tree.velour.displaces = self.enable
+    def _displace(self, material, node, socket):
+        node.group.node_tree.velour.displaces = self.enable
         approximation_group.rebuild(node, material)
-        socket = active_output(material.node_tree, "ShaderNodeOutputMaterial").inputs["Displacement"]
         ours = node.group.outputs[approximation_group.DISPLACEMENT]
         if self.enable:
             material.node_tree.links.new(ours, socket)
@@ -52,6 +52,19 @@ class VELOUR_OT_displace(measured.OfMaterial, bpy.types.Operator):
                 if link.from_socket == ours:
                     material.node_tree.links.remove(link)
             _set_method(material, "BUMP")
+
+
+def _displacement_socket(material, node):
+    """The input that displaces a material; raises ExportError if its MeasuredNode cannot be linked to it."""
+    output = active_output(material.node_tree, "ShaderNodeOutputMaterial")
+    if output is None:
+        raise ExportError(f"Material '{material.name}' has no Material Output node; add one, then try again.")
+    if node.group.id_data != material.node_tree:
+        raise ExportError(
+            f"Material '{material.name}': node '{node.name}' is inside a node group and cannot be linked to"
+            " the Material Output; ungroup it, then try again."
+        )
+    return output.inputs["Displacement"]
 
 
 def _set_method(material, method):

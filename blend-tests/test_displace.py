@@ -1,0 +1,58 @@
+"""The relief of a BTF as displacement in Cycles."""
+
+import bpy
+import numpy as np
+
+from support import inputs, scenes
+from support.blender import BlenderTest
+
+
+class Displace(BlenderTest):
+    def setUp(self):
+        super().setUp()
+        self.material = scenes.measured_material(inputs.weave_model(), "Weave")
+        scenes.add_plane(self.material)
+        found = inputs.module("core.approximation").UNFITTED._replace(
+            color_map=np.ones((4, 4, 4), np.float32),
+            normal_map=np.ones((4, 4, 3), np.float32),
+            height_map=np.eye(4, dtype=np.float32),
+        )
+        node = scenes.velour_node(self.material)
+        inputs.module("operators.approximation_group").put(node, self.material, found, {"texels": (4, 4)})
+
+    def _look(self, material):
+        """Whether a material has the normal map, and whether it is displaced."""
+        tree = scenes.velour_node(material).group.node_tree
+        (relief,) = (node for node in tree.nodes if node.bl_idname == "ShaderNodeNormalMap")
+        output = next(n for n in material.node_tree.nodes if n.bl_idname == "ShaderNodeOutputMaterial")
+        displaced = output.inputs["Displacement"].is_linked
+        self.assertEqual(tree.velour.displaces, displaced)  # what the panel shows
+        return relief.outputs[0].is_linked, displaced
+
+    def test_materials_that_share_the_group_keep_their_look(self):
+        copy = self.material.copy()
+        bpy.ops.velour.displace()
+        self.assertEqual(self._look(self.material), (False, True))
+        self.assertEqual(self._look(copy), (True, False))
+        displaced = self.material.copy()
+        bpy.ops.velour.displace(enable=False)
+        self.assertEqual(self._look(self.material), (True, False))
+        self.assertEqual(self._look(displaced), (False, True))
+
+    def test_without_an_output_nothing_changes(self):
+        tree = self.material.node_tree
+        tree.nodes.remove(tree.nodes["Material Output"])
+        with self.assertRaisesRegex(RuntimeError, "'Weave' has no Material Output node"):
+            bpy.ops.velour.displace()
+        self.assertFalse(scenes.velour_node(self.material).group.node_tree.velour.displaces)
+
+    def test_a_node_inside_another_group_is_refused(self):
+        outer = scenes.new_group("Outer", "BSDF")
+        inner = outer.nodes.new("ShaderNodeGroup")
+        inner.node_tree = scenes.velour_node(self.material).group.node_tree
+        tree = self.material.node_tree
+        tree.nodes.remove(scenes.velour_node(self.material).group)
+        tree.nodes.new("ShaderNodeGroup").node_tree = outer
+        with self.assertRaisesRegex(RuntimeError, "is inside a node group"):
+            bpy.ops.velour.displace()
+        self.assertFalse(inner.node_tree.velour.displaces)
