@@ -363,6 +363,20 @@ class Shared(NodeTest):
         self.assertEqual(*self._trees())
         self.assertNotEqual(scenes.velour_node(self.first).image, before)
 
+    def test_tiles_of_all_have_coordinates_and_show_holes(self):
+        """In EEVEE and Cycles; a Vector without a link is one point of the tile."""
+        measured, group = (inputs.module(f"operators.{name}") for name in ("measured", "approximation_group"))
+        node, tiles = scenes.velour_node(self.second), {"texels": (4, 4)}
+        image = measured.packed_model(inputs.quarters_model(), "Quarters")
+        node = measured.set_model(self.second, node, image, print, users="ALL", info=tiles)
+        holes = inputs.module("core.approximation").UNFITTED._replace(color_map=np.zeros((4, 4, 4), "f"))
+        group.put(node, self.second, holes, tiles)
+        for material in (self.first, self.second):
+            vector = scenes.velour_node(material).group.inputs["Vector"]
+            self.assertEqual(vector.links[0].from_node.bl_idname, "ShaderNodeUVMap", material.name)
+            if hasattr(material, "shadow_method"):  # before 4.2
+                self.assertEqual((material.blend_method, material.shadow_method), ("HASHED", "HASHED"))
+
     def test_a_single_user_keeps_its_group(self):
         bpy.data.materials.remove(self.second)
         tree = scenes.velour_node(self.first).group.node_tree

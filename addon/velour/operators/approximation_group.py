@@ -3,7 +3,7 @@
 import bpy
 
 from ..core.approximation import Steps
-from ..export.nodes import first_input
+from ..export.nodes import first_input, measured_nodes
 from ..export.shaders.readers import SEPARABLE_SHADOWS
 from ..export.uv_maps import placed_by
 from ..properties.approximation_state import VIEW_ANGLES
@@ -86,9 +86,10 @@ def _build(tree, material, images, is_seen_through, fed):
         added.parent = added.parent or frame
     for socket in fed if sink.inputs[0].is_linked else {*fed, sink.inputs[0]}:
         tree.links.new(shader, socket)
-    if is_seen_through and hasattr(material, "shadow_method"):  # EEVEE before 4.2 requires it
-        material.blend_method = material.shadow_method = "HASHED"
-    approximation_look.follow(material)
+    for user, _node in _users(tree) if is_seen_through else ():
+        if hasattr(user, "shadow_method"):  # EEVEE before 4.2 requires it
+            user.blend_method = user.shadow_method = "HASHED"
+    _follow(tree, material)
 
 
 def shows_behind(tree):
@@ -99,8 +100,28 @@ def shows_behind(tree):
 
 def put_inputs(node, material, info):
     """Gives a MeasuredNode's group the inputs of a model."""
-    group_inputs.put(node.group.node_tree, group_inputs.wanted(info))
-    _link_coordinates(node)
+    tree = node.group.node_tree
+    group_inputs.put(tree, group_inputs.wanted(info))
+    for _material, each in _users(tree):
+        _link_coordinates(each)
+    _follow(tree, material)
+
+
+def _users(tree):
+    """Each local material that uses a group, with its MeasuredNode; once for each of several nodes."""
+    return [
+        (material, node)
+        for material in bpy.data.materials
+        if is_editable(material) and material.node_tree is not None
+        for node in measured_nodes(material.node_tree)
+        if node.group.node_tree == tree and node.group.id_data.library is None
+    ]
+
+
+def _follow(tree, material):
+    """Updates the materials that use a group; `material` last, since nodes in the group have its UV map."""
+    for user, _node in _users(tree):
+        approximation_look.follow(user)
     approximation_look.follow(material)
 
 
