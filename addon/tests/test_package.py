@@ -7,6 +7,7 @@ import re
 import subprocess
 import zipfile
 
+import package as package_script
 import pytest
 from conftest import ROOT
 from package import write_zip
@@ -94,9 +95,19 @@ def test_shows_nothing_but_its_own_names(unpacked):
 
 
 def test_every_library_has_its_licence(unpacked):
+    """Its own: zlib and liblzma are in /lib to Debian's packages, and elsewhere in /usr/lib."""
     text = (unpacked / "lib/LICENSES.txt").read_text()
+    headings = " ".join(re.findall(r"^(.+) \(Debian's [a-z0-9.+-]+\)\n=", text, re.MULTILINE))
     for path in (unpacked / "lib").glob("*.so*"):
-        assert path.name == "libvelour.so" or path.name in text
+        assert path.name == "libvelour.so" or path.name in headings.replace(",", " ").split()
+    for owner in ("Jean-loup Gailly", "Lasse Collin"):
+        assert owner in text
+
+
+def test_a_library_without_a_licence_is_refused(tmp_path):
+    (tmp_path / "libmine.so.1").touch()
+    with pytest.raises(SystemExit, match=r"license of libmine\.so\.1"):
+        package_script._write_licences([tmp_path / "libmine.so.1"], tmp_path / "LICENSES.txt")
 
 
 def test_runs_on_what_the_documentation_names(package):

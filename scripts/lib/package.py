@@ -102,12 +102,16 @@ def _write_licences(sources: list[Path], to: Path) -> None:
     """Writes the copyright notices of the libraries' Debian packages."""
     packages: dict[str, list[str]] = {}
     for source in sources:
-        answer = subprocess.run(["dpkg", "-S", source.resolve()], capture_output=True, text=True).stdout
-        packages.setdefault(answer.split(":")[0] or "unknown", []).append(source.name)
+        # Packages may list a file in /lib, which is a link to /usr/lib.
+        pattern = "*" + str(source.resolve()).removeprefix("/usr")
+        answer = subprocess.run(["dpkg", "-S", pattern], capture_output=True, text=True).stdout
+        packages.setdefault(answer.split(":")[0], []).append(source.name)
     parts = []
     for package, names in packages.items():
         notice = Path("/usr/share/doc") / package / "copyright"
-        text = notice.read_text(encoding="utf-8") if notice.is_file() else "See its project.\n"
+        if not package or not notice.is_file():
+            raise SystemExit(f"package: no Debian package has the license of {', '.join(names)}.")
+        text = notice.read_text(encoding="utf-8")
         parts.append(f"{', '.join(names)} (Debian's {package})\n{'=' * 78}\n{text}")
     to.write_text("\n".join(parts), encoding="utf-8")
 
