@@ -71,7 +71,10 @@ class Outline(BlenderTest):
         camera.data.ortho_scale = 0.5
         low = self._alpha("low")
         scenes.velour_node(self.material).velour.outline_width = 0.5  # twice what the coordinates say
-        self.assertGreater(self._alpha("high"), low + 0.05)
+        high = self._alpha("high")
+        self.assertGreater(high, low + 0.05)
+        bpy.context.scene.unit_settings.scale_length = 0.001
+        self.assertEqual(self._alpha("millimeters"), high)  # like the object, it is entered in Blender units
 
     def test_a_soft_edge_fades_and_keeps_what_is_covered(self):
         self._outlined()
@@ -126,6 +129,21 @@ class Outline(BlenderTest):
         folded = report(1.2 * 0.5 / -low)
         self.assertIn("folds", folded.warnings[0])
         self.assertEqual(dict(folded.rows)["Height / radius"], "120%")
+        bpy.context.scene.unit_settings.scale_length = 0.001
+        small = report(0.1)
+        self.assertEqual(dict(small.rows)["Tile width"], "0.1 mm")
+        self.assertAlmostEqual(small.share, flat.share, delta=1e-3)
+
+    def test_it_is_captured_as_wide_as_it_is_rendered(self):
+        """Captures are in meters."""
+        self._outlined()
+        scenes.velour_node(self.material).velour.outline_width = 0.5
+        bpy.context.scene.unit_settings.scale_length = 0.001
+        tiles, depsgraph = inputs.module("export.tiles"), bpy.context.evaluated_depsgraph_get()
+        source = tiles.object_tile(bpy.data.objects["Plane"], depsgraph)
+        with unittest.mock.patch.object(inputs.native().Scene, "set_shell_tile") as given:
+            tiles.export_tile(source, depsgraph, approximate=True)[0].close()
+        self.assertAlmostEqual(given.call_args.args[1], 0.0005)
 
     def test_an_estimate_before_it_begins(self):
         """By small outlines, which change nothing; it is of this structure and these texels alone."""

@@ -44,7 +44,7 @@ class MaterialTable:
         self._textured = set()  # materials with textures
         self._programs = {}  # of materials; None: none
         self._textures = TextureTable(scene, notes)
-        self._measured = MeasuredMaterials(scene, notes)
+        self._measured = MeasuredMaterials(scene, notes, unit)
         self.models = {}  # file hashes of measured materials, by full name
         self.glows = False  # whether any may emit light
         self.beyond_reflection = []  # notes: parts of mixed materials that a BTF cannot represent

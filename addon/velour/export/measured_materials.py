@@ -55,10 +55,14 @@ class _Known(NamedTuple):
 
 
 class MeasuredMaterials:
-    """Measured materials of one library scene. Files are read once: a tint changes many times a second."""
+    """Measured materials of one library scene. Files are read once: a tint changes many times a second.
 
-    def __init__(self, scene, notes):
+    `unit`: length of Blender's unit in the scene.
+    """
+
+    def __init__(self, scene, notes, unit=1.0):
         self._scene = scene
+        self._unit = unit
         self._notes = notes
         self._known = {}  # keys: pointers of original materials
         self._mixed = {}  # Reflectances of layers by _source()
@@ -121,7 +125,7 @@ class MeasuredMaterials:
 
     def set_shell(self, number, settings):
         """Places the VOTF of an added material. `settings`: VelourMaterialSettings."""
-        self._scene.set_shell_tile(number, settings.outline_width)
+        self._scene.set_shell_tile(number, self._unit * settings.outline_width)
         self._scene.set_shell_softness(number, settings.outline_softness)
 
     def _adjust(self, material, measured, number, info):

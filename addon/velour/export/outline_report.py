@@ -20,14 +20,14 @@ class OutlineReport(NamedTuple):
 def outline_report_on(depsgraph, obj, material, shell, tile, width=0.0):
     """OutlineReport of an original object that shows `material`, whose model info contains `shell`.
 
-    `tile`: the material's Tile; None if it has no texture. `width`: width of a tile in meters; 0: from the
-    texture coordinates. Returns None if it cannot be determined, as without texture coordinates.
+    `tile`: the material's Tile; None if it has no texture. `width`: width of a tile in Blender units; 0: from
+    the texture coordinates. Returns None if it cannot be determined, as without texture coordinates.
     """
     shown = ShownSurface.of(depsgraph, obj, material)
     if shown.metrics is None:
         return None
     try:
-        width = width or _tile_width(shown.metrics, tile, shell)
+        width = shown.metres * width or _tile_width(shown.metrics, tile, shell)
     except ExportError:  # the placement report has the reason
         return None
     low, high = (width * height for height in shell["heights"])

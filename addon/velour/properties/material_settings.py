@@ -158,7 +158,7 @@ class VelourMaterialSettings(bpy.types.PropertyGroup):
     )
     outline_width: FloatProperty(
         name="Tile Width",
-        description="Width of a tile on the object in meters, which also scales the height of the structure."
+        description="Width of a tile on the object, which also scales the height of the structure."
         " 0: mean width from the texture coordinates",
         default=0.0,
         min=0.0,
