@@ -40,6 +40,14 @@ with_progress() {
 # quietly LOG STAGE PROGRAM...: with_progress for a program whose progress cannot be counted.
 quietly() { with_progress "$2" count_nothing "$1" "${@:3}"; }
 
+# configure FOLDER OPTION...: runs CMake, whose files are in FOLDER. It refuses the cache of a project that was moved or
+# copied here.
+configure() {
+  local fresh=()
+  grep -qsxF "CMAKE_HOME_DIRECTORY:INTERNAL=$root" "$1/CMakeCache.txt" || fresh=(--fresh)
+  quietly "$1/configure.log" "configuring" cmake "${fresh[@]}" "${@:2}"
+}
+
 # try_with_progress STAGE COUNTER LOG PROGRAM...: with_progress that returns the exit status and shows no errors.
 try_with_progress() {
   local stage=$1 counter=$2 log=$3 begin=$SECONDS status=0 stopped=0 reporting reporter program traps
