@@ -7,6 +7,7 @@ import subprocess
 import sys
 import uuid
 from collections import Counter
+from pathlib import Path
 
 import numpy as np
 import presets
@@ -117,6 +118,26 @@ def test_committed_presets_are_those_of_the_table():
         assert images.read_picture(entry.picture).shape == (256, 256, 3)
         with Model.load(entry.model) as model:
             assert ("texels" in model.info()) == isinstance(preset.made_of, Weave), preset.name
+
+
+def test_a_library_is_made_once_also_beside_its_models(tmp_path, monkeypatch):
+    made = []
+
+    def blender(_script, task, log):
+        for path in (task["path"], log):
+            Path(path).write_text(f"{len(made)}")
+        made.append(task)
+
+    monkeypatch.setattr(presets.blender, "run", blender)
+    for name in (library.INDEX_FILE, "gold.velour", "gold.png"):
+        (tmp_path / name).write_text("1")
+    for _ in range(2):
+        presets.write_library(tmp_path, tmp_path)
+    assert len(made) == 1
+    for name in (library.INDEX_FILE, "gold.velour", "gold.png"):
+        (tmp_path / name).write_text("2")
+        presets.write_library(tmp_path, tmp_path)
+    assert len(made) == 4
 
 
 def test_a_damaged_index_is_refused_by_name(tmp_path):

@@ -317,7 +317,9 @@ def _library_key(models: Path) -> str:
     """Hash of the models and of the code that turns them into materials."""
     digest = hashlib.sha256()
     code = [*(ROOT / "addon/velour").rglob("*.py"), Path(__file__).with_name("bench") / "inside/presets.py"]
-    for path in (*sorted(models.glob("*.*")), *sorted(code)):
+    # The folder may also hold the .blend, its key and Blender's log.
+    made_of = [path for kind in (INDEX_FILE, "*.velour", "*.png") for path in models.glob(kind)]
+    for path in (*sorted(made_of), *sorted(code)):
         digest.update(path.name.encode() + path.read_bytes())
     return digest.hexdigest()
 
