@@ -8,6 +8,7 @@ import numpy as np
 from support import blender, inputs, scenes
 from support.blender import BlenderTest
 from support.drawn import drawn
+from support.notes import export_notes
 
 
 class Outline(BlenderTest):
@@ -133,6 +134,15 @@ class Outline(BlenderTest):
         small = report(0.1)
         self.assertEqual(dict(small.rows)["Tile width"], "0.1 mm")
         self.assertAlmostEqual(small.share, flat.share, delta=1e-3)
+
+    def test_a_render_warns_of_folds_in_meters(self):
+        self._outlined()
+        bpy.ops.mesh.primitive_uv_sphere_add(radius=1)
+        bpy.ops.object.shade_smooth()
+        bpy.context.object.data.materials.append(self.material)
+        scenes.velour_node(self.material).velour.outline_width = 20
+        bpy.context.scene.unit_settings.scale_length = 0.001
+        self.assertRegex(" ".join(export_notes()), r"they are 0\.02 m wide")
 
     def test_it_is_captured_as_wide_as_it_is_rendered(self):
         """Captures are in meters."""

@@ -143,6 +143,13 @@ def test_sentences_of_earlier_models_are_shown_as_they_are():
     assert sentence({"code": "stored_sentence", "values": {"text": old}}) == old
 
 
+def test_lengths_are_in_meters_whatever_the_unit():
+    lengths = {"bottom": -2.0, "top": 3.0, "radius": 5.0, "tile": 8.0}
+    values = {"material": 1, "triangles": 1, "sampled": 2, **lengths}
+    said = sentence({"code": "silhouette_folds", "values": values}, metres=0.001)
+    assert re.findall(r"[-\d.]+ m\b", said) == ["-0.002 m", "0.003 m", "0.005 m", "0.008 m"]
+
+
 def test_the_environment_image_has_no_file():
     said = sentence({"code": "negative_values", "values": {"file": "", "values": 3}})
     assert said == "The environment image: 3 values are negative and were replaced by 0."

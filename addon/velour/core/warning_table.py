@@ -283,25 +283,26 @@ SENTENCES = {
 }
 
 
-def sentence(warning: dict, settings: dict = PANEL) -> str:
-    """`warning`: {code, values} as from the library; `settings`: names of settings, PANEL or COMMAND_LINE."""
+def sentence(warning: dict, settings: dict = PANEL, metres: float = 1.0) -> str:
+    """`warning`: {code, values} as from the library; `settings`: names of settings, PANEL or COMMAND_LINE;
+    `metres`: meters per unit of its lengths."""
     try:
-        return _Words(settings).format(SENTENCES[warning["code"]], **warning["values"])
+        return _Words(settings, metres).format(SENTENCES[warning["code"]], **warning["values"])
     except (KeyError, TypeError, ValueError, IndexError):  # of a damaged model file
         listed = ", ".join(f"{name}: {value}" for name, value in warning["values"].items())
         return f"{warning['code']} ({listed})"
 
 
-def sentences(warnings: list[dict], settings: dict = PANEL) -> list[str]:
+def sentences(warnings: list[dict], settings: dict = PANEL, metres: float = 1.0) -> list[str]:
     """`warnings`: "warning_codes" of a report or info of the library."""
-    return [sentence(warning, settings) for warning in warnings]
+    return [sentence(warning, settings, metres) for warning in warnings]
 
 
 class _Words(string.Formatter):
     """Writes values in the forms of the sentences; names in capitals are settings."""
 
-    def __init__(self, settings: dict):
-        self._settings = settings
+    def __init__(self, settings: dict, metres: float):
+        self._settings, self._metres = settings, metres
 
     def get_value(self, key, args, kwargs):
         return self._settings[key] if isinstance(key, str) and key.isupper() else kwargs[key]
@@ -309,7 +310,7 @@ class _Words(string.Formatter):
     def format_field(self, value, format_spec):
         if "|" in format_spec:
             return format_spec.split("|")[value]
-        return _FORMS[format_spec](value)
+        return _FORMS[format_spec](self._metres * value if format_spec == "meters" else value)
 
 
 def _number(value) -> str:

@@ -12,6 +12,7 @@ from .libraries import refuse_missing_libraries
 from .materials import MaterialTable
 from .objects import ObjectExport
 from .pass_labels import AskedPasses, asked_passes
+from .units import metres_per_unit
 from .unused_settings import note_layer, note_scene
 from .world import WorldLight, add_world, has_moving_picture, layer_world, shown_world
 
@@ -88,7 +89,7 @@ class SceneExport:
         self.scene.commit()
         info = self.scene.info()
         others = [each for each in info["warning_codes"] if each["code"] not in _NAMED_BEFORE]
-        for sentence in sentences(others):
+        for sentence in sentences(others, metres=metres_per_unit(depsgraph.scene)):
             self.notes.add(sentence)
         surroundings = _surroundings(depsgraph.scene.camera, objects.owner(info["camera_inside"]))
         if surroundings:
