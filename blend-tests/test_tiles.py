@@ -3,7 +3,7 @@
 import bpy
 import numpy as np
 
-from support import scenes
+from support import inputs, scenes
 from support.blender import BlenderTest
 
 TYPES = ("WEAVE", "TWILL", "NET", "CHAINMAIL", "GRAVEL", "CORDUROY")
@@ -144,6 +144,17 @@ class ShowRepeated(BlenderTest):
         self.assertEqual(self._places(obj), [(0.0, 0.0)])
         self.assertEqual(len(bpy.data.objects), 1)
         self.assertEqual([c for c in bpy.data.collections if c.velour.is_repeat], [])
+
+    def test_the_panel_leaves_the_rest_of_the_file_alone(self):
+        """Reading settings would create them, in all of a large file with each redraw."""
+        obj, other = _add(type="NET"), bpy.data.objects.new("Other", None)
+        bpy.ops.velour.repeat_tile()
+        collection = bpy.data.collections.new("Others")
+        repeats = inputs.module("operators.repeat_tile")
+        self.assertTrue(repeats.is_repeated(obj))
+        self.assertFalse(repeats.is_repeated(other))
+        self.assertFalse(other.is_property_set("velour"))
+        self.assertFalse(collection.is_property_set("velour"))
 
     def test_copies_follow(self):
         obj = _add(type="NET")

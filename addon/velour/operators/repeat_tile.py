@@ -46,15 +46,20 @@ def is_repeated(owner):
 
 def _repeats(owner):
     """The empties that instance the object or collection `owner`."""
-    shown = _holders(owner)
-    return [o for o in bpy.data.objects if o.velour.is_repeat and o.instance_collection in shown]
+    shown = set(_holders(owner))
+    return [o for o in bpy.data.objects if o.instance_collection in shown and _is_repeat(o)] if shown else []
 
 
 def _holders(owner):
     """Collections that the empties instance: `owner` itself, or one outside all scenes that holds it."""
     if isinstance(owner, bpy.types.Collection):
         return [owner]
-    return [c for c in bpy.data.collections if c.velour.is_repeat and owner.name in c.objects]
+    return [c for c in bpy.data.collections if _is_repeat(c) and owner.name in c.objects]
+
+
+def _is_repeat(datablock):
+    """Reading settings would create them, and panels ask about all of the file."""
+    return datablock.is_property_set("velour") and datablock.velour.is_repeat
 
 
 def _take_away(owner):
@@ -64,7 +69,7 @@ def _take_away(owner):
     for empty in repeats:
         bpy.data.objects.remove(empty)
     for collection in made:
-        if collection.velour.is_repeat:
+        if _is_repeat(collection):
             bpy.data.collections.remove(collection)
     return bool(repeats)
 
