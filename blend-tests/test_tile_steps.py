@@ -1,6 +1,7 @@
 """From a tile to its material on an object: the steps of the panel, each in its turn."""
 
 import os
+from types import SimpleNamespace
 
 import bpy
 
@@ -111,6 +112,32 @@ class TileSteps(BlenderTest):
         bpy.ops.velour.capture_btf(**_SMALL, new_folder=True)
         self.assertTrue(bpy.context.object.velour.directory)
         self.assertTrue(inputs.module("operators.tiles").is_temporary(bpy.context.object))
+
+    def test_the_folder_of_a_linked_tile_is_beside_its_own_file(self):
+        tiles, library, shot = (
+            inputs.module("operators.tiles"),
+            self.folder / "library",
+            self.folder / "shots",
+        )
+        for folder in (library / "ribs.btf", shot):
+            folder.mkdir(parents=True)
+        self._worn_by_a_cube()
+        bpy.ops.wm.save_as_mainfile(filepath=str(library / "cloth.blend"))
+        for given in ("//ribs.btf", ""):
+            bpy.context.object.velour.directory = given
+            bpy.ops.wm.save_mainfile()
+            bpy.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)
+            with bpy.data.libraries.load(str(library / "cloth.blend"), link=True) as (_source, target):
+                target.objects = ["Corduroy"]
+            (obj,) = target.objects
+            wanted = str(library / (given.removeprefix("//") or "Corduroy.btf"))
+            self.assertEqual(tiles.output_folder(obj), wanted, "the file is not saved")
+            bpy.ops.wm.save_as_mainfile(filepath=str(shot / "shot.blend"))
+            self.assertEqual(tiles.capture_folder(obj), wanted)
+            (library / "Corduroy.btf").mkdir(exist_ok=True)
+            new = SimpleNamespace(owner=obj)
+            self.assertEqual(tiles.new_folder(new), "//" + os.path.basename(wanted)[:-4] + ".001.btf")
+            bpy.ops.wm.open_mainfile(filepath=str(library / "cloth.blend"))
 
     def test_no_silhouette_is_taken_for_the_tile_of_a_collection(self):
         button = Layout().operator("velour.add_votf")

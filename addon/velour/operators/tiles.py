@@ -55,9 +55,10 @@ def capture_folder(owner):
 
 def output_folder(owner):
     """Absolute folder that the BTF of a tile is captured into. Safe in draw()."""
-    if not owner.velour.directory and not bpy.data.filepath:
+    if not owner.velour.directory and not bpy.data.filepath and owner.library is None:
         return _temporary_folder(owner)
-    return os.path.normpath(bpy.path.abspath(owner.velour.directory or f"//{_folder_name(owner)}"))
+    folder = owner.velour.directory or f"//{_folder_name(owner)}"
+    return os.path.normpath(bpy.path.abspath(folder, library=owner.library))
 
 
 def is_temporary(owner):
@@ -91,13 +92,15 @@ def held_out_beside(folder):
 
 def new_folder(tile):
     """Value for the tile's setting: the first unused folder, numbered as in Blender."""
-    folder = output_folder(tile.owner)
+    owner = tile.owner
+    folder = output_folder(owner)
     name = re.sub(r"\.\d{3,}$", "", folder.removesuffix(".btf"))
     number = 0
     while os.path.exists(folder) or os.path.exists(held_out_beside(folder)):
         number += 1
         folder = f"{name}.{number:03}.btf"
-    return bpy.path.relpath(folder) if bpy.data.filepath else folder
+    blend_folder = bpy.path.abspath("//", library=owner.library)
+    return bpy.path.relpath(folder, start=blend_folder) if bpy.data.filepath else folder
 
 
 def capture_options(context, tile, place):
