@@ -7,9 +7,51 @@ import shutil
 from unittest import mock
 
 import bpy
+import bpy.utils.previews
+import numpy as np
 
 from support import inputs
 from support.blender import BlenderTest
+
+
+class KeptThumbnails(BlenderTest):
+    def setUp(self):
+        super().setUp()
+        self.browser = inputs.module("ui.browser")
+        self.addCleanup(self.browser.forget)
+        kept = mock.patch.object(self.browser, "_KEPT", 2)
+        kept.start()
+        self.addCleanup(kept.stop)
+
+    def _show(self, number, pixels, modified=0):
+        """Shows a thumbnail of a file; returns the file."""
+        file = inputs.module("core.measurement_files").MeasurementFile(f"/{number}", "name", 1, modified)
+        made = inputs.module("core.thumbnails").Thumbnail(pixels, {}, None if pixels is not None else "no")
+        self.browser._show(file, made)
+        return file
+
+    def test_icons_of_the_oldest_are_freed(self):
+        pixels, module = np.full((4, 4, 4), 255, np.uint8), bpy.utils.previews._utils_previews
+        with mock.patch.object(module, "release", wraps=module.release) as release:
+            for number in range(5):
+                self._show(number, pixels)
+            self.assertEqual((release.call_count, len(self.browser._previews)), (3, 2))
+
+    def test_a_changed_file_keeps_its_icon(self):
+        """Its former state is the oldest."""
+        pixels = np.full((4, 4, 4), 255, np.uint8)
+        self._show("other", pixels)
+        self._show("file", pixels)
+        now = self._show("file", pixels // 2, modified=1)
+        self._show("last", pixels)
+        preview = self.browser._previews[str(now)]
+        self.assertEqual(preview.icon_id, self.browser.picture(now).icon)
+        np.testing.assert_allclose(preview.image_pixels_float[0], 127 / 255, atol=0.01)
+
+    def test_files_without_a_thumbnail(self):
+        files = [self._show(number, None) for number in range(3)]
+        self.assertIsNone(self.browser.picture(files[0]))
+        self.assertEqual(self.browser.picture(files[2]).sentence, "no")
 
 
 class MakeThumbnails(BlenderTest):

@@ -155,12 +155,13 @@ def _end(job):
 
 def _show(file, thumbnail):
     _asked.pop(file, None)
-    icon = _icon(file.path, thumbnail.pixels) if thumbnail.pixels is not None else 0
+    icon = _icon(str(file), thumbnail.pixels) if thumbnail.pixels is not None else 0
     _pictures[file] = Picture(icon, thumbnail.facts, thumbnail.sentence)
     while len(_pictures) > _KEPT:
         oldest = next(iter(_pictures))
         del _pictures[oldest]
-        _previews.pop(oldest.path, None)
+        if _previews is not None and str(oldest) in _previews:
+            del _previews[str(oldest)]  # pop() would not free the icon
     redraw_panels()
 
 
@@ -168,8 +169,7 @@ def _icon(name, pixels):
     global _previews
     if _previews is None:
         _previews = bpy.utils.previews.new()
-    _previews.pop(name, None)  # outdated icon of the file
-    preview = _previews.new(name)
+    preview = _previews.get(name) or _previews.new(name)
     preview.image_size = pixels.shape[1], pixels.shape[0]
     preview.image_pixels_float.foreach_set((pixels / np.float32(255)).ravel())
     return preview.icon_id
