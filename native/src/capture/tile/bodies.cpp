@@ -137,16 +137,54 @@ namespace {
 constexpr uint64_t kStream = 0x6261;
 constexpr int kPlacesTried = 400;
 
-/// Height of the center at which a ball falling straight down comes to rest.
-double resting_height(const std::vector<Ball>& balls, const Ball& falling, double period) {
-  double height = falling.radius;
-  for (const Ball& other : balls) {
-    const Vec3d d = periodic_difference(falling.center, other.center, period);
-    const double reach = falling.radius + other.radius, room = reach * reach - d.x * d.x - d.y * d.y;
-    if (room > 0) height = std::max(height, other.center.z + std::sqrt(room));
+/// Balls by the cell of a periodic grid that their centers lie in.
+class BallGrid {
+ public:
+  explicit BallGrid(const PackingOptions& options)
+      : period_(options.period),
+        largest_radius_(options.largest_radius),
+        cells_across_(std::max(1, static_cast<int>(options.period / (2 * options.largest_radius)))),
+        cells_(static_cast<size_t>(cells_across_ * cells_across_)) {}
+
+  void add(const Ball& ball) {
+    std::vector<Ball>& cell = cells_[index(cell_of(ball.center.x), cell_of(ball.center.y))];
+    const auto higher = [](const Ball& a, const Ball& b) { return a.center.z > b.center.z; };
+    cell.insert(std::ranges::upper_bound(cell, ball, higher), ball);
   }
-  return height;
-}
+
+  /// Height of the center at which a ball falling straight down comes to rest.
+  double resting_height(const Ball& falling) const {
+    double height = falling.radius;
+    const int column = cell_of(falling.center.x), row = cell_of(falling.center.y);
+    for (int y = row - 1; y <= row + 1; ++y)
+      for (int x = column - 1; x <= column + 1; ++x) height = height_above(cells_[index(x, y)], falling, height);
+    return height;
+  }
+
+ private:
+  /// The greater of `height` and the height at which `falling` rests on a ball of the cell.
+  double height_above(const std::vector<Ball>& cell, const Ball& falling, double height) const {
+    for (const Ball& other : cell) {
+      if (other.center.z + falling.radius + largest_radius_ < height) break;  // nor do lower balls reach it
+      const Vec3d d = periodic_difference(falling.center, other.center, period_);
+      const double reach = falling.radius + other.radius, room = reach * reach - d.x * d.x - d.y * d.y;
+      if (room > 0) height = std::max(height, other.center.z + std::sqrt(room));
+    }
+    return height;
+  }
+  int cell_of(double coordinate) const {
+    return std::min(static_cast<int>(coordinate / period_ * cells_across_), cells_across_ - 1);
+  }
+  /// `x` and `y`: -1 to cells_across_.
+  size_t index(int x, int y) const {
+    const int n = cells_across_;
+    return static_cast<size_t>((y + n) % n) * static_cast<size_t>(n) + static_cast<size_t>((x + n) % n);
+  }
+
+  double period_, largest_radius_;
+  int cells_across_;
+  std::vector<std::vector<Ball>> cells_;  // the highest ball of a cell first
+};
 
 }  // namespace
 
@@ -159,6 +197,7 @@ Vec3d periodic_difference(const Vec3d& a, const Vec3d& b, double period) {
 
 std::vector<Ball> pack_balls(const PackingOptions& options) {
   std::vector<Ball> balls;
+  BallGrid grid(options);
   double volume = 0;
   while (volume < options.volume) {
     RandomStream random(options.seed, kStream, balls.size());
@@ -167,10 +206,11 @@ std::vector<Ball> pack_balls(const PackingOptions& options) {
     for (int i = 0; i < kPlacesTried; ++i) {
       const Vec2 u = random.next2();
       Ball ball{.center = Vec3d(options.period * u.x, options.period * u.y, 0), .radius = radius};
-      ball.center.z = resting_height(balls, ball, options.period);
+      ball.center.z = grid.resting_height(ball);
       if (ball.center.z < best.center.z) best = ball;
     }
     balls.push_back(best);
+    grid.add(best);
     volume += 4.0 / 3.0 * kPiD * radius * radius * radius;
   }
   return balls;

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "base/process.h"
 #include "support/tile_mesh.h"
 
 namespace velour::testing {
@@ -27,6 +28,14 @@ TEST(Packing, BallsRestOnTheFloorOrOnEachOtherAndDoNotMeet) {
     EXPECT_NEAR(support, 0, 1e-9) << "ball " << i << " hangs in the air";
   }
   EXPECT_GE(volume, options.volume);
+}
+
+TEST(Packing, ThousandsOfBallsTakeSeconds) {
+  const double start = thread_seconds();
+  const std::vector<Ball> balls =
+      pack_balls({.period = 20, .largest_radius = 0.5, .smallest_radius = 0.3, .volume = 800});
+  EXPECT_GT(balls.size(), 2000);
+  EXPECT_LT(thread_seconds() - start, 4);
 }
 
 TEST(Packing, DifferencesTakeTheShortWay) {
