@@ -166,7 +166,7 @@ void TexelShader::shade_path(const PathVertices& paths, uint32_t path, const Lig
 void TexelShader::shade_vertex(const PathVertex& at, const LightGroup& group, const ShadowMasks::Mask& mask) {
   if ((mask[0] | mask[1]) == 0) return;
   arena_.reset();
-  const PreparedBrdf* const brdf = at.vertex.surface->material->prepare(at.vertex.wv, at.vertex.site, {}, arena_);
+  const PreparedBrdf* const brdf = at.vertex.material->prepare(at.vertex.wv, at.vertex.site, {}, arena_);
   for (uint32_t word = 0; word < mask.size(); ++word) {
     if (mask[word] == 0) continue;
     collect_lit(group, 64 * word, mask[word], at.vertex.frame, lit_);

@@ -245,6 +245,25 @@ TEST(BtfCapture, SurfacesOfWhichPartIsThereLetTheRestThrough) {
   }
 }
 
+TEST(BtfCapture, ViewsMirroredBelowASmoothFaceSeeTheCorrectedMaterial) {
+  Corners flat;
+  flat.rectangle(0, 0, 1, 1);
+  const std::vector<Vec3> leaning(6, Vec3(0.5f, 0, std::sqrt(0.75f)));
+  const BtfCaptureOptions options = small_capture({{0, 0}, {75, 180}}, {{30, 0}});
+  const auto capture = [&](float albedo, const std::string& name) {
+    Scene scene;
+    scene.add_material({.material = lambert(albedo), .turned = lambert(0.5f)});
+    scene.add_instance(
+        scene.add_mesh(Mesh({.positions = flat.positions, .triangles = flat.triangles, .corner_normals = leaning})), {},
+        {0});
+    scene.commit(1);
+    return Captured(scene, options, name);
+  };
+  const Captured dark = capture(0.2f, "dark"), bright = capture(0.5f, "bright");
+  EXPECT_NEAR(dark.mean(0).mean / bright.mean(0).mean, 0.4, 1e-3) << "not mirrored below the face";
+  EXPECT_NEAR(dark.mean(1).mean / bright.mean(1).mean, 1, 1e-3);
+}
+
 TEST(BtfCapture, BrokenMaterialsAreCountedAndCountAsNothing) {
   const Mesh flat = Corners().rectangle(0, 0, 1, 1).mesh();
   const auto scene = tile_of(flat, std::make_shared<test::BrokenLambert>(0.5f));
