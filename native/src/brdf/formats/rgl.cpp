@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <ranges>
 
 #include "base/error.h"
 #include "brdf/formats/tensor_file.h"
@@ -26,8 +25,12 @@ float ramp_inverse(float a, float b, float area) {
 /// The last of nodes 0 to `count` - 2 whose running sum is at most `target`; 0 if there is none. Sums must not
 /// decrease.
 uint32_t last_within(uint32_t count, float target, const auto& running_sum) {
-  const auto nodes = std::views::iota(uint32_t{1}, count - 1);
-  return *std::ranges::partition_point(nodes, [&](uint32_t node) { return running_sum(node) <= target; }) - 1;
+  uint32_t last = 0;
+  for (uint32_t end = std::max(count, 2u) - 1; end - last > 1;) {
+    const uint32_t middle = last + (end - last) / 2;
+    (running_sum(middle) <= target ? last : end) = middle;
+  }
+  return last;
 }
 
 }  // namespace
