@@ -1,6 +1,7 @@
 """Where tiles of BTFs lie on objects: what is measured, and what is said."""
 
 import types
+import unittest.mock
 
 import bpy
 import numpy as np
@@ -10,10 +11,13 @@ from support import inputs, scenes
 from support.notes import export_notes
 from support.placement import SIZE, Placed
 
-_OF_PANELS = ("summaries", "placement_summary")
-
 
 class Panel(Placed):
+    def setUp(self):
+        super().setUp()
+        for kept in (self._summary._reports, self._summary._fresh, self._summary._waiting):
+            kept.clear()  # of other tests
+
     def test_a_linked_material_on_an_object_of_this_file(self):
         """It is measured by its own name, which another one may have."""
         blend = self.folder / "library.blend"
@@ -24,15 +28,91 @@ class Panel(Placed):
             target.materials = ["Quarters"]
         (material,) = target.materials
         obj = scenes.add_plane(material)
-        ui = {name: inputs.module(f"ui.{name}") for name in _OF_PANELS}
-        context = types.SimpleNamespace(object=obj, scene=bpy.context.scene)
-        while ui["summaries"].model_summary(scenes.velour_node(material).image) is None:
-            ui["summaries"]._turn()
-        ui["placement_summary"]._changed = 0.0
-        ui["placement_summary"].measured(context, material)
-        ui["placement_summary"]._measure()
-        report = ui["placement_summary"].measured(context, material)
+        self._read(material)
+        self._draw(obj)
+        self._measure()
+        self.assertEqual(self._tile_size(obj), "2 x 2 m, 4 x 4 times real size")
+
+    def test_editors_that_show_different_objects(self):
+        """They draw in turn, and each redraws all; each object is measured once for a change."""
+        objects = [scenes.add_plane(self._material(), size=size) for size in (2.0, 4.0)]
+        for obj in objects:
+            self._read(obj.active_material)
+        sizes = ["2 x 2 m, 4 x 4 times real size", "4 x 4 m, 8 x 8 times real size"]
+        for obj in objects:
+            self.assertIsNone(self._draw(obj))
+        self.assertEqual(self._measure(), 2)
+        self.assertEqual([self._tile_size(obj) for obj in objects], sizes)
+        self.assertEqual(self._measure(), 0)
+        objects[0].scale = 2, 2, 2
+        bpy.context.view_layer.update()
+        self.assertEqual([self._tile_size(obj) for obj in objects], sizes, "outdated until measured")
+        self.assertEqual(self._measure(), 2)
+        self.assertEqual([self._tile_size(obj) for obj in objects], 2 * sizes[1:])
+
+    def test_few_reports_are_kept(self):
+        objects = [scenes.add_plane(self._material()) for _ in range(3)]
+        with unittest.mock.patch.object(self._summary, "_KEPT", 2):
+            for obj in objects:
+                self._draw(obj)
+            self.assertEqual((len(self._summary._reports), len(self._summary._waiting)), (2, 2))
+
+    def test_another_frame_is_measured(self):
+        obj = scenes.add_plane(self._material())
+        self._read(obj.active_material)
+        for frame, scale in ((1, 1.0), (2, 3.0)):
+            obj.scale = scale, scale, scale
+            obj.keyframe_insert("scale", frame=frame)
+        for frame, size in ((1, "2 x 2 m"), (2, "6 x 6 m")):
+            bpy.context.scene.frame_set(frame)
+            self._draw(obj)
+            self.assertGreater(self._measure(), 0)
+            self.assertIn(size, self._tile_size(obj))
+
+    def test_windows_with_other_scenes_and_view_layers(self):
+        """The object is in the second view layer alone."""
+        window, timer = bpy.data.scenes.new("Window"), bpy.context.scene
+        bpy.context.window.scene = window
+        obj = scenes.add_plane(self._material())
+        self._read(obj.active_material)
+        second = window.view_layers.new("Second")
+        first = next(layer for layer in window.view_layers if layer != second)
+        bpy.context.window.view_layer = second
+        second.update()
+        first.use = False
+        obj.hide_set(True, view_layer=first)
+        bpy.context.window.scene = timer
+        self._draw(obj, window, second)
+        self._measure()
+        report = self._draw(obj, window, second)
         self.assertEqual(dict(report.placement.rows)["Tile size"], "2 x 2 m, 4 x 4 times real size")
+
+    @property
+    def _summary(self):
+        return inputs.module("ui.placement_summary")
+
+    def _draw(self, obj, scene=None, layer=None):
+        """What an editor draws that shows an object."""
+        scene, layer = scene or bpy.context.scene, layer or bpy.context.view_layer
+        context = types.SimpleNamespace(object=obj, scene=scene, view_layer=layer)
+        return self._summary.measured(context, obj.active_material)
+
+    def _tile_size(self, obj):
+        return dict(self._draw(obj).placement.rows)["Tile size"]
+
+    def _measure(self):
+        """Runs the timer until it ends, as after a rest; returns how often it has measured."""
+        count = 0
+        while bpy.app.timers.is_registered(self._summary._measure):
+            self._summary._changed, count = 0.0, count + 1
+            if self._summary._measure() is None:
+                bpy.app.timers.unregister(self._summary._measure)
+        return count
+
+    def _read(self, material):
+        summaries = inputs.module("ui.summaries")
+        while summaries.model_summary(scenes.velour_node(material).image) is None:
+            summaries._turn()
 
 
 class Reports(Placed):

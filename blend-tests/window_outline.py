@@ -22,8 +22,10 @@ def _measured():
         for area in window.first().screen.areas:
             area.tag_redraw()
         yield 0.1
-        if summary._is_fresh and summary._report is not None and summary._report.outline is not None:
-            return summary._report.outline
+        last = next(reversed(summary._reports), None)
+        report = summary._reports[last] if last in summary._fresh else None
+        if report is not None and report.outline is not None:
+            return report.outline
     raise AssertionError("nothing was measured")
 
 

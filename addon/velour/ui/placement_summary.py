@@ -14,7 +14,7 @@ from ..export.outline_report import OutlineReport, outline_report_on
 from ..export.placement import Tile
 from ..export.placement_report import PlacementReport, report_on, report_on_brushed
 from ..operators.job_target import key_of
-from .summaries import model_summary
+from .summaries import model_summary, redraw_panels
 
 _QUIET_SECONDS = 0.3  # nothing is measured during changes such as dragging
 
@@ -24,22 +24,40 @@ class Measured(NamedTuple):
     outline: OutlineReport | None = None  # if it has a VOTF, and the object has texture coordinates
 
 
-_key = None  # identifies what was drawn last
-_report = None  # report for _key, possibly outdated
-_is_fresh = False
+class _Shown(NamedTuple):
+    """What a panel shows; datablocks as in key_of()."""
+
+    object: str | tuple
+    material: str | tuple
+    scene: str | tuple
+    view_layer: str
+
+
+_KEPT = 16  # editors that show different objects draw in turn
+_reports = {}  # _Shown: Measured, possibly outdated; None: not yet. What was drawn last comes last
+_fresh = {}  # those whose report is not outdated, and its frame
+_waiting = {}  # those to measure; what was drawn last comes last
 _changed = 0.0  # time.monotonic() of the last change
 
 
 def measured(context, material):
     """Measured of the active object, which must exist; None while there is none yet."""
-    global _key, _report, _is_fresh
-    shown = (context.object, material, context.scene)
-    key = (*map(key_of, shown), context.scene.frame_current)
-    if key != _key:
-        _key, _report, _is_fresh = key, None, False
-    if not _is_fresh and not bpy.app.timers.is_registered(_measure):
-        bpy.app.timers.register(_measure)
-    return _report
+    owners = map(key_of, (context.object, material, context.scene))
+    key = _Shown(*owners, context.view_layer.name)
+    _reports[key] = _reports.pop(key, None)
+    while len(_reports) > _KEPT:
+        _forget(next(iter(_reports)))
+    if _fresh.get(key) != context.scene.frame_current:
+        _waiting[key] = None
+        if not bpy.app.timers.is_registered(_measure):
+            bpy.app.timers.register(_measure)
+    return _reports[key]
+
+
+def _forget(key):
+    del _reports[key]
+    _fresh.pop(key, None)
+    _waiting.pop(key, None)
 
 
 def attach():
@@ -47,44 +65,47 @@ def attach():
 
 
 def detach():
-    global _key, _report
     bpy.app.handlers.depsgraph_update_post.remove(_note_change)
     if bpy.app.timers.is_registered(_measure):
         bpy.app.timers.unregister(_measure)
-    _key = _report = None
+    for kept in (_reports, _fresh, _waiting):
+        kept.clear()
 
 
 @persistent
 def _note_change(_scene, _depsgraph):
     """Only records the change, since renders may call it from their thread."""
-    global _is_fresh, _changed
-    _is_fresh, _changed = False, time.monotonic()
+    global _changed
+    _fresh.clear()
+    _changed = time.monotonic()
 
 
 def _measure():
-    """Timer on the main thread, between redraws."""
-    global _report, _is_fresh
+    """Timer on the main thread, between redraws; measures for one panel at a time."""
+    if not _waiting:  # what waited was forgotten
+        return None
     quiet = time.monotonic() - _changed
     if quiet < _QUIET_SECONDS:
         return _QUIET_SECONDS - quiet
-    obj, material, scene, _frame = _key
-    _is_fresh = True
-    _report = _report_of(
-        bpy.data.objects.get(obj), bpy.data.materials.get(material), bpy.data.scenes.get(scene)
-    )
-    for window in bpy.context.window_manager.windows:
-        for area in window.screen.areas:
-            if area.type == "PROPERTIES":
-                area.tag_redraw()
-    return None
+    key, _ = _waiting.popitem()
+    # The timer's own context may have the scene and the view layer of another window.
+    scene = bpy.data.scenes.get(key.scene)
+    layer = scene.view_layers.get(key.view_layer) if scene is not None else None
+    if layer is not None:
+        layer.update()
+        _fresh[key] = scene.frame_current  # from here on, changes outdate the report
+    _reports[key] = _report_of(key, layer)
+    redraw_panels()
+    return 0.0 if _waiting else None
 
 
-def _report_of(obj, material, scene):
+def _report_of(shown, layer):
+    obj, material = bpy.data.objects.get(shown.object), bpy.data.materials.get(shown.material)
     node = velour_node(material)
     info = model_summary(node.image) if node is not None and node.image is not None else None
-    depsgraph = bpy.context.evaluated_depsgraph_get()
-    if obj is None or not isinstance(info, dict) or depsgraph.scene != scene:
+    if obj is None or layer is None or not isinstance(info, dict):
         return None
+    depsgraph = layer.depsgraph
     tile = Tile.of(material, node, constant_look(node), info)
     placement = _placement_of(depsgraph, obj, material, info, tile)
     if "shell" not in info:
