@@ -253,19 +253,32 @@ void warn_of_fitted_views(const std::vector<FittedView>& fitted, const FitOption
 
 constexpr double kVisibleExcess = 0.005;  // of a model's albedo over 1
 
-void warn_of_albedo(const Measurement& measurement, const Vec3& wv, FitRecord& record) {
-  const double albedo = record.albedo_max, view = polar_degrees(wv);
-  const std::vector<double> azimuth = azimuth_degrees(wv, measurement.isotropic());
-  const double measured = largest(directional_albedo(measurement, wv).albedo);  // over the lights that it covers
-  if (measured > kWrongScale) {
-    record.warnings.push_back(
-        warning<WarningCode::implausible_albedo>({{"albedo", albedo}, {"view", view}, {"azimuth", azimuth}}));
-  } else if (measured > 1) {
-    record.warnings.push_back(
-        warning<WarningCode::measured_albedo_above_one>({{"albedo", albedo}, {"view", view}, {"azimuth", azimuth}}));
-  } else if (albedo > 1 + kVisibleExcess) {
-    record.warnings.push_back(warning<WarningCode::model_albedo_above_one>(
-        {{"albedo", albedo}, {"view", view}, {"azimuth", azimuth}, {"measured", measured}}));
+/// The largest albedo of the views that were added, and its view.
+struct Brightest {
+  double albedo = 0;
+  Vec3 wv{0, 0, 1};
+
+  void add(double other, const Vec3& view) {
+    if (other > albedo) albedo = other, wv = view;
+  }
+};
+
+void warn_of_albedo(const Measurement& measurement, const Brightest& measured, const Brightest& modeled,
+                    std::vector<Warning>& warnings) {
+  // Over the lights that the measurement covers: the measured albedos are lower bounds.
+  const double measured_there = largest(directional_albedo(measurement, modeled.wv).albedo);
+  const auto azimuth = [&](const Brightest& at) { return azimuth_degrees(at.wv, measurement.isotropic()); };
+  if (measured.albedo > kWrongScale) {
+    warnings.push_back(warning<WarningCode::implausible_albedo>(
+        {{"albedo", measured.albedo}, {"view", polar_degrees(measured.wv)}, {"azimuth", azimuth(measured)}}));
+  } else if (modeled.albedo > 1 && measured_there > 1) {
+    warnings.push_back(warning<WarningCode::measured_albedo_above_one>(
+        {{"albedo", measured.albedo}, {"view", polar_degrees(measured.wv)}, {"azimuth", azimuth(measured)}}));
+  } else if (modeled.albedo > 1 + kVisibleExcess) {
+    warnings.push_back(warning<WarningCode::model_albedo_above_one>({{"albedo", modeled.albedo},
+                                                                     {"view", polar_degrees(modeled.wv)},
+                                                                     {"azimuth", azimuth(modeled)},
+                                                                     {"measured", measured_there}}));
   }
 }
 
@@ -280,13 +293,14 @@ void add_albedos(const Measurement& measurement, const Material& material, const
     }
     entry = most;
   }
-  Vec3 brightest(0, 0, 1);
+  Brightest measured, modeled;
   for (const FittedView& v : fitted) {
     progress.check();
-    const double albedo = largest(directional_albedo(material, v.wv));
-    if (albedo > record.albedo_max) record.albedo_max = albedo, brightest = v.wv;
+    measured.add(largest(directional_albedo(measurement, v.wv).albedo), v.wv);
+    modeled.add(largest(directional_albedo(material, v.wv)), v.wv);
   }
-  if (record.albedo_max > 1) warn_of_albedo(measurement, brightest, record);
+  record.albedo_max = modeled.albedo;
+  warn_of_albedo(measurement, measured, modeled, record.warnings);
 }
 
 /// Removes the errors outside `views` and replaces the mean by that of the fitted views.

@@ -8,7 +8,9 @@
 #include "brdf/eval/parametric_material.h"
 #include "brdf/fit/parametric/parametric_fit.h"
 #include "support/analytic_measurement.h"
+#include "support/hostile_measurements.h"
 #include "support/parametric_models.h"
+#include "support/warnings.h"
 
 namespace velour::albedo_limit_test {
 namespace {
@@ -74,6 +76,18 @@ TEST(AlbedoLimit, IsAnOptionOfTheFit) {
   const Model limited = fit_parametric(metal, options, progress);
   EXPECT_LE(limited.fit.albedo_max, 1);
   EXPECT_GT(limited.fit.relative_l2, 2 * free.fit.relative_l2);  // and the errors are those of what was written
+}
+
+TEST(AlbedoLimit, DoesNotHideAWrongScale) {
+  const test::AnalyticMeasurement metal(test::scaled(test::ggx(0.3f, 0.3f), 1500));
+  Progress progress;
+  FitOptions options;
+  options.max_lobes = 2;
+  options.limit_albedo = true;
+  const Model model = fit_parametric(metal, options, progress);
+  const Warning* told = test::find_warning(model.fit.warnings, WarningCode::implausible_albedo);
+  ASSERT_NE(told, nullptr);
+  EXPECT_GT(test::value_of<double>(*told, "albedo"), 1000);  // of the measurement; that of the model is 1 at most
 }
 
 TEST(AlbedoLimit, HoldsForSymmetricModelsToo) {
