@@ -35,8 +35,8 @@ double polar_angle(const Vec3& w) { return std::acos(std::clamp(static_cast<doub
 double seen_weight(const SceneDomain& domain, double theta) {
   const int bin = static_cast<int>(theta / (kPiD / 2) * SceneDomain::kViewBins);
   double sum = 0;
-  for (int i = bin - 1; i <= bin + 1; ++i)
-    sum += domain.view[static_cast<size_t>(std::clamp(i, 0, SceneDomain::kViewBins - 1))];
+  for (int i = std::max(bin - 1, 0); i <= std::min(bin + 1, SceneDomain::kViewBins - 1); ++i)
+    sum += domain.view[static_cast<size_t>(i)];
   return sum;
 }
 
