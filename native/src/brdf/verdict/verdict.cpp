@@ -221,8 +221,8 @@ PicturePair exposed(const LitShape& lit_shape, size_t environment) {
   const auto scale = static_cast<float>(out.exposure);
   for (size_t i = 0; i < lit_shape.object.size(); ++i) {
     const PixelRadiance& r = lit_shape.radiance[i];
-    out.measured.pixels[lit_shape.object[i]] = glm::min(scale * r.measured[environment], 1.0f);
-    out.shown.pixels[lit_shape.object[i]] = glm::min(scale * r.shown[environment], 1.0f);
+    out.measured.pixels[lit_shape.object[i]] = scale * r.measured[environment];
+    out.shown.pixels[lit_shape.object[i]] = scale * r.shown[environment];
   }
   return out;
 }
@@ -299,15 +299,21 @@ struct Differences {
   }
 };
 
+LinearPicture displayed(LinearPicture picture) {
+  for (Rgb& c : picture.pixels) c = glm::min(c, 1.0f);
+  return picture;
+}
+
 void add_pair(const PicturePair& pair, Differences& out) {
-  const std::vector<float> flip = flip_map(pair.measured, pair.shown);
+  const LinearPicture measured = displayed(pair.measured), shown = displayed(pair.shown);
+  const std::vector<float> flip = flip_map(measured, shown);
   for (size_t i = 0; i < pair.object.size(); ++i) {
     const float value = flip[pair.object[i]];
     out.flip.push_back(value);
     out.all.add(value);
     (pair.view_angle[i] > static_cast<float>(radians_from(kGrazing)) ? out.grazing : out.facing).add(value);
     const float brighter =
-        std::max(luminance(pair.measured.pixels[pair.object[i]]), luminance(pair.shown.pixels[pair.object[i]]));
+        std::max(luminance(measured.pixels[pair.object[i]]), luminance(shown.pixels[pair.object[i]]));
     (brighter > kBright ? out.bright : out.dim).add(value);
   }
   out.log_luminance.add(std::log(std::clamp(pair.luminance_ratio, 1e-6, 1e6)));
@@ -331,12 +337,12 @@ double flip_after(std::vector<PicturePair> pairs, const Progress& progress, cons
 
 void equal_brightness(PicturePair& pair) {
   const auto scale = static_cast<float>(1 / std::clamp(pair.luminance_ratio, 1e-6, 1e6));
-  for (const uint32_t i : pair.object) pair.shown.pixels[i] = glm::min(scale * pair.shown.pixels[i], 1.0f);
+  for (const uint32_t i : pair.object) pair.shown.pixels[i] *= scale;
 }
 
 void without_color(PicturePair& pair) {
   for (LinearPicture* picture : {&pair.measured, &pair.shown}) {
-    for (Rgb& c : picture->pixels) c = Rgb(luminance(c));
+    for (Rgb& c : picture->pixels) c = Rgb(luminance(glm::min(c, 1.0f)));
   }
 }
 

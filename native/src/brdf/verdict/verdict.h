@@ -14,7 +14,7 @@ namespace velour {
 
 /// Pictures of one shape in one light, exposed so that the measurement's mean luminance is photographic gray.
 struct PicturePair {
-  LinearPicture measured, shown;  // in [0, 1]
+  LinearPicture measured, shown;  // of positive values; displays cut them off at 1
   double exposure = 1;            // factor of both
   std::vector<uint32_t> object;   // pixels of the shape whose views are measured
   std::vector<float> view_angle;  // of each of these, radians

@@ -95,6 +95,7 @@ TEST(Verdict, NamesWhatDiffers) {
   const auto is_mirror = [](const DirectionPair& p) { return glm::normalize(p.wl + p.wv).z > 0.99f; };
   const Case cases[] = {
       {matte, [&](const DirectionPair&) { return plain(0.5); }, LookReason::brightness},
+      {paint, [&](const DirectionPair&) { return plain(0.2); }, LookReason::brightness},  // the model is cut off
       {matte, [](const DirectionPair&) { return Rgb(1.3f, 1, 0.2f); }, LookReason::color},
       {paint, [&](const DirectionPair& p) { return plain(is_mirror(p) ? 0.3 : 1); }, LookReason::highlights},
       {matte, [&](const DirectionPair& p) { return plain(p.wv.z > 0.5f ? 1 : 2); }, LookReason::grazing_views},
