@@ -45,8 +45,8 @@ constexpr ModelKind kDefaultModelKind = ModelKind::automatic;
 ///
 /// Automatic: parametric, unless a reported view misses its tolerance several times over or the verdict is not good.
 /// Then the fit continues with splines twice as fine, and if that does not help, a per-view model follows. A larger
-/// model must have a better verdict, or errors lower by a third. Options that only one kind has, and bounds of the
-/// size, decide by themselves.
+/// model must have a better verdict, or the same one and errors lower by a third or FLIP by a fifth; one of a table may
+/// not have errors higher by half. Options that only one kind has, and bounds of the size, decide by themselves.
 Model fit_model(ModelKind kind, const Measurement& measurement, const FitOptions& options, Progress& progress);
 
 }  // namespace velour

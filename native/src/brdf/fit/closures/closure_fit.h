@@ -42,9 +42,9 @@ class ClosureAlbedo {
  public:
   ClosureAlbedo(const ClosureSource& source, const HighlightWidths& widths, int threads, const Progress& progress);
 
-  /// Scales the weights of each sample of the curves so that the albedo is within 1 % of the source's, and never more
-  /// than 1 % above it between the samples either. Channels that reflect less than a hundredth of the largest albedo
-  /// are only reduced.
+  /// Scales the weights of each sample of the curves so that the albedo is within 1 % of the source's, unless that
+  /// takes a factor above 1.25, and never more than 1 % above it between the samples either. Channels that reflect less
+  /// than a hundredth of the largest albedo are only reduced.
   void correct(ClosureNetwork& network, LobeMasking masking) const;
   /// Largest share by which the albedo of a channel exceeds the source's; not negative. 0 for a black source.
   double largest_excess(const ClosureNetwork& network, LobeMasking masking) const;

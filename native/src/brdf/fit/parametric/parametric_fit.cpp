@@ -16,7 +16,8 @@ namespace {
 constexpr int kTableCells = 10, kSampleCells = 4;
 constexpr int kFinerLobes = 20;
 
-// With fewer irregular samples, a control value follows their noise. A material needs two or three lobes at least.
+// With fewer irregular samples, a control value follows their noise. Held-out samples count, too, so that the number of
+// lobes does not depend on them. A material needs two or three lobes at least.
 constexpr size_t kSamplesPerValue = 5;
 constexpr int kMinLobes = 3;
 
