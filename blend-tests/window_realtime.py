@@ -112,7 +112,17 @@ def edits(folder):
     def darken():
         scenes.set_world((0.1, 0.1, 0.1))
 
-    for edit in (turn, paint, brighten, darken):
+    def link():
+        world = bpy.context.scene.world.node_tree
+        world.links.new(
+            world.nodes.new("ShaderNodeTexGradient").outputs[0], world.nodes["Background"].inputs[0]
+        )
+
+    def reverse():
+        gradient = bpy.context.scene.world.node_tree.nodes["Gradient Texture"]
+        gradient.gradient_type = "SPHERICAL"
+
+    for edit in (turn, paint, brighten, darken, link, reverse):
         edit()
         yield 0.3
         yield from viewport.real_time_finished()

@@ -237,6 +237,10 @@ class RealtimeScene(Scene):
         super().set_world_file(path, strength, world_to_image, **options)
         self._note_world(("file", path, stamp, *options.values()), strength, world_to_image)
 
+    def set_world_program(self, program, output, width, height):
+        super().set_world_program(program, output, width, height)
+        self._note_world(("program", object()))  # no other key is equal: programs cannot be compared
+
     def place_world(self, strength, world_to_image=None):
         super().place_world(strength, world_to_image)
         self._note_world(self._world, strength, world_to_image)
