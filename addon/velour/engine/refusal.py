@@ -3,7 +3,7 @@
 import bpy
 
 from ..export.changes import Changes
-from ..export.nodes import model_names
+from ..export.nodes import all_measured
 from ..realtime import shaders
 
 _MATERIALS = (bpy.types.Material, bpy.types.NodeTree)
@@ -19,7 +19,7 @@ class Refusal:
             self._numbers, self._measurements = _numbers(depsgraph), _measurements(depsgraph)
 
     def may_be_over(self, depsgraph):
-        """Whether a changed scene has another number of objects or lights, or another measurement.
+        """Whether a changed scene has another number of objects or lights, or renders another model.
 
         Movements and colors end no refusal, so they cause neither a try in real time at each step nor a
         count, which would visit each instance.
@@ -53,6 +53,12 @@ def _numbers(depsgraph):
 
 
 def _measurements(depsgraph):
-    """Names of the images of measured materials, by material."""
+    """Images and settings that choose what measured materials render from, by material."""
     materials = (block for block in depsgraph.ids if isinstance(block, bpy.types.Material))
-    return {material.name_full: model_names(material) for material in materials}
+    return {material.name_full: tuple(map(_rendered, all_measured(material))) for material in materials}
+
+
+def _rendered(node):
+    settings = node.velour
+    names = tuple(image and image.name_full for image in (node.image, settings.scene_model))
+    return *names, settings.use_scene_model, settings.use_reference
