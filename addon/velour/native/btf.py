@@ -85,7 +85,7 @@ def compress_size(btf: Btf, **options) -> CompressSize:
 
 def compress_job(btf: Btf, **options) -> Job:
     """Options: method (table.COMPRESS_METHODS), companding (table.COMPANDINGS), tolerance, bytes, seed,
-    threads, memory, checkpoint (a file that keeps finished stages until the fit succeeds) and resume,
+    threads, memory, checkpoint (a file for finished stages; delete it once the model is saved) and resume,
     held_out (a Btf of held-out pairs); for_scene (an Observation) and full_model (a Model) make a scene model
     without details that the scenes do not resolve. Result: result_model()."""
     return Job._create("vlr_compress_create_job", btf.pointer, ctypes.byref(_compress_options(options)))

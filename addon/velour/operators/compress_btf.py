@@ -65,7 +65,7 @@ class VELOUR_OT_compress_btf(AskedFit, PutsInSlot, MakesModel, bpy.types.Operato
         with btf, held_out or contextlib.nullcontext():
             self._digest = info["sha256"]
             options = options_of(self._asked_for)
-            checkpoint = _checkpoint(self._digest, options)
+            checkpoint = self._checkpoint = _checkpoint(self._digest, options)
             # The time of a resumed fit would be too short.
             self._fit = None if os.path.exists(checkpoint) else fit_of(info, options, self._threads)
             self._next = compress_job(
@@ -92,6 +92,7 @@ class VELOUR_OT_compress_btf(AskedFit, PutsInSlot, MakesModel, bpy.types.Operato
             remember(Path(cache_folder()), self._fit, self._seconds)
         material, node = self._put_anew() if self._target else self._put_new()
         if material is not None:
+            Path(self._checkpoint).unlink(missing_ok=True)
             self._say_what_it_is(material)
         return material, node
 

@@ -347,9 +347,9 @@ typedef struct vlr_compress_options {
    * 0: none. */
   double tolerance;
   uint64_t memory; /* maximum bytes that the fit holds at once, beyond those of the process before; 0: no limit */
-  /* Finished stages are stored in this file while the fit runs, atomically; it is deleted after success. NULL: none.
-   * With `resume`, stages in the file of the same BTF and options are not repeated, and the model has the same bits as
-   * an uninterrupted fit; any other file is replaced, with a warning. */
+  /* Finished stages are added to this file while the fit runs, each whole or not at all; the caller deletes it once the
+   * model is saved. NULL: none. With `resume`, stages in the file of the same BTF and options are not repeated, and the
+   * model has the same bits as an uninterrupted fit; any other file is replaced, with a warning. */
   const char* checkpoint;
   int32_t resume;
   /* Clustered tensors: number of clusters per side (up to 256; TUCKER: 1), and number of them per texel (up to 8;

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import contextlib
+from pathlib import Path
 
 from ...native import compress_job, table
 from . import btf_options, numbers, output, scene_options
@@ -82,7 +83,8 @@ def run(args: argparse.Namespace) -> dict:
     output.check_writable(args.output)
     names = ("method", "companding", "tolerance", "bytes", "memory", "seed", "threads", "clusters", "members")
     options = {name: getattr(args, name) for name in names if getattr(args, name) is not None}
-    options |= {"checkpoint": f"{args.output}.checkpoint", "resume": int(args.resume)}
+    checkpoint = Path(f"{args.output}.checkpoint")
+    options |= {"checkpoint": checkpoint, "resume": int(args.resume)}
     if args.no_relief:
         options["no_relief"] = 1
     with contextlib.ExitStack() as handles:
@@ -95,4 +97,5 @@ def run(args: argparse.Namespace) -> dict:
         job = handles.enter_context(compress_job(btf, **options))
         report = job.run(output.progress_of(args))
         handles.enter_context(job.result_model()).save(args.output)
+        checkpoint.unlink(missing_ok=True)
     return report

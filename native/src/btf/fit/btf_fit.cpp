@@ -130,7 +130,6 @@ Model compress_btf(const BtfMeasurement& measurement, const CompressOptions& opt
   model->source = {source.name, source.format, source.sha256};
   model->btf = std::move(record);
   progress.update(1.0);
-  checkpoint.remove();
   return std::move(*model);
 }
 

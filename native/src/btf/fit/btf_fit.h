@@ -20,7 +20,7 @@ enum class CompressMethod : uint8_t { svd = 0, srbf = 1, tucker = 2, cta = 3, kc
 
 struct CompressOptions : BtfFitOptions {
   CompressMethod method = CompressMethod::srbf;
-  std::string checkpoint;                          // stores finished stages until the fit has succeeded; empty: none
+  std::string checkpoint;                          // file for finished stages, deleted by the caller; empty: none
   bool resume = false;                             // reuse the stages in the checkpoint
   std::shared_ptr<const BtfMeasurement> held_out;  // held-out pairs for validation; null: none
   /// Scene usage to which the model is reduced (scene_reduction.h); null: the model serves any scene.

@@ -1,7 +1,7 @@
 #include "btf/fit/fit_checkpoint.h"
 
 #include <algorithm>
-#include <bit>
+#include <cerrno>
 #include <cmath>
 #include <filesystem>
 
@@ -11,72 +11,125 @@
 namespace velour {
 namespace {
 
-constexpr char kKind[] = "velour.kind", kKindOfThis[] = "fit-checkpoint", kKey[] = "velour.checkpoint.key";
-constexpr int kWords = 4;  // 16-bit words of a double, which floats represent exactly
+constexpr size_t kHash = 64;  // hexadecimal digits
 
-void append_words(double number, std::vector<float>& out) {
-  const auto bits = std::bit_cast<uint64_t>(number);
-  for (int w = 0; w < kWords; ++w) out.push_back(static_cast<float>((bits >> (16 * w)) & 0xffff));
+std::span<const uint8_t> bytes_of(const void* data, size_t bytes) { return {static_cast<const uint8_t*>(data), bytes}; }
+
+/// Hash of a record, without joining its parts.
+template <class Header>
+std::string hash_of(const Header& header, const std::string& name, const void* data) {
+  const std::string parts = sha256_hex(bytes_of(&header, sizeof header)) +
+                            sha256_hex(bytes_of(name.data(), name.size())) + sha256_hex(bytes_of(data, header.bytes()));
+  return sha256_hex(bytes_of(parts.data(), parts.size()));
 }
 
-std::optional<double> number_of(const float* words) {
-  uint64_t bits = 0;
-  for (int w = 0; w < kWords; ++w) {
-    if (!(words[w] >= 0 && words[w] <= 65535 && words[w] == std::floor(words[w]))) return std::nullopt;
-    bits |= static_cast<uint64_t>(words[w]) << (16 * w);
-  }
-  const auto number = std::bit_cast<double>(bits);
-  return std::isfinite(number) ? std::optional(number) : std::nullopt;
+template <typename Stages>
+size_t erase_stages(Stages& stages, const std::string& prefix) {
+  return std::erase_if(stages, [&](const auto& entry) { return entry.first.starts_with(prefix); });
 }
+
+template <typename Number>
+bool all_finite(std::span<const Number> values) {
+  return std::all_of(values.begin(), values.end(), [](Number v) { return std::isfinite(v); });
+}
+
+constexpr auto kOpen = std::ios::in | std::ios::out | std::ios::binary;
 
 }  // namespace
 
 std::string side_stage(size_t side) { return "side." + std::to_string(side); }
 
 FitCheckpoint::FitCheckpoint(CheckpointOptions options) : options_(std::move(options)) {
-  file_.attributes = {{kKind, kKindOfThis}, {kKey, options_.key}};
-  if (options_.resume && !options_.path.empty()) read();
-}
-
-void FitCheckpoint::read() {
-  if (!std::filesystem::exists(options_.path)) return;
+  std::error_code ignored;
+  if (!options_.resume || options_.path.empty() || !std::filesystem::exists(options_.path, ignored)) return;
   try {
-    TensorFile file = decode_tensors(read_file(options_.path), options_.path);
-    if (file.attributes[kKind] != kKindOfThis || file.attributes[kKey] != options_.key) {
-      throw Error(Status::bad_data, options_.path + " belongs to a fit of another BTF or with other options.");
-    }
-    file_ = std::move(file);
-  } catch (const Error& error) {
+    read();
+  } catch (const std::exception& error) {
+    file_.close();
+    stages_.clear();
     warnings_.push_back(warning<WarningCode::fit_not_resumed>({{"reason", error.what()}}));
   }
 }
 
-const Tensor* FitCheckpoint::find(const std::string& stage) const {
-  const auto found = file_.tensors.find(stage);
-  return found == file_.tensors.end() ? nullptr : &found->second;
+void FitCheckpoint::read() {
+  const uint64_t size = RandomAccessFile(options_.path).size();
+  file_.open(options_.path, kOpen);
+  const auto first = next_record(size);
+  if (!first || first->header.kind != Kind::key) {
+    throw Error(Status::bad_data, options_.path + " is not the checkpoint of a fit, or it is damaged.");
+  }
+  if (first->name != options_.key) {
+    throw Error(Status::bad_data, options_.path + " belongs to a fit of another BTF or with other options.");
+  }
+  uint64_t complete = 0;  // size of all complete blocks
+  Stages stages;
+  while (auto record = next_record(size)) {
+    if (record->header.kind == Kind::forgotten) {
+      erase_stages(stages, record->name);
+    } else if (record->header.kind == Kind::end) {
+      stages_ = stages;
+      complete = static_cast<uint64_t>(file_.tellg());
+    } else {
+      stages[record->name] = *record;
+    }
+  }
+  if (complete == 0) throw Error(Status::bad_data, options_.path + " has no finished stage, or it is damaged.");
+  file_.clear();
+  std::filesystem::resize_file(options_.path, complete);
+}
+
+/// The record at the file's position; empty if it is incomplete or damaged.
+std::optional<FitCheckpoint::Record> FitCheckpoint::next_record(uint64_t size) const {
+  Record record{};
+  Header& header = record.header;
+  file_.read(reinterpret_cast<char*>(&header), sizeof header);
+  if (!file_) return std::nullopt;
+  const uint64_t left = size - static_cast<uint64_t>(file_.tellg());
+  const uint64_t row = left / header.bytes_of_number() / std::max<uint64_t>(1, header.rows);
+  if (header.name > left || header.rows > left || header.columns > row) return std::nullopt;
+  record.name.resize(header.name);
+  file_.read(record.name.data(), header.name);
+  record.data = static_cast<uint64_t>(file_.tellg());
+  std::vector<char> data(header.bytes());
+  file_.read(data.data(), static_cast<std::streamsize>(data.size()));
+  std::string hash(kHash, ' ');
+  file_.read(hash.data(), kHash);
+  if (!file_ || hash != hash_of(header, record.name, data.data())) return std::nullopt;
+  return record;
+}
+
+const FitCheckpoint::Record* FitCheckpoint::find(const std::string& stage, Kind kind) const {
+  const auto found = stages_.find(stage);
+  return found == stages_.end() || found->second.header.kind != kind ? nullptr : &found->second;
+}
+
+bool FitCheckpoint::load(const Record& record, void* to) const {
+  file_.seekg(static_cast<std::streamoff>(record.data));
+  file_.read(static_cast<char*>(to), static_cast<std::streamsize>(record.header.bytes()));
+  if (file_) return true;
+  file_.clear();
+  return false;
 }
 
 std::optional<RowMatrix> FitCheckpoint::matrix(const std::string& stage, Eigen::Index rows,
                                                Eigen::Index columns) const {
-  const Tensor* tensor = find(stage);
-  const std::vector<uint64_t> shape{static_cast<uint64_t>(rows), static_cast<uint64_t>(columns)};
-  if (tensor == nullptr || tensor->shape != shape) return std::nullopt;
-  const auto finite = [](float v) { return std::isfinite(v); };
-  if (!std::all_of(tensor->data.begin(), tensor->data.end(), finite)) return std::nullopt;
-  return Eigen::Map<const RowMatrix>(tensor->data.data(), rows, columns);
+  const Record* record = find(stage, Kind::matrix);
+  if (!record || record->header.rows != static_cast<uint64_t>(rows) ||
+      record->header.columns != static_cast<uint64_t>(columns)) {
+    return std::nullopt;
+  }
+  RowMatrix matrix(rows, columns);
+  if (!load(*record, matrix.data()) ||
+      !all_finite(std::span<const float>(matrix.data(), static_cast<size_t>(matrix.size()))))
+    return std::nullopt;
+  return matrix;
 }
 
 std::optional<std::vector<double>> FitCheckpoint::numbers(const std::string& stage, size_t most) const {
-  const Tensor* tensor = find(stage);
-  if (tensor == nullptr || tensor->shape.size() != 2 || tensor->shape[1] != kWords || tensor->shape[0] > most) {
-    return std::nullopt;
-  }
-  std::vector<double> numbers;
-  for (const float* words = tensor->data.data(); numbers.size() < tensor->shape[0]; words += kWords) {
-    const auto number = number_of(words);
-    if (!number) return std::nullopt;
-    numbers.push_back(*number);
-  }
+  const Record* record = find(stage, Kind::numbers);
+  if (!record || record->header.rows > most || record->header.columns != 1) return std::nullopt;
+  std::vector<double> numbers(record->header.rows);
+  if (!load(*record, numbers.data()) || !all_finite(std::span<const double>(numbers))) return std::nullopt;
   return numbers;
 }
 
@@ -92,16 +145,37 @@ std::optional<std::vector<size_t>> FitCheckpoint::integers(const std::string& st
   return integers;
 }
 
+void FitCheckpoint::append(Kind kind, const std::string& name, const void* data, uint64_t rows, uint64_t columns) {
+  if (options_.path.empty() || failed_) return;
+  if (!file_.is_open() && kind != Kind::key) {
+    file_.open(options_.path, kOpen | std::ios::trunc);
+    append(Kind::key, options_.key, nullptr, 0, 0);
+    if (failed_) return;
+  }
+  file_.seekp(0, std::ios::end);
+  const Header header{kind, static_cast<uint32_t>(name.size()), rows, columns};
+  const std::string hash = hash_of(header, name, data);
+  file_.write(reinterpret_cast<const char*>(&header), sizeof header).write(name.data(), header.name);
+  if (kind == Kind::matrix || kind == Kind::numbers) {
+    stages_[name] = {header, name, static_cast<uint64_t>(file_.tellp())};
+  }
+  file_.write(static_cast<const char*>(data), static_cast<std::streamsize>(header.bytes()));
+  file_.write(hash.data(), kHash);
+  if (kind == Kind::end) file_.flush();
+  if (file_) return;
+  failed_ = true;
+  stages_.clear();
+  warnings_.push_back(warning<WarningCode::checkpoint_not_written>(
+      {{"reason", options_.path + ": cannot write: " + std::generic_category().message(errno) + "."}}));
+}
+
 void FitCheckpoint::keep(const std::string& stage, const RowMatrix& matrix) {
-  if (options_.path.empty() || matrix.size() == 0) return;
-  file_.tensors[stage] = {{static_cast<uint64_t>(matrix.rows()), static_cast<uint64_t>(matrix.cols())},
-                          {matrix.data(), matrix.data() + matrix.size()}};
+  append(Kind::matrix, stage, matrix.data(), static_cast<uint64_t>(matrix.rows()),
+         static_cast<uint64_t>(matrix.cols()));
 }
 
 void FitCheckpoint::keep_numbers(const std::string& stage, std::span<const double> numbers) {
-  if (options_.path.empty() || numbers.empty()) return;
-  Tensor& tensor = file_.tensors[stage] = {{numbers.size(), kWords}, {}};
-  for (const double n : numbers) append_words(n, tensor.data);
+  append(Kind::numbers, stage, numbers.data(), numbers.size(), 1);
 }
 
 void FitCheckpoint::keep_integers(const std::string& stage, const std::vector<size_t>& integers) {
@@ -109,22 +183,9 @@ void FitCheckpoint::keep_integers(const std::string& stage, const std::vector<si
 }
 
 void FitCheckpoint::forget(const std::string& prefix) {
-  std::erase_if(file_.tensors, [&](const auto& entry) { return entry.first.starts_with(prefix); });
+  if (erase_stages(stages_, prefix) > 0) append(Kind::forgotten, prefix, nullptr, 0, 0);
 }
 
-void FitCheckpoint::write() {
-  if (options_.path.empty() || failed_ || file_.tensors.empty()) return;
-  try {
-    write_file(options_.path, encode_tensors(file_));
-  } catch (const Error& error) {
-    failed_ = true;
-    warnings_.push_back(warning<WarningCode::checkpoint_not_written>({{"reason", error.what()}}));
-  }
-}
-
-void FitCheckpoint::remove() {
-  std::error_code ignored;  // a missing file counts as removed
-  if (!options_.path.empty()) std::filesystem::remove(options_.path, ignored);
-}
+void FitCheckpoint::write() { append(Kind::end, "", nullptr, 0, 0); }
 
 }  // namespace velour

@@ -1,6 +1,8 @@
 // Finished stages of a fit, stored in a file so that a killed fit can be resumed.
 #pragma once
 
+#include <fstream>
+#include <map>
 #include <optional>
 #include <span>
 #include <string>
@@ -8,7 +10,6 @@
 
 #include "base/warning.h"
 #include "btf/fit/side_views.h"
-#include "image/tensors/exr_tensors.h"
 
 namespace velour {
 
@@ -21,8 +22,9 @@ struct CheckpointOptions {
 /// Name of the stage that fits side `side` of a BTF.
 std::string side_stage(size_t side);
 
-/// Results of stages by name. Data from the file is validated; what is missing or invalid counts as not stored. Not
-/// thread-safe.
+/// Results of stages by name, kept in the file alone. The file only grows: write() ends a block of records, each beside
+/// its hash. Blocks that are incomplete or damaged, and all after them, count as not stored, as does what has another
+/// shape or is not finite. Not thread-safe.
 class FitCheckpoint {
  public:
   FitCheckpoint() = default;  // stores nothing
@@ -35,24 +37,42 @@ class FitCheckpoint {
   /// Up to `most` integers from 0 to `largest`.
   std::optional<std::vector<size_t>> integers(const std::string& stage, size_t most, size_t largest) const;
 
+  // If the file cannot be written, these warn once; the fit continues.
   void keep(const std::string& stage, const RowMatrix& matrix);
   void keep_numbers(const std::string& stage, std::span<const double> numbers);
   void keep_integers(const std::string& stage, const std::vector<size_t>& integers);
-  /// Removes all stages whose names start with `prefix`; the file is updated by the next write().
+  /// Removes all stages whose names start with `prefix`.
   void forget(const std::string& prefix);
-  /// Writes all stages atomically. If the file cannot be written, warns once; the fit continues.
+  /// Ends a block: a killed fit finds all that was kept and forgotten since the last call, or nothing of it.
   void write();
-  /// Deletes the file, after a successful fit.
-  void remove();
 
   const std::vector<Warning>& warnings() const { return warnings_; }
 
  private:
+  enum class Kind : uint32_t { key = 0x31434656, matrix, numbers, forgotten, end };  // "VFC1" begins the file
+  struct Header {
+    Kind kind;
+    uint32_t name;           // length
+    uint64_t rows, columns;  // of the data
+    uint64_t bytes_of_number() const { return kind == Kind::matrix ? sizeof(float) : sizeof(double); }
+    uint64_t bytes() const { return rows * columns * bytes_of_number(); }
+  };
+  struct Record {
+    Header header;
+    std::string name;
+    uint64_t data;  // position in the file
+  };
+  using Stages = std::map<std::string, Record>;
+
   void read();
-  const Tensor* find(const std::string& stage) const;
+  std::optional<Record> next_record(uint64_t size) const;
+  const Record* find(const std::string& stage, Kind kind) const;
+  bool load(const Record& record, void* to) const;
+  void append(Kind kind, const std::string& name, const void* data, uint64_t rows, uint64_t columns);
 
   CheckpointOptions options_;
-  TensorFile file_;
+  mutable std::fstream file_;
+  Stages stages_;
   bool failed_ = false;
   std::vector<Warning> warnings_;
 };

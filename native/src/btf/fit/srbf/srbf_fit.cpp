@@ -40,9 +40,9 @@ std::optional<LobeOrder> kept_order(const FitCheckpoint& checkpoint, const std::
   for (const size_t a : *axis) order.axis.push_back(static_cast<uint8_t>(a));
   order.left = *left;
   for (size_t a = 0; a < 3; ++a) {
-    // Nothing is stored for an axis without candidates.
-    order.candidate[a] = checkpoint.integers(of_axis(stage + ".candidate", a), kMaxCandidates, kLobeCandidates - 1)
-                             .value_or(std::vector<size_t>());
+    auto candidates = checkpoint.integers(of_axis(stage + ".candidate", a), kMaxCandidates, kLobeCandidates - 1);
+    if (!candidates) return std::nullopt;
+    order.candidate[a] = std::move(*candidates);
   }
   return is_sound(order) ? std::optional(std::move(order)) : std::nullopt;
 }
@@ -67,8 +67,8 @@ bool take_kept_lobes(const FitCheckpoint& checkpoint, const std::string& stage, 
   }
   for (size_t a = 1; a < 3; ++a) {
     const auto numbers = checkpoint.integers(of_axis(stage + ".axis", a), count, count - 1);
-    lobes.lobe[a].clear();
-    for (const size_t n : numbers.value_or(std::vector<size_t>())) lobes.lobe[a].push_back(static_cast<uint16_t>(n));
+    if (!numbers) return false;
+    lobes.lobe[a].assign(numbers->begin(), numbers->end());
   }
   return true;
 }

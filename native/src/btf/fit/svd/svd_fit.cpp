@@ -191,12 +191,29 @@ void FactoredFitter::project(FactoredBtf& btf) {
     }
     progress_.update(static_cast<double>(v + 1) / views_.views());
   }
-  for (Level& level : levels) {
-    brighten(btf, ranges, level);
+  for (Level& level : levels) brighten(btf, ranges, level);
+  scale_to_halves(levels, btf);
+  for (const Level& level : levels) {
     TexelLevel stored{level.width, level.height, std::vector<HalfBits>(static_cast<size_t>(level.value.size()))};
     floats_to_halves({level.value.data(), stored.value.size()}, stored.value);
     btf.levels.push_back(std::move(stored));
   }
+}
+
+/// Moves a power of two from the texels of each component that exceeds the range of halves to its function. The values
+/// of a function are at most 1, so it has room, and they remain the same halves but for their exponents.
+void FactoredFitter::scale_to_halves(std::vector<Level>& levels, FactoredBtf& btf) {
+  const auto fits = [](const Level& level) { return level.value.cwiseAbs().maxCoeff() <= kLargestHalf; };
+  if (std::all_of(levels.begin(), levels.end(), fits)) return;
+  for (Eigen::Index c = 0; c < function_.cols(); ++c) {
+    float most = 0;
+    for (const Level& level : levels) most = std::max(most, level.value.col(c).cwiseAbs().maxCoeff());
+    if (!(most > kLargestHalf)) continue;
+    const float factor = std::exp2(std::ceil(std::log2(most / kLargestHalf)));
+    for (Level& level : levels) level.value.col(c) /= factor;
+    function_.col(c) *= factor;
+  }
+  floats_to_halves({function_.data(), btf.pair_value.size()}, btf.pair_value);
 }
 
 void FactoredFitter::project(const FactoredBtf& btf, const ComponentRanges& ranges, uint32_t view, Level& level) {
@@ -256,6 +273,10 @@ constexpr int kPowerIterations = 2;
 constexpr int kOversampling = 8;     // columns beyond the requested ones
 constexpr uint64_t kFirstLook = 32;  // components to start with if a tolerance is given
 
+std::string basis_stage(Eigen::Index columns, int passes, size_t axis) {
+  return "sketch." + std::to_string(columns) + "." + std::to_string(passes) + "." + std::to_string(axis);
+}
+
 /// Turns the response into orthonormal functions of the pair, the strongest first.
 void rotate(RowMatrix& response, Eigen::VectorXd& energy) {
   const Eigen::MatrixXd exact = response.cast<double>();
@@ -277,7 +298,7 @@ SvdFitter::SvdFitter(const BtfMeasurement& measurement, const BtfFitOptions& opt
   progress.stage("computing color axes", 0, 0.1);
   find_axes();
   const uint64_t most = most_components();
-  uint64_t count = options.tolerance > 0 ? std::min(most, kFirstLook) : most;
+  uint64_t count = first_sketch(most);
   // Each sketch gets half of the remaining progress.
   for (double begin = 0.1;; begin = (begin + 1) / 2, count = std::min(most, 2 * count)) {
     sketch(count, begin, count == most ? 1.0 : (begin + 1) / 2);
@@ -286,15 +307,25 @@ SvdFitter::SvdFitter(const BtfMeasurement& measurement, const BtfFitOptions& opt
   bound_components();
 }
 
+/// Number of components of the first sketch. A stored sketch was only begun because smaller ones did not reach the
+/// tolerance.
+uint64_t SvdFitter::first_sketch(uint64_t most) {
+  if (options_.tolerance == 0) return most;
+  for (uint64_t count = kFirstLook; count < 2 * most; count *= 2) {
+    if (take_kept_bases(columns_for(std::min(most, count))) > 0) return std::min(most, count);
+  }
+  return std::min(most, kFirstLook);
+}
+
+Eigen::Index SvdFitter::columns_for(uint64_t components) const {
+  return static_cast<Eigen::Index>(
+      std::min({components + kOversampling, measurement_.layout().pairs(), measurement_.grid().texels()}));
+}
+
 /// Finds at least `components` components.
 void SvdFitter::sketch(uint64_t components, double begin, double end) {
-  const auto columns = static_cast<Eigen::Index>(
-      std::min({components + kOversampling, measurement_.layout().pairs(), measurement_.grid().texels()}));
-  const auto name = [&](int passes) {
-    return "sketch." + std::to_string(columns) + "." + std::to_string(passes) + ".";
-  };
-  int done = kPowerIterations;  // passes whose bases were restored
-  while (done > 0 && !take_kept_bases(name(done), columns)) --done;
+  const Eigen::Index columns = columns_for(components);
+  const int done = take_kept_bases(columns);
   for (size_t a = 0; a < 3; ++a) {
     if (done == 0) start(sketch_[a], columns, a);
     sketch_[a].response.resize(static_cast<Eigen::Index>(measurement_.layout().pairs()), columns);
@@ -305,7 +336,7 @@ void SvdFitter::sketch(uint64_t components, double begin, double end) {
     pass(i < kPowerIterations);
     if (i == kPowerIterations) break;
     checkpoint_.forget("sketch.");
-    for (size_t a = 0; a < 3; ++a) checkpoint_.keep(name(i + 1) + std::to_string(a), sketch_[a].basis);
+    for (size_t a = 0; a < 3; ++a) checkpoint_.keep(basis_stage(columns, i + 1, a), sketch_[a].basis);
     checkpoint_.write();
   }
   for (Sketch& s : sketch_) rotate(s.response, s.energy);
@@ -326,14 +357,19 @@ void SvdFitter::start(Sketch& sketch, Eigen::Index columns, size_t axis) const {
   sketch.basis = orthonormal(sketch.basis);
 }
 
-bool SvdFitter::take_kept_bases(const std::string& stage, Eigen::Index columns) {
+/// Restores the bases of a sketch; returns the number of passes that they have had, or 0 if none are stored.
+int SvdFitter::take_kept_bases(Eigen::Index columns) {
   const auto texels = static_cast<Eigen::Index>(measurement_.grid().texels());
-  for (size_t a = 0; a < 3; ++a) {
-    auto basis = checkpoint_.matrix(stage + std::to_string(a), texels, columns);
-    if (!basis) return false;
-    sketch_[a].basis = std::move(*basis);
+  for (int passes = kPowerIterations; passes > 0; --passes) {
+    size_t taken = 0;
+    for (; taken < 3; ++taken) {
+      auto basis = checkpoint_.matrix(basis_stage(columns, passes, taken), texels, columns);
+      if (!basis) break;
+      sketch_[taken].basis = std::move(*basis);
+    }
+    if (taken == 3) return passes;
   }
-  return true;
+  return 0;
 }
 
 /// Computes the response of every view to the basis; if `onward`, also its image, which becomes the next basis.

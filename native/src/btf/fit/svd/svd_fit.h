@@ -69,6 +69,7 @@ class FactoredFitter : public BtfFitter {
   void choose(size_t components, FactoredBtf& btf);
   void project(FactoredBtf& btf);
   void project(const FactoredBtf& btf, const ComponentRanges& ranges, uint32_t view, Level& level);
+  void scale_to_halves(std::vector<Level>& levels, FactoredBtf& btf);
   void brighten(const FactoredBtf& btf, const ComponentRanges& ranges, Level& level) const;
   double cosine(Eigen::Index pair) const;
   double modelled(const FactoredBtf& btf, const ComponentRanges& ranges, size_t group, const RowMatrix& value) const;
@@ -112,9 +113,11 @@ class SvdFitter final : public FactoredFitter {
   };
 
   void copy_function(const Component& component, Eigen::Ref<Eigen::VectorXf> values) const override;
+  uint64_t first_sketch(uint64_t most);
+  Eigen::Index columns_for(uint64_t components) const;
   void sketch(uint64_t components, double begin, double end);
   void start(Sketch& sketch, Eigen::Index columns, size_t axis) const;
-  bool take_kept_bases(const std::string& stage, Eigen::Index columns);
+  int take_kept_bases(Eigen::Index columns);
   void pass(bool continuation);
   void respond(Sketch& sketch, const RowMatrix& plane, uint32_t view, bool continuation) const;
   std::vector<Component> found() const;

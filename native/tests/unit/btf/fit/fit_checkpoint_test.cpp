@@ -10,6 +10,7 @@
 #include "btf/fit/btf_fit.h"
 #include "support/striped_btf.h"
 #include "support/warnings.h"
+#include "unit/btf/fit/factored_fits.h"
 
 namespace velour::fit_checkpoint_test {
 namespace {
@@ -74,6 +75,47 @@ TEST_F(Checkpoint, ThatIsDamagedIsIgnoredWithASentence) {
   EXPECT_EQ(made(true).warnings().size(), 1u);
   write_file(path_, std::vector<uint8_t>(1000, 0x5a));
   EXPECT_EQ(made(true).warnings().size(), 1u);
+}
+
+/// Wherever a byte is damaged, no stage has other values than those that were kept.
+TEST_F(Checkpoint, GivesNoDamagedStage) {
+  keep_some();
+  const std::vector<uint8_t> bytes = read_file(path_);
+  for (size_t i = 0; i < bytes.size(); ++i) {
+    std::vector<uint8_t> damaged = bytes;
+    damaged[i] ^= 1;
+    write_file(path_, damaged);
+    const FitCheckpoint checkpoint = made(true);
+    EXPECT_FALSE(checkpoint.matrix("matrix", 5, 4)) << i;
+    EXPECT_FALSE(checkpoint.numbers("numbers", 2)) << i;
+    EXPECT_EQ(checkpoint.warnings().size(), 1u) << i;
+  }
+}
+
+/// A fit may be killed at any time, also twice.
+TEST_F(Checkpoint, HasTheCompleteBlocksOfAFileThatEndsEarly) {
+  keep_some();
+  const size_t block = read_file(path_).size();
+  {
+    FitCheckpoint checkpoint = made(true);
+    checkpoint.forget("num");
+    checkpoint.keep("another", matrix_);
+    checkpoint.write();
+  }
+  const std::vector<uint8_t> bytes = read_file(path_);
+  for (size_t size = block; size < bytes.size(); ++size) {
+    write_file(path_, std::span(bytes).first(size));
+    FitCheckpoint checkpoint = made(true);
+    ASSERT_EQ(checkpoint.matrix("matrix", 5, 4), matrix_) << size;
+    ASSERT_TRUE(checkpoint.numbers("numbers", 2)) << size;
+    ASSERT_FALSE(checkpoint.matrix("another", 5, 4)) << size;
+    checkpoint.keep("third", matrix_);
+    checkpoint.write();
+    ASSERT_EQ(made(true).matrix("third", 5, 4), matrix_) << size;
+  }
+  write_file(path_, bytes);
+  EXPECT_EQ(made(true).matrix("another", 5, 4), matrix_);
+  EXPECT_FALSE(made(true).numbers("numbers", 2));
 }
 
 TEST_F(Checkpoint, WhereNothingCanBeWrittenSaysSoOnce) {
@@ -172,7 +214,6 @@ class Resumed : public testing::TestWithParam<CompressMethod> {};
 /// Wherever a fit is stopped, it ends with the bits of one that was not, and reads less.
 TEST_P(Resumed, HasTheBitsOfAFitThatWasNotStopped) {
   const std::string path = testing::TempDir() + "velour-resumed-" + std::to_string(static_cast<int>(GetParam()));
-  std::filesystem::remove(path);
   const test::MemoryBtf btf = test::striped_btf({6, 4}, GetParam() == CompressMethod::srbf);
   CompressOptions options = options_of(GetParam());
   options.threads = 1;  // that threads change no bits is tested of every method
@@ -182,6 +223,7 @@ TEST_P(Resumed, HasTheBitsOfAFitThatWasNotStopped) {
   options.resume = true;
   const double first = GetParam() == CompressMethod::svd_view ? 0.45 : 0.3;  // of all reading, after the first stage
   for (const double share : {first, 0.6, 0.95}) {
+    std::filesystem::remove(path);
     const auto stop_at = static_cast<uint64_t>(share * static_cast<double>(whole.reads));
     EXPECT_FALSE(compress(btf, options, stop_at).model) << share;
     EXPECT_TRUE(std::filesystem::exists(path));
@@ -192,8 +234,38 @@ TEST_P(Resumed, HasTheBitsOfAFitThatWasNotStopped) {
     EXPECT_EQ(rest.model->btf->search, whole.model->btf->search);
     EXPECT_EQ(rest.model->btf->order, whole.model->btf->order);
     EXPECT_LT(rest.reads, whole.reads);
-    EXPECT_FALSE(std::filesystem::exists(path));  // after a success
+    // The model is not saved yet: if that fails, the fit is not lost.
+    const Outcome again = compress(btf, options, 0);
+    ASSERT_TRUE(again.model);
+    EXPECT_TRUE(same_bits(again.model->body, whole.model->body)) << share;
+    EXPECT_LE(again.reads, rest.reads);
   }
+}
+
+/// With a tolerance, sketches of more and more components are computed; only the newest is stored.
+TEST(ResumedFit, OfSingularValuesGoesOnWithItsLargestSketch) {
+  const std::string path = testing::TempDir() + "velour-resumed-sketch";
+  std::filesystem::remove(path);
+  const auto noise = [](const DirectionPair& pair, uint32_t x, uint32_t y) {
+    return test::noise({{pair.wl.x + 0.01f * pair.wl.y, 0, 0}, {0, pair.wv.y + 0.01f * pair.wv.x, 0}}, x, y);
+  };
+  const test::MemoryBtf btf({ring_directions(30, 9), ring_directions(50, 12)}, {12, 10}, noise);
+  CompressOptions options;
+  options.method = CompressMethod::svd;
+  options.tolerance = 0.01;
+  options.threads = 1;
+  const Outcome whole = compress(btf, options, 0);
+  ASSERT_TRUE(whole.model);
+  options.checkpoint = path;
+  options.resume = true;
+  // The colors take a pass over the views, each sketch three: stopped in the first pass of the third sketch.
+  const uint64_t views = btf.layout().views().size(), stop_at = 8 * views - 1;
+  EXPECT_FALSE(compress(btf, options, stop_at).model);
+  const Outcome rest = compress(btf, options, 0);
+  ASSERT_TRUE(rest.model);
+  EXPECT_TRUE(same_bits(rest.model->body, whole.model->body));
+  EXPECT_LE(rest.reads + stop_at, whole.reads + 2 * views);  // passes that had no stage yet
+  std::filesystem::remove(path);
 }
 
 TEST(ResumedFit, OfAnotherBtfOfTheSameSizeBeginsAnew) {
@@ -204,6 +276,7 @@ TEST(ResumedFit, OfAnotherBtfOfTheSameSizeBeginsAnew) {
   options.checkpoint = path;
   options.resume = true;
   const uint64_t reads = compress(btf, options, 0).reads;
+  std::filesystem::remove(path);
   EXPECT_FALSE(compress(btf, options, reads / 2).model);
   EXPECT_TRUE(std::filesystem::exists(path));
   EXPECT_EQ(compress(btf, options, 0, "4567").reads, reads);
