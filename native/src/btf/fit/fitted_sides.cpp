@@ -90,7 +90,8 @@ std::optional<size_t> side_like(const BtfMeasurement& measurement, const std::ve
 
 FittedSides fitted_sides(const BtfMeasurement& measurement, const ColorAxes& colors, const Progress& progress) {
   FittedSides found;
-  for (SideDirections& side : sides_of(measurement.layout())) {
+  std::vector<SideDirections> sides = sides_of(measurement.layout());
+  for (SideDirections& side : sides) {
     const double energy = colors.energy_of(side.view_number, side.light_number);
     if (side.view_below != side.light_below && energy == 0) continue;
     if (const auto same = side_like(measurement, found.sides, side, energy, progress)) {
@@ -100,6 +101,7 @@ FittedSides fitted_sides(const BtfMeasurement& measurement, const ColorAxes& col
     }
     found.sides.push_back({std::move(side), energy});
   }
+  if (found.sides.empty()) found.sides.push_back({std::move(sides.front()), 0});  // a model has at least one side
   return found;
 }
 

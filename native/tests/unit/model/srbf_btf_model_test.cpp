@@ -135,7 +135,7 @@ TEST(SrbfBtfModel, ValuesThatAreNoNumbersAreNamed) {
 
 TEST(SrbfBtfModel, FiniteValuesThatNoHalfFloatHoldsAreNamed) {
   expect_srbf_refused(set_value("btf.side.0.relief.0", 3, 1e6f), "btf.side.0.relief.0[3]");
-  expect_srbf_refused(set_value("btf.side.0.scales", 2, -1e6f), "btf.side.0.scales[2]");
+  expect_srbf_refused(set_value("btf.side.0.scales", 2, -1e11f), "btf.side.0.scales[2]");
   expect_srbf_refused(set_value("btf.side.0.scales", 3, -1e-3f), "btf.side.0.scales[3]");
 }
 

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "btf/fit/btf_fit.h"
 #include "btf/fit/srbf/srbf_fit.h"
 #include "btf/model/srbf_evaluator.h"
 #include "math/sphere/random.h"
@@ -96,6 +97,22 @@ TEST(EqualSides, TakeNoBytes) {
   srbf_image(evaluator, {{wl.x, wl.y, -wl.z}, {wv.x, wv.y, -wv.z}}, under);
   EXPECT_EQ(above, under);
   EXPECT_GT(above[0], 0.0f);
+}
+
+/// A model needs a side, even if its BTF only transmits light and is black.
+TEST(FittedSides, AreNeverNone) {
+  std::vector<PolarAngles> lights = below(ring_directions(50, 6));
+  const test::MemoryBtf btf({ring_directions(30, 5), lights}, kSidesGrid, [](auto&&...) { return Rgb(0.0f); });
+  for (const CompressMethod method : {CompressMethod::srbf, CompressMethod::kcta}) {
+    CompressOptions options;
+    options.method = method;
+    options.memory = uint64_t{1} << 30;
+    Progress progress;
+    const Model model = compress_btf(btf, options, progress);
+    EXPECT_EQ(model.btf->relative_l2, 0.0);
+    const auto* srbf = std::get_if<SrbfBtf>(&model.body);
+    EXPECT_EQ(srbf ? srbf->sides.size() : std::get<TensorBtf>(model.body).sides.size(), 1u);
+  }
 }
 
 }  // namespace
