@@ -52,7 +52,7 @@ class BtfCapturer {
         path_(path),
         progress_(progress),
         tile_(scene, place_of(scene, options.place), options.threads, progress),
-        tile_sha256_(tile_hash(scene, progress)) {}
+        tile_sha256_(tile_hash(tile_, progress)) {}
 
   BtfCaptureReport run() {
     inspect();

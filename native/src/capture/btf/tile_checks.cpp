@@ -5,8 +5,6 @@
 #include <vector>
 #include "base/file.h"
 #include "capture/btf/view_capture.h"
-#include "material/material.h"
-#include "math/sphere/directions.h"
 #include "math/sphere/random.h"
 
 namespace velour {
@@ -78,18 +76,6 @@ std::span<const uint8_t> bytes_of(std::span<const T> values) {
   return {reinterpret_cast<const uint8_t*>(values.data()), values.size_bytes()};
 }
 
-/// f for a few pairs of directions, which serves as the identity of a material.
-std::vector<Rgb> probe(const Material& material) {
-  std::vector<Rgb> values;
-  ScratchArena arena;
-  for (const Vec3& wv : hemisphere_fibonacci(5)) {
-    arena.reset();
-    const PreparedBrdf* const point = material.prepare(wv, arena);
-    for (const Vec3& wl : hemisphere_fibonacci(7)) values.push_back(point->eval_one(wl).f);
-  }
-  return values;
-}
-
 }  // namespace
 
 bool is_open(const RepeatedTile& tile) {
@@ -118,27 +104,6 @@ std::optional<Warning> seam_warning(const RepeatedTile& tile) {
                                             {"inside", inside}});
   }
   return std::nullopt;
-}
-
-std::string tile_hash(const Scene& scene, const Progress& progress) {
-  constexpr size_t kPiece = 1 << 23;
-  std::string parts;
-  const auto add = [&](std::span<const uint8_t> bytes) {
-    for (size_t done = 0; done < bytes.size(); done += kPiece) {
-      progress.check();
-      parts += sha256_hex(bytes.subspan(done, std::min(kPiece, bytes.size() - done)));
-    }
-  };
-  for (const Mesh& mesh : scene.meshes()) {
-    add(bytes_of(mesh.positions()));
-    add(bytes_of(mesh.triangles()));
-  }
-  for (const Scene::Instance& i : scene.instances()) {
-    add(bytes_of(std::span<const float>(i.object_to_world.m)));
-    add(bytes_of(std::span<const uint32_t>(i.materials)));
-  }
-  for (const SurfaceMaterial& m : scene.materials()) add(bytes_of(std::span<const Rgb>(probe(*m.material))));
-  return sha256_hex({reinterpret_cast<const uint8_t*>(parts.data()), parts.size()});
 }
 
 namespace {
@@ -187,21 +152,30 @@ class VarianceOverViews {
   std::vector<double> sum_, sum_sq_;
 };
 
-double variance_at(float height, const RepeatedTile& tile, const PairLayout& layout, Progress& progress) {
+/// Calls use(view, values) with a few coarse images of every view.
+template <class Use>
+void capture_pilot(const RepeatedTile& tile, float height, uint32_t bounces, const PairLayout& layout,
+                   Progress& progress, const Use& use) {
   const TexelGrid grid{kSide, kSide};
-  ViewCapture capture(tile, grid, height, {.samples = kSamples, .bounces = 0, .seed = kSeed});
-  const size_t lights = layout.lights().size(), values = lights * grid.texels();
-  VarianceOverViews sides[2] = {VarianceOverViews(values), VarianceOverViews(values)};
-  std::vector<HalfBits> bits(3 * values);
-  std::vector<float> floats(3 * values);
+  ViewCapture capture(tile, grid, height, {.samples = kSamples, .bounces = bounces, .seed = kSeed});
+  std::vector<HalfBits> values(3 * layout.lights().size() * grid.texels());
   const std::vector<float> none(grid.texels());
   for (uint32_t v = 0; v < layout.views().size(); ++v) {
     const ViewSetup view(tile, layout, v);
-    ViewImages images{bits, {}, {none, none, none}};
+    ViewImages images{values, {}, {none, none, none}};
     capture.run(view, images, 0, 0, nullptr, progress);
+    use(view, values);
+  }
+}
+
+double variance_at(float height, const RepeatedTile& tile, const PairLayout& layout, Progress& progress) {
+  const size_t values = layout.lights().size() * kSide * kSide;
+  VarianceOverViews sides[2] = {VarianceOverViews(values), VarianceOverViews(values)};
+  std::vector<float> floats(3 * values);
+  capture_pilot(tile, height, 0, layout, progress, [&](const ViewSetup& view, std::span<const HalfBits> bits) {
     halves_to_floats(bits, floats);
     sides[view.wv.z < 0].add(view, floats);
-  }
+  });
   const bool both = layout.views().back().theta > 90;
   return sides[0].mean() + (both ? sides[1].mean() : 0.0);
 }
@@ -224,6 +198,28 @@ float least_variance_height(const RepeatedTile& tile, bool two_sided, Progress& 
     }
   }
   return best;
+}
+
+std::string tile_hash(const RepeatedTile& tile, Progress& progress) {
+  constexpr size_t kPiece = 1 << 23;
+  std::string parts;
+  const auto add = [&](std::span<const uint8_t> bytes) {
+    for (size_t done = 0; done < bytes.size(); done += kPiece) {
+      progress.check();
+      parts += sha256_hex(bytes.subspan(done, std::min(kPiece, bytes.size() - done)));
+    }
+  };
+  for (const Mesh& mesh : tile.scene().meshes()) {
+    add(bytes_of(mesh.positions()));
+    add(bytes_of(mesh.triangles()));
+  }
+  for (const Scene::Instance& i : tile.scene().instances()) {
+    add(bytes_of(std::span<const float>(i.object_to_world.m)));
+    add(bytes_of(std::span<const uint32_t>(i.materials)));
+  }
+  capture_pilot(tile, tile.top(), 1, pilot_layout(true), progress,
+                [&](const ViewSetup&, std::span<const HalfBits> values) { add(bytes_of(values)); });
+  return sha256_hex({reinterpret_cast<const uint8_t*>(parts.data()), parts.size()});
 }
 
 }  // namespace velour

@@ -16,10 +16,6 @@ bool is_open(const RepeatedTile& tile);
 /// geometry is not periodic, or the period is wrong.
 std::optional<Warning> seam_warning(const RepeatedTile& tile);
 
-/// SHA-256 of everything the values of the tile depend on: vertices, triangles, transforms, and f of its materials for
-/// a few pairs of directions.
-std::string tile_hash(const Scene& scene, const Progress& progress);
-
 // The height of the reference plane.
 
 /// The height (scene's z) at which texels look most alike from all sides: of kReferenceHeights heights, evenly spaced
@@ -33,5 +29,11 @@ std::string tile_hash(const Scene& scene, const Progress& progress);
 float least_variance_height(const RepeatedTile& tile, bool two_sided, Progress& progress);
 
 inline constexpr int kReferenceHeights = 33;
+
+// What a resumed capture must find again.
+
+/// SHA-256 of what the values of the tile depend on: vertices, triangles, transforms, and coarse images from both
+/// sides, which show materials, textures and their coordinates, normals and cutouts. Runs in the calling task arena.
+std::string tile_hash(const RepeatedTile& tile, Progress& progress);
 
 }  // namespace velour

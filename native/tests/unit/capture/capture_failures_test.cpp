@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "capture/btf/tile_checks.h"
 #include "material/principled/principled_material.h"
 #include "support/captured.h"
 
@@ -73,6 +74,29 @@ TEST(CaptureFailures, WhatCrossesItselfAndTheBorderIsFiniteFromBothSides) {
     const bool same_side = (pair / 4 < 2) == (pair % 4 < 2);
     EXPECT_EQ(captured.mean(pair).mean > 0.05, same_side) << pair;
   }
+}
+
+std::string hash_of(Mesh mesh, std::shared_ptr<const Material> material) {
+  const auto scene = tile_of(std::move(mesh), std::move(material));
+  Progress progress;
+  return tile_hash(RepeatedTile(*scene, place_of(*scene, {}), 1), progress);
+}
+
+/// A resumed capture must not go on with another tile, even if only details of its surface have changed.
+TEST(TileHash, ChangesWithWhatTheTileLooksLike) {
+  const Rgb dark(0.2f), bright(0.6f);
+  const std::string one = hash_of(square(true), painted(dark, bright));
+  EXPECT_EQ(hash_of(square(true), painted(dark, bright)), one);
+  EXPECT_NE(hash_of(square(true), painted(bright, dark)), one) << "texture, with the same mean";
+  EXPECT_NE(hash_of(square(false), painted(dark, bright)), one) << "texture coordinates";
+  Corners flat;
+  flat.rectangle(0, 0, 1, 1);
+  const std::vector<Vec3> normals(6, glm::normalize(Vec3(0.4f, 0, 1)));
+  const Mesh tilted({.positions = flat.positions, .triangles = flat.triangles, .corner_normals = normals});
+  const auto white = std::make_shared<test::Lambert>(0.5f);
+  EXPECT_NE(hash_of(tilted, white), hash_of(flat.mesh(), white)) << "normals";
+  const auto thin = [](float alpha) { return std::make_shared<test::ThinLambert>(0.5f, alpha); };
+  EXPECT_NE(hash_of(flat.mesh(), thin(0.5f)), hash_of(flat.mesh(), thin(0.51f))) << "cutouts";
 }
 
 }  // namespace
