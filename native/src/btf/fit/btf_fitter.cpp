@@ -153,6 +153,7 @@ TensorAllowance tensor_allowance(uint64_t memory, const FitExtent& extent, uint6
     refuse(
         memory, held(),
         "one view of " + std::to_string(extent.texels) + " texels under " + std::to_string(extent.lights) + " lights");
+  allowance.inverse_bytes = memory - held();
   return allowance;
 }
 

@@ -103,9 +103,10 @@ uint64_t components_within(uint64_t memory, uint64_t least, FitExtent extent);
 
 /// Limits on the data held by a fit of clustered tensors.
 struct TensorAllowance {
-  size_t point_floats = 16 << 20;  // size of the points from which direction bases are computed
-  size_t slices = 6144;            // texels that are clustered
-  uint32_t functions = 640;        // total over all clusters; their products are held for each view
+  size_t point_floats = 16 << 20;         // size of the points from which direction bases are computed
+  size_t slices = 6144;                   // texels that are clustered
+  uint32_t functions = 640;               // total over all clusters; their products are held for each view
+  uint64_t inverse_bytes = ~uint64_t{0};  // of inverse matrices kept while texels are solved for; the rest of the limit
 };
 
 /// Memory of a fit with this allowance. `entries`: per slice.

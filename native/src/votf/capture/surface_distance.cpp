@@ -22,8 +22,8 @@ class NearestVectors {
 
   void splat(std::span<const Triangle> triangles, uint32_t z);
   /// Initializes the points next to a sign change of `level` with vectors to it.
-  void start(std::span<const float> level);
-  bool spread();
+  void start(std::span<const float> level, const Progress& progress);
+  bool spread(const Progress& progress);
   std::vector<float> distances() const;
 
  private:
@@ -70,8 +70,9 @@ void NearestVectors::splat(const Triangle& t, uint32_t z) {
   }
 }
 
-void NearestVectors::start(std::span<const float> level) {
+void NearestVectors::start(std::span<const float> level, const Progress& progress) {
   tbb::parallel_for(0u, grid_.depth, [&](uint32_t z) {
+    progress.check();
     for (uint32_t y = 0; y < grid_.height; ++y) {
       for (uint32_t x = 0; x < grid_.width; ++x) start(level, {x, y, z});
     }
@@ -127,16 +128,19 @@ bool NearestVectors::spread_line(size_t first, size_t stride, uint32_t count, co
   return changed;
 }
 
-bool NearestVectors::spread() {
+bool NearestVectors::spread(const Progress& progress) {
   const uint32_t w = grid_.width, h = grid_.height, d = grid_.depth;
   std::vector<uint8_t> changed(std::max(h, w) * size_t{3}, 0);
   tbb::parallel_for(0u, h, [&](uint32_t y) {
+    progress.check();
     for (uint32_t z = 0; z < d; ++z) changed[y] |= spread_line(z * layer_ + y * w, 1, w, {grid_.step.x, 0, 0}, true);
   });
   tbb::parallel_for(0u, w, [&](uint32_t x) {
+    progress.check();
     for (uint32_t z = 0; z < d; ++z) changed[h + x] |= spread_line(z * layer_ + x, w, h, {0, grid_.step.y, 0}, true);
   });
   tbb::parallel_for(0u, h, [&](uint32_t y) {
+    progress.check();
     for (uint32_t x = 0; x < w; ++x) {
       changed[y] |= spread_line(size_t{y} * w + x, layer_, d, {0, 0, grid_.step.z}, false);
     }
@@ -178,14 +182,16 @@ std::vector<float> surface_distances(std::span<const Triangle> triangles, const 
     progress.check();
     nearest.splat(triangles, z);
   });
-  while (nearest.spread()) progress.check();
+  while (nearest.spread(progress)) {
+  }
   return nearest.distances();
 }
 
 std::vector<float> level_distances(std::span<const float> level, const DistanceGrid& grid, Progress& progress) {
   NearestVectors nearest(grid);
-  nearest.start(level);
-  while (nearest.spread()) progress.check();
+  nearest.start(level, progress);
+  while (nearest.spread(progress)) {
+  }
   return nearest.distances();
 }
 

@@ -26,7 +26,8 @@ class ShellColumns {
  public:
   /// Follows lines through `places` (local coordinates). A line must end outside the structure if the tile is open, and
   /// inside if it is closed; a line that does not is retried a little to the side, by at most about `aside`.
-  ShellColumns(const RepeatedTile& tile, const std::vector<Vec2>& places, float aside, bool closed, RayShare& share);
+  ShellColumns(const RepeatedTile& tile, const std::vector<Vec2>& places, float aside, bool closed, RayShare& share,
+               const Progress& progress);
 
   /// Whether `height` on a line is inside. A line of an open tile that never leaves the structure has hit a sheet,
   /// which has no inside.
@@ -58,9 +59,10 @@ constexpr std::array<Vec2, 5> kTries = {Vec2(0, 0), Vec2(0.37f, 0.61f), Vec2(-0.
                                         Vec2(-0.97f, -0.47f)};
 
 ShellColumns::ShellColumns(const RepeatedTile& tile, const std::vector<Vec2>& places, float aside, bool closed,
-                           RayShare& share)
+                           RayShare& share, const Progress& progress)
     : tile_(tile), closed_(closed), lines_(places.size()) {
   tbb::parallel_for(size_t{0}, (places.size() + kBlock - 1) / kBlock, [&](size_t block) {
+    progress.check();
     const size_t first = block * kBlock, count = std::min(kBlock, places.size() - first);
     share.record(block, {0, 0, static_cast<int>(count), 1}, 1, [&](RayLog* log) {
       follow(std::span(places).subspan(first, count), aside, std::span(lines_).subspan(first, count), log);
@@ -204,7 +206,7 @@ class VotfCapturer {
     progress_.update(0.7);
     std::vector<Vec2> places;
     for (size_t i = 0; i < texels().size(); ++i) places.push_back(tile_.period().x * texels().center(i));
-    const ShellColumns columns(tile_, places, 0.5f * v.pitch() * tile_.period().x, v.closed, share_);
+    const ShellColumns columns(tile_, places, 0.5f * v.pitch() * tile_.period().x, v.closed, share_, progress_);
     const bool sheets = !v.closed && columns.unclosed() > 0;
     if (sheets) {
       result_.warnings.push_back(
@@ -213,6 +215,7 @@ class VotfCapturer {
     const float thicker = sheets ? kSheet * v.pitch() : 0.0f;
     v.distance.resize(distance.size());
     tbb::parallel_for(0u, v.depth, [&](uint32_t z) {
+      progress_.check();
       const float height =
           (v.bottom + static_cast<float>(z) * v.step()) * tile_.period().x + static_cast<float>(options_.surface);
       for (size_t i = 0; i < places.size(); ++i) {

@@ -132,7 +132,9 @@ TEST(SurfaceDistance, OfASphereIsThatOfItsTangentPlanes) {
 TEST(SurfaceDistance, CanBeCancelled) {
   Progress progress;
   progress.cancel();
-  EXPECT_THROW(surface_distances(random_triangles(3), {8, 8, 8, Vec3(0), Vec3(0.125f)}, progress), Error);
+  const DistanceGrid grid{8, 8, 8, Vec3(0), Vec3(0.125f)};
+  EXPECT_THROW(surface_distances(random_triangles(3), grid, progress), Error);
+  EXPECT_THROW(level_distances(std::vector<float>(512, 1.0f), grid, progress), Error);
 }
 
 }  // namespace

@@ -39,6 +39,7 @@ struct TensorSource {
   const std::vector<Relief>& relief;  // per level, finest first
   uint64_t seed;
   int threads;
+  uint64_t inverse_bytes = ~uint64_t{0};  // TensorAllowance
 };
 
 struct DirectionBasis {

@@ -106,7 +106,7 @@ void TensorFitter::find_sides(const ColorAxes& colors) {
 
 TensorSource TensorFitter::source(size_t side) const {
   const Side& of = sides_[side];
-  return {measurement_.grid(), of.directions, of.relief, options_.seed, options_.threads};
+  return {measurement_.grid(), of.directions, of.relief, options_.seed, options_.threads, allowance_.inverse_bytes};
 }
 
 TensorExtent TensorFitter::extent(size_t side) const {

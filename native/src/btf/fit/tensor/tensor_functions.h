@@ -58,6 +58,27 @@ class TensorFunctions {
   RowMatrix all_;
 };
 
+// Texels of a level by their members.
+
+/// The texels that have the same members, one set after the other: matrices of a set are needed once at a time.
+class MemberSets {
+ public:
+  explicit MemberSets(const TensorTexelValues& values);
+
+  size_t size() const { return first_.size() - 1; }
+  std::span<const uint32_t> texels(size_t set) const {
+    return std::span(texels_).subspan(first_[set], first_[set + 1] - first_[set]);
+  }
+  std::vector<uint32_t> members(size_t set) const { return of(texels_[first_[set]]); }
+
+ private:
+  std::vector<uint32_t> of(uint32_t texel) const;
+
+  const TensorTexelValues& values_;
+  std::vector<uint32_t> texels_;
+  std::vector<size_t> first_;  // of each set in texels_, and the end
+};
+
 // Moments of images for fitting the functions of clustered tensors with given coefficients.
 
 /// Sums over the texels of a view of the products of seen coefficients with each other and with the images: all that a

@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <map>
 #include <memory>
 #include <string>
+#include "base/parallel.h"
 #include "btf/fit/byte_rounding.h"
 #include "btf/fit/relief_pyramid.h"
 #include "btf/fit/tensor/function_refit.h"
@@ -140,7 +140,7 @@ void LevelFit::brighten(const TensorFunctions& functions) {
 }
 
 void LevelFit::round(const TensorFunctions& functions) {
-  set_rounded(functions, values_, side_);
+  set_rounded(functions, values_, source_.threads, progress_, side_);
   for (size_t l = 0; l < values_.size(); ++l) values_[l] = stored_values(side_, side_.levels[l]);
 }
 
@@ -213,24 +213,6 @@ void solve_tensor_levels(CompandedViews& views, const TensorSource& source, Comp
 
 namespace {
 
-/// rounding_moves() of sets of members, each computed once.
-class MemberMoves {
- public:
-  explicit MemberMoves(const TensorFunctions& functions) : functions_(functions) {}
-
-  const Eigen::MatrixXf& of(const std::vector<uint32_t>& members) {
-    const auto [at, is_new] = known_.try_emplace(members);
-    if (is_new) {
-      at->second = rounding_moves(TensorFunctions::of_members(functions_.products(), functions_.rank(), members, 0));
-    }
-    return at->second;
-  }
-
- private:
-  const TensorFunctions& functions_;
-  std::map<std::vector<uint32_t>, Eigen::MatrixXf> known_;
-};
-
 /// Calls use(cluster, rank, value) for every value.
 template <class Use>
 void for_values(const TensorTexelValues& level, size_t rank, const Use& use) {
@@ -260,12 +242,12 @@ void set_scales(const std::vector<TensorTexelValues>& levels, TensorSide& side) 
 
 /// Rounds a texel's coefficients one after the other.
 void round_texel(const TensorSide& side, const uint32_t* member, const Eigen::MatrixXf& moves, float* value,
-                 std::vector<uint8_t>& bytes) {
+                 uint8_t* bytes) {
   const size_t rank = side.rank.texel, count = side.members * rank;
   for (size_t k = 0; k < count; ++k) {
     const ByteScale& scale = side.clusters[member[k / rank]].scale[k % rank];
-    bytes.push_back(scale.nearest(value[k]));
-    const float error = value[k] - scale.value(bytes.back());
+    bytes[k] = scale.nearest(value[k]);
+    const float error = value[k] - scale.value(bytes[k]);
     for (size_t j = k + 1; j < count; ++j) {
       value[j] -= error * moves(static_cast<Index>(k), static_cast<Index>(j));
     }
@@ -274,19 +256,24 @@ void round_texel(const TensorSide& side, const uint32_t* member, const Eigen::Ma
 
 }  // namespace
 
-void set_rounded(const TensorFunctions& functions, std::vector<TensorTexelValues> levels, TensorSide& side) {
+void set_rounded(const TensorFunctions& functions, std::vector<TensorTexelValues> levels, int threads,
+                 const Progress& progress, TensorSide& side) {
   set_scales(levels, side);
-  MemberMoves moves(functions);
   for (size_t l = 0; l < levels.size(); ++l) {
     TensorTexelValues& from = levels[l];
     TensorLevel& to = side.levels[l];
     to.member.assign(from.member.begin(), from.member.end());
-    to.value.clear();
-    for (Index t = 0; t < from.value.rows(); ++t) {
-      const uint32_t* member = from.member.data() + static_cast<size_t>(t) * side.members;
-      const Eigen::MatrixXf& of = moves.of({member, member + side.members});
-      round_texel(side, member, of, from.value.row(t).data(), to.value);
-    }
+    to.value.resize(static_cast<size_t>(from.value.size()));
+    const MemberSets sets(from);
+    parallel_pieces(sets.size(), threads, progress, [&](size_t set) {
+      const Eigen::MatrixXf moves =
+          rounding_moves(TensorFunctions::of_members(functions.products(), functions.rank(), sets.members(set), 0));
+      for (const uint32_t t : sets.texels(set)) {
+        const auto first = static_cast<size_t>(t) * static_cast<size_t>(from.value.cols());
+        round_texel(side, from.member.data() + size_t{t} * side.members, moves, from.value.data() + first,
+                    to.value.data() + first);
+      }
+    });
   }
 }
 

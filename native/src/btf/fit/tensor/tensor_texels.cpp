@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <Eigen/Cholesky>
-#include <map>
 #include <numeric>
 
 #include "base/parallel.h"
@@ -16,35 +15,40 @@ constexpr float kMemberRidge = 1e-3f;        // on coefficients; functions have 
 constexpr int kMaxSteps = 12;                // maximum number of conjugate-gradient iterations
 constexpr double kMembersConverged = 1e-10;  // relative to the initial squared residual
 
-/// Inverses of the products of a texel's members over all views, one for each set of members.
+/// Inverses of the products of a texel's members over all views. As many as fit into TensorSource::inverse_bytes are
+/// kept; the others are computed again for every product.
 class MemberInverses {
  public:
-  MemberInverses(const TensorFunctions& functions, const TensorTexelValues& values, size_t texels) {
-    const size_t members = values.member.size() / texels;
-    std::map<std::vector<uint32_t>, size_t> known;
-    for (size_t t = 0; t < texels; ++t) {
-      const auto from = values.member.begin() + static_cast<ptrdiff_t>(t * members);
-      const std::vector<uint32_t> set(from, from + static_cast<ptrdiff_t>(members));
-      const auto [at, is_new] = known.try_emplace(set, inverse_.size());
-      of_.push_back(at->second);
-      if (!is_new) continue;
-      const Eigen::MatrixXf matrix =
-          TensorFunctions::of_members(functions.products(), functions.rank(), set, kMemberRidge);
-      inverse_.push_back(matrix.llt().solve(Eigen::MatrixXf::Identity(matrix.rows(), matrix.cols())));
-    }
+  MemberInverses(const TensorFunctions& functions, const TensorTexelValues& values, const TensorSource& source,
+                 const Progress& progress)
+      : functions_(functions), sets_(values), threads_(source.threads), progress_(progress) {
+    const auto numbers = static_cast<uint64_t>(values.value.cols()) * static_cast<uint64_t>(values.value.cols());
+    inverse_.resize(std::min(sets_.size(), source.inverse_bytes / (numbers * sizeof(float))));
+    parallel_pieces(inverse_.size(), threads_, progress_, [&](size_t set) { inverse_[set] = inverse_of(set); });
   }
 
   RowMatrix times(const RowMatrix& rows) const {
     RowMatrix product(rows.rows(), rows.cols());
-    for (Index t = 0; t < rows.rows(); ++t) {
-      product.row(t).noalias() = rows.row(t) * inverse_[of_[static_cast<size_t>(t)]];
-    }
+    parallel_pieces(sets_.size(), threads_, progress_, [&](size_t set) {
+      const Eigen::MatrixXf computed = set < inverse_.size() ? Eigen::MatrixXf() : inverse_of(set);
+      const Eigen::MatrixXf& inverse = set < inverse_.size() ? inverse_[set] : computed;
+      for (const uint32_t t : sets_.texels(set)) product.row(t).noalias() = rows.row(t) * inverse;
+    });
     return product;
   }
 
  private:
+  Eigen::MatrixXf inverse_of(size_t set) const {
+    const Eigen::MatrixXf matrix =
+        TensorFunctions::of_members(functions_.products(), functions_.rank(), sets_.members(set), kMemberRidge);
+    return matrix.llt().solve(Eigen::MatrixXf::Identity(matrix.rows(), matrix.cols()));
+  }
+
+  const TensorFunctions& functions_;
+  const MemberSets sets_;
+  const int threads_;
+  const Progress& progress_;
   std::vector<Eigen::MatrixXf> inverse_;
-  std::vector<size_t> of_;
 };
 
 double dot(const RowMatrix& a, const RowMatrix& b) {
@@ -236,7 +240,7 @@ RowMatrix TensorTexels::normal_product(const TensorTexelValues& values) const {
 }
 
 void TensorTexels::refine(TensorTexelValues& values, const std::function<void(double)>& after_step) const {
-  const MemberInverses inverse(functions_, values, texels());
+  const MemberInverses inverse(functions_, values, source_, progress_);
   const Index rank = functions_.rank();
   const auto members = static_cast<size_t>(values.members());
   const RowMatrix wanted = shown_.all() ? data_ : RowMatrix(data_ + hidden_);

@@ -69,6 +69,7 @@ void solve_tensor_levels(CompandedViews& views, const TensorSource& source, Comp
 /// Sets the scales of the clusters and the members and bytes of the levels of `side`, whose clusters and level sizes
 /// are set. A scale spans the values of all levels; the effect of rounding a coefficient on a texel is compensated by
 /// the coefficients after it (rounding_moves).
-void set_rounded(const TensorFunctions& functions, std::vector<TensorTexelValues> levels, TensorSide& side);
+void set_rounded(const TensorFunctions& functions, std::vector<TensorTexelValues> levels, int threads,
+                 const Progress& progress, TensorSide& side);
 
 }  // namespace velour

@@ -89,6 +89,12 @@ TEST(FitMemory, OfTensorsTakesFewerFunctionsThenFewerTexels) {
   EXPECT_LT(least.point_floats, all.point_floats);
 }
 
+TEST(FitMemory, OfTensorsLeavesTheRestToInverses) {
+  const uint64_t memory = uint64_t{1} << 30;
+  const TensorAllowance some = tensor_allowance(memory, usual_extent(), kEntries);
+  EXPECT_EQ(memory_for_tensors(usual_extent(), kEntries, some) + some.inverse_bytes, memory);
+}
+
 TEST(FitMemory, OfTensorsNamesTheLeastThatWouldDo) {
   const std::string sentence = tensor_refusal(50'000'000);
   const size_t at = sentence.find("at least ");

@@ -182,6 +182,14 @@ TEST(TensorFit, IsTheSameForAnyNumberOfThreads) {
               fit_tensor(btf, {.bytes = kTensorBytes, .threads = 2}, kThree).btf);
 }
 
+/// The limit leaves no room for matrices that can be computed again.
+TEST(TensorFit, IsTheSameWithJustEnoughMemory) {
+  const test::MemoryBtfWithRelief btf = with_relief(true_tensor(0.09f));
+  const uint64_t enough = tensor_fit_size(btf, {.bytes = kTensorBytes}).memory;
+  expect_same(fit_tensor(btf, {.bytes = kTensorBytes, .memory = enough}, kThree).btf,
+              fit_tensor(btf, {.bytes = kTensorBytes}, kThree).btf);
+}
+
 TEST(TensorFit, RefusesTooFewBytesWithASentence) {
   test::expect_refused(Status::invalid_argument, "the maximum size is 100 bytes",
                        [] { fit_tensor(test::striped_btf(tensor_grid()), {.bytes = 100}); });
