@@ -13,7 +13,7 @@ SCREEN = "1400x720"
 
 def start(folder):
     """Called by the harness once the window is there."""
-    window.run(folder, (ball_in_a_sky, btf, holdouts_and_backs, gray, edits), viewport=True)
+    window.run(folder, (ball_in_a_sky, btf, holdouts_and_backs, gray, far_ground, edits), viewport=True)
 
 
 def ball_in_a_sky(folder):
@@ -88,6 +88,23 @@ def gray(folder):
     yield from viewport.real_time_finished()
     values = 255 * viewport.middle(window.screenshot(folder, "gray"))
     assert np.abs(values - 118).max() <= 1, (values.min(), values.max())
+
+
+def far_ground(folder):
+    """A surface near the end of the view hides the sky, however close the view begins."""
+    scenes.set_world((1, 1, 1))
+    for name in ("Cube", "Light"):
+        bpy.data.objects.remove(bpy.data.objects[name])
+    with window.override():
+        scenes.add_plane(scenes.diffuse_material((0.8, 0.3, 0.1)), size=50000).location.z = -9000
+    view = viewport.space()
+    view.clip_start, view.clip_end = 0.01, 10000
+    view.region_3d.view_rotation = 1, 0, 0, 0
+    viewport.show_real_time()
+    yield from viewport.real_time_finished()
+    window.screenshot(folder, "far")
+    blue = realtime.pixels()[..., 2]
+    assert blue.max() < 0.2, blue.max()
 
 
 def edits(folder):

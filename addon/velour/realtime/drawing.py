@@ -122,12 +122,13 @@ class Drawing:
         matrix, eye = view_projection(view, jitter(self.count))
         gpu.state.active_framebuffer_get().clear(color=(0.0, 0.0, 0.0, 0.0), depth=1.0)
         gpu.state.blend_set("NONE")
-        gpu.state.depth_test_set("LESS_EQUAL")
-        gpu.state.depth_mask_set(True)
+        gpu.state.depth_test_set("NONE")
         try:
-            self._draw_surfaces(gpu, scene, matrix, eye, exposure)
-            if shows_world:
+            if shows_world:  # first, because the depth of distant surfaces rounds to that of a background
                 self._draw_sky(gpu, matrix, exposure)
+            gpu.state.depth_test_set("LESS_EQUAL")
+            gpu.state.depth_mask_set(True)
+            self._draw_surfaces(gpu, scene, matrix, eye, exposure)
         finally:  # on failure the ray tracer draws next
             gpu.state.depth_mask_set(False)
             gpu.state.depth_test_set("NONE")

@@ -1,5 +1,5 @@
 void main()
 {
   place = position;
-  gl_Position = vec4(position, 0.999999, 1);
+  gl_Position = vec4(position, 0, 1);
 }
