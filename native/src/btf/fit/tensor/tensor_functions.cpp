@@ -103,17 +103,12 @@ Eigen::MatrixXf TensorFunctions::of_members(const RowMatrix& products, Index ran
 MemberSets::MemberSets(const TensorTexelValues& values) : values_(values) {
   texels_.resize(static_cast<size_t>(values.value.rows()));
   std::iota(texels_.begin(), texels_.end(), 0u);
-  std::stable_sort(texels_.begin(), texels_.end(), [&](uint32_t a, uint32_t b) { return of(a) < of(b); });
+  std::stable_sort(texels_.begin(), texels_.end(),
+                   [&](uint32_t a, uint32_t b) { return std::ranges::lexicographical_compare(of(a), of(b)); });
   for (size_t i = 0; i < texels_.size(); ++i) {
-    if (i == 0 || of(texels_[i]) != of(texels_[i - 1])) first_.push_back(i);
+    if (i == 0 || !std::ranges::equal(of(texels_[i]), of(texels_[i - 1]))) first_.push_back(i);
   }
   first_.push_back(texels_.size());
-}
-
-std::vector<uint32_t> MemberSets::of(uint32_t texel) const {
-  const auto count = static_cast<ptrdiff_t>(values_.members());
-  const auto from = values_.member.begin() + count * texel;
-  return {from, from + count};
 }
 
 namespace {

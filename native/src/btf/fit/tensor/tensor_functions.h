@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <span>
 #include "btf/fit/seen_texels.h"
 #include "btf/fit/tensor/direction_bases.h"
 #include "btf/model/tensor_btf.h"
@@ -69,10 +70,16 @@ class MemberSets {
   std::span<const uint32_t> texels(size_t set) const {
     return std::span(texels_).subspan(first_[set], first_[set + 1] - first_[set]);
   }
-  std::vector<uint32_t> members(size_t set) const { return of(texels_[first_[set]]); }
+  std::vector<uint32_t> members(size_t set) const {
+    const std::span<const uint32_t> found = of(texels_[first_[set]]);
+    return {found.begin(), found.end()};
+  }
 
  private:
-  std::vector<uint32_t> of(uint32_t texel) const;
+  std::span<const uint32_t> of(uint32_t texel) const {
+    const auto count = static_cast<size_t>(values_.members());
+    return std::span(values_.member).subspan(count * texel, count);
+  }
 
   const TensorTexelValues& values_;
   std::vector<uint32_t> texels_;
