@@ -53,7 +53,7 @@ def shader_colors(owner, sources, notes):
     if len(asked) > MOST_SETS:
         notes.add(
             f"{owner}: it uses {len(asked)} mesh attributes, but only {MOST_SETS} are supported; the others"
-            " are replaced by the values of the inputs."
+            " are replaced by the values of the inputs, and in computed inputs by 0 (alpha: 1)."
         )
     return asked[:MOST_SETS]
 

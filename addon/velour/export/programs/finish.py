@@ -2,7 +2,7 @@
 
 from ...native import Instruction, Output, Program
 from ..image_nodes import Coordinates
-from .draft import CornerSet, ImageNumber, UvSet
+from .draft import CornerSet, ImageNumber, Step, UvSet
 
 
 def sources_of_draft(draft):
@@ -17,8 +17,9 @@ def finished(draft, maps, colors, texture):
 
     maps: UvMaps. colors: CornerColors by set. texture: makes the Texture of a Picture, of colors or numbers.
     """
+    steps = [_with_set(draft, step, colors) for step in draft.steps]
     images, numbers = [], {}
-    for step in draft.steps:
+    for step in steps:
         for choice in step.choices:
             if isinstance(choice, ImageNumber) and choice not in numbers:
                 numbers[choice] = len(images)
@@ -28,7 +29,7 @@ def finished(draft, maps, colors, texture):
         if isinstance(choice, UvSet):
             return maps.number(choice.coordinates)
         if isinstance(choice, CornerSet):
-            return colors.index(choice.colors) if choice.colors in colors else 0
+            return colors.index(choice.colors)
         return numbers[choice] if isinstance(choice, ImageNumber) else choice
 
     constants = len(draft.constants)
@@ -44,9 +45,19 @@ def finished(draft, maps, colors, texture):
             constants + step.output,
             step.table,
         )
-        for step in draft.steps
+        for step in steps
     ]
     outputs = [Output(register(value.first), kind) for value, kind in draft.outputs]
     return Program.new(
-        constants + draft.registers, draft.constants, instructions, outputs, images, draft.width
+        constants + draft.registers, draft.constants, instructions, outputs, images, draft.width or 1.0
     )
+
+
+def _with_set(draft, step, colors):
+    """The Step, or a constant in place of an attribute that has no set."""
+    missing = [
+        each.colors for each in step.choices if isinstance(each, CornerSet) and each.colors not in colors
+    ]
+    if not missing:
+        return step
+    return Step("combine", ("rgb",), (draft.number(missing[0].otherwise),) * 3, step.output)
