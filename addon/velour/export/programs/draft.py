@@ -59,7 +59,7 @@ class Draft:
         self.outputs = []  # (Value, kind)
         self.registers = 0  # written by steps
         self.relief_maps = []  # UV maps of the tangents of normal maps
-        self.width = 1.0  # distance of shifted points, in pixels
+        self.width = None  # distance of shifted points in pixels; None: no bump
         self._places = {}
         self._done = {}
 

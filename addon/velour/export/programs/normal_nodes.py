@@ -1,8 +1,15 @@
 """Nodes of the normal and the view."""
 
+import math
+
+import bpy
+
 from ..conversions import own_numbers
 from ..image_nodes import UnsupportedError
 from ..newer import is_directx
+
+# Filter width of displacement as bump, and of Bump nodes without that input; no property reveals it.
+_USUAL_WIDTH = 0.1 if bpy.app.version >= (4, 4) else 1.0
 
 
 def _normal(c, plug):
@@ -37,13 +44,20 @@ def _bump(c, plug):
 
 def bumped(c, plug, normal, heights, distance):
     """A normal bent by the height at the point and beside it. `distance`: scene length per unit of height."""
-    width = plug.input("Filter Width")  # newer Blenders
-    if width:
-        c.draft.width = min(c.draft.width, max(own_numbers(width)[0], 1e-3))
+    width = plug.input("Filter Width")  # 4.5 and newer
+    _shift_by(c, plug, max(own_numbers(width)[0], 1e-3) if width else _USUAL_WIDTH)
     strength = plug.input("Strength")
     steps = c.draft.source("step_x"), c.draft.source("step_y")
     inputs = c.input(strength) if strength else c.draft.number(1.0), distance, *heights, normal, *steps
     return c.draft.one("bump", inputs, 3)
+
+
+def _shift_by(c, plug, width):
+    """Sets the distance of shifted points, in pixels."""
+    if c.draft.width is not None and not math.isclose(c.draft.width, width, rel_tol=1e-5):
+        c.reader.note(plug, "bump with several filter widths is not supported; the smallest is used for all.")
+        width = min(width, c.draft.width)
+    c.draft.width = width
 
 
 def displaced(c, plug):
