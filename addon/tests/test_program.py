@@ -74,6 +74,41 @@ def test_backs():
     np.testing.assert_array_equal(_shown("backfacing", to_world=matrix)[..., 0], 1)
 
 
+def _tilts(normals, turned=False):
+    """Changes of the object-space normal along x at shifted points, for a plane with these corner normals."""
+    steps = [
+        _source("object_normal"),
+        *(_source("object_normal", shift=shift, output=3 * i) for i, shift in enumerate("xy", 1)),
+        *(Instruction("vector_math", ("subtract",), (3 * i, 0, 0, 0), 5 + 4 * i) for i in (1, 2)),
+        Instruction("vector_math", ("absolute",), (9, 0, 0, 0), 17),
+        Instruction("vector_math", ("absolute",), (13, 0, 0, 0), 21),
+        Instruction("vector_math", ("add",), (17, 21, 0, 0), 25),
+    ]
+    to_world = np.diag([1.0, -1.0, -1.0, 1.0]) if turned else np.eye(4)
+    with (
+        Program.new(29, [], steps, [Output(25, "color")]) as program,
+        program.texture(0) as texture,
+        Shader.new() as shader,
+        Scene() as scene,
+    ):
+        shader.add_layer("emission", {"base_color": TextureSlot(texture)})
+        mesh = planes.add(scene, corner_normals=normals)
+        scene.add_instance(mesh, to_world, [scene.add_shader_material(shader)])
+        return planes.seen(scene, spp=16, split=1, strategy="mis")[..., 0]
+
+
+def test_shifted_normals():
+    """They vary where the mesh is smooth; on a flat one, they are the same bits."""
+    up = np.broadcast_to(np.float32((0, 0, 1)), (2, 3, 3))
+    np.testing.assert_array_equal(_tilts(np.ascontiguousarray(up)), 0)
+    tilted = np.array(((0.6, 0.0, 0.8), (-0.6, 0.0, 0.8)), np.float32)
+    smooth = np.stack((tilted[[0, 1, 1]], tilted[[0, 1, 0]]))  # from left to right
+    for turned in (False, True):
+        tilts = _tilts(np.ascontiguousarray(smooth), turned)
+        assert tilts.min() > 0.01, tilts
+        assert tilts.max() < 1.0, tilts
+
+
 def _is_left(output=3):
     """1 where u is below a half: register 8."""
     less = Instruction("math", ("less_than", 0), (2, 0, 1), 5)

@@ -1,11 +1,15 @@
 """Coordinates, geometry, attributes and kinds of rays."""
 
+import bpy
 import numpy as np
 from mathutils import Euler, Matrix
 
 from ..corner_colors import GENERATED, corner_colors_of
 from ..image_nodes import MAPPED_AXES, UnsupportedError, maps_coordinates
 from .draft import CornerSet, UvSet
+
+# Whether Texture Coordinate > Normal changes the height of Bump nodes; no property reveals it.
+_SHIFTS_NORMAL = bpy.app.version >= (4, 4)
 
 
 def generated(c):
@@ -72,7 +76,9 @@ def _reflection(c, _plug):
 
 _COORDINATES = {
     "Generated": lambda c, _plug: generated(c),
-    "Normal": lambda c, _plug: c.draft.source("object_normal"),
+    "Normal": lambda c, _plug: (
+        c.source("object_normal") if _SHIFTS_NORMAL else c.draft.source("object_normal")
+    ),
     "UV": lambda c, _plug: c.source("uv", UvSet("")),
     "Object": _object,
     "Reflection": _reflection,

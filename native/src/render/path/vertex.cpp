@@ -1,6 +1,7 @@
 #include "render/path/vertex.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "material/material.h"
@@ -106,7 +107,7 @@ class PlaceReader {
       case Source::normal:
         return side_ * point.shading_normal;
       case Source::object_normal:
-        return object_normal();
+        return shift > 0 ? shifted_normal(hit) : object_normal();
       case Source::geometric_normal:
         return side_ * point.geometric_normal;
       case Source::incoming:
@@ -150,6 +151,13 @@ class PlaceReader {
     const Vec3 local(glm::dot(map.column(0), n), glm::dot(map.column(1), n), glm::dot(map.column(2), n));
     const float length = glm::length(local);
     return length > 0 ? side_ / length * local : Vec3(0.0f);
+  }
+
+  Vec3 shifted_normal(const Hit& hit) const {
+    const Mesh& mesh = place_.scene.traced_mesh(place_.scene.instances()[hit.instance]);
+    const std::array<Vec3, 3> n = mesh.corner_normals(hit.triangle, hit.time);
+    if (n[0] == n[1] && n[0] == n[2]) return object_normal();  // without the noise of rounding
+    return side_ * glm::normalize(mesh.shading_normal(hit.triangle, {hit.u, hit.v}, hit.time));
   }
 
   const ComputedPlace& place_;
