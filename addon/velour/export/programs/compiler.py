@@ -52,7 +52,8 @@ class Compiler:
 
     def output(self, plug):
         """The Value of an output, as its type; raises UnsupportedError."""
-        key = plug.socket.as_pointer(), tuple(g.as_pointer() for g in plug.groups), self.shift
+        groups = tuple(g.as_pointer() for g in plug.groups)
+        key = plug.socket.as_pointer(), groups, self.shift, self.displaced_normal
         if key not in self._values:
             self._values[key] = self._compiled(plug)
         return self._values[key]
