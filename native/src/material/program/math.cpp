@@ -265,8 +265,6 @@ float share_of(RangeCurve curve, float value, float from, float to, float steps)
   return share;
 }
 
-bool can_clamp(RangeCurve curve) { return curve == RangeCurve::linear || curve == RangeCurve::stepped; }
-
 void run_clamp(const Operands& o) {
   const bool is_range = o.at.choice[0] != 0;
   o.each([&](int i) {
@@ -277,7 +275,7 @@ void run_clamp(const Operands& o) {
 
 void run_map_range(const Operands& o) {
   const auto curve = o.choice<RangeCurve>(0);
-  const bool clamps = o.at.choice[1] != 0 && can_clamp(curve);
+  const bool clamps = o.at.choice[1] != 0;  // any curve: the value between equal limits may be outside
   o.each([&](int i) {
     const float from = o.number(1, i), to = o.number(2, i), low = o.number(3, i), high = o.number(4, i);
     float value = 0;
@@ -288,7 +286,7 @@ void run_map_range(const Operands& o) {
 
 void run_map_range_vector(const Operands& o) {
   const auto curve = o.choice<RangeCurve>(0);
-  const bool clamps = o.at.choice[1] != 0 && can_clamp(curve);
+  const bool clamps = o.at.choice[1] != 0 && (curve == RangeCurve::linear || curve == RangeCurve::stepped);
   for (int c = 0; c < 3; ++c) {
     const auto at = [&](int operand, int i) { return o.in(operand, c)[i]; };
     o.each([&](int i) {
