@@ -182,6 +182,18 @@ void run_image(const Operands& operands, const ProgramImage& image) {
   });
 }
 
+/// Copies the last point's inputs to the points beyond it. SIMD kernels choose algorithms and numbers of octaves by all
+/// points of a vector, so what an earlier program left there would change the last bits.
+void fill_unused(const Operands& operands) {
+  const Signature& signs = signature(operands.at.operation);
+  for (size_t i = 0; i < operands.at.input.size(); ++i) {
+    for (uint32_t c = 0; c < signs.inputs[i]; ++c) {
+      float* lanes = operands.registers + (static_cast<size_t>(operands.at.input[i]) + c) * Operands::kPoints;
+      std::fill(lanes + operands.count, lanes + Operands::kPoints, lanes[operands.count - 1]);
+    }
+  }
+}
+
 void run_one(const Operands& operands) {
   switch (operands.at.operation) {
     case Operation::source:
@@ -217,8 +229,10 @@ void run_one(const Operands& operands) {
       return run_view(operands);
     case Operation::noise:
     case Operation::wave:
+      fill_unused(operands);
       return run_noise(operands);
     case Operation::voronoi:
+      fill_unused(operands);
       return run_voronoi(operands);
     case Operation::gradient:
     case Operation::checker:

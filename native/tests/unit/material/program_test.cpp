@@ -132,6 +132,45 @@ TEST(Program, GivesTheSameBitsEverywhere) {
   select_simd_target(before.c_str());
 }
 
+/// Registers of the output at one point. `stale`: what an earlier program left in the inputs at all other points.
+std::vector<float> run_beside(const ProgramDescription& given, float stale) {
+  const Program program(given);
+  ProgramMemory& memory = ProgramMemory::of_thread();
+  memory.prepare(program);
+  const auto inputs = static_cast<uint32_t>(given.constants.size());
+  for (uint32_t i = 0; i < inputs; ++i) {
+    for (int point = 1; point < ProgramMemory::kPoints; ++point) memory.set(i, point, stale);
+  }
+  program.run(memory, 1);
+  std::vector<float> found;
+  for (uint32_t i = inputs; i < given.registers; ++i) found.push_back(*memory.lanes(i));
+  return found;
+}
+
+/// The kernels decide by all points of a vector: smooth cells or not, the number of octaves.
+TEST(Program, DependsOnlyOnThePointsInUse) {
+  const std::vector<float> sharp{1.3f, -2.7f, 0.4f, 0.7f, 2, 0, 0.6f, 1.9f, 0, 1.1f, 0.5f};
+  const std::vector<float> octaves{1.3f, -2.7f, 0.4f, 0, 2, 1, 0.6f, 1e4f, 0.3f, 1.1f, 0};
+  constexpr int smooth_f1 = 2, multifractal = 1;
+  for (const ProgramDescription& given : {description_of(Operation::voronoi, {2, smooth_f1, 0, 0}, sharp),
+                                          description_of(Operation::noise, {2, multifractal, 0, 1}, octaves)}) {
+    const std::vector<float> expected = run_beside(given, 0);
+    for (const float stale : {1.0f, 14.5f, std::nanf("")}) {
+      EXPECT_EQ(run_beside(given, stale), expected) << signature(given.instructions[0].operation).name << ' ' << stale;
+    }
+  }
+}
+
+TEST(Program, ClampsMapsOfEqualLimitsByEveryCurve) {
+  for (int curve = 0; curve < 4; ++curve) {
+    const auto mapped = [&](int clamps) {
+      return run_operation(Operation::map_range, {curve, clamps}, {0.3f, 0.5f, 0.5f, 1, 2, 4})[0];
+    };
+    EXPECT_EQ(mapped(1), 1) << curve;
+    EXPECT_EQ(mapped(0), 0) << curve;
+  }
+}
+
 TEST(Program, LooksUpRampsAndCurves) {
   const std::vector<float> rows{0, 0, 0, 1, 1, 0.5f, 0.25f, 0, 0, 1, 1, 1};
   const auto at = [&](float place, int interpolates) {
