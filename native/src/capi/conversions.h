@@ -23,8 +23,9 @@ inline constexpr uint32_t kRays = VLR_HIDDEN_FROM_CAMERA | VLR_HIDDEN_FROM_SHADO
 /// Throws Error(invalid_argument) for bits outside `known`.
 inline void require_hidden(uint32_t hidden_from, uint32_t known) {
   if ((hidden_from & ~known) == 0) return;
-  throw Error(Status::invalid_argument,
-              "hidden_from is " + std::to_string(hidden_from) + ", which has bits other than the VLR_HIDDEN values.");
+  throw Error(Status::invalid_argument, "hidden_from is " + std::to_string(hidden_from) +
+                                            ", which has bits that do not apply here; those that do have the sum " +
+                                            std::to_string(known) + ".");
 }
 
 inline Rgb color_from(const float* c) { return {c[0], c[1], c[2]}; }
