@@ -738,15 +738,20 @@ VLR_API vlr_status vlr_scene_add_textured_material(vlr_scene* scene, const vlr_p
  * MIX_COLOR factor, a 3, b 3 -> color 3; VLR_BLEND_*, 1: factor clamped, 1: color clamped
  * MIX_NUMBER factor, a, b -> value; 1: factor clamped
  * MIX_VECTOR factor 3, a 3, b 3 -> vector 3; 1: factor clamped
- * COMBINE 3 components -> color 3; VLR_COLOR_MODEL_*. SEPARATE color 3 -> 3 components; VLR_COLOR_MODEL_*
+ * COMBINE 3 components -> color 3; VLR_COLOR_MODEL_*
+ * SEPARATE color 3 -> 3 components; VLR_COLOR_MODEL_*
  * RAMP factor -> color 3, alpha; 1: interpolated; table: at least 2 rows of RGBA, evenly from 0 to 1
  * CURVES factor, color 3, place of the first and of the last row -> color 3; 1: continued beyond the table; table: at
  *   least 2 rows of RGB
  * HUE_SATURATION hue, saturation, value, factor, color 3 -> color 3
- * INVERT factor, color 3 -> color 3. GAMMA color 3, gamma -> color 3. BRIGHT_CONTRAST color 3, bright, contrast ->
- * color 3 CLAMP value, min, max -> value; 1: min and max may be swapped MAP_RANGE value, from min, from max, to min, to
- * max, steps -> value; VLR_RANGE_*, 1: clamped MAP_RANGE_VECTOR: the same of vectors MAPPING vector 3, location 3,
- * rotation 3 (radians), scale 3 -> vector 3; VLR_MAPPING_* TRANSFORM point 3 -> point 3; table: 3 x 4 matrix, row-major
+ * INVERT factor, color 3 -> color 3
+ * GAMMA color 3, gamma -> color 3
+ * BRIGHT_CONTRAST color 3, bright, contrast -> color 3
+ * CLAMP value, min, max -> value; 1: min and max may be swapped
+ * MAP_RANGE value, from min, from max, to min, to max, steps -> value; VLR_RANGE_*, 1: clamped
+ * MAP_RANGE_VECTOR the same of vectors, each 3 -> vector 3; VLR_RANGE_*, 1: clamped unless smooth
+ * MAPPING vector 3, location 3, rotation 3 (radians), scale 3 -> vector 3; VLR_MAPPING_*
+ * TRANSFORM point 3 -> point 3; table: 3 x 4 matrix, row-major
  * FRESNEL ior, normal 3, incoming 3, backfacing -> factor
  * LAYER_WEIGHT blend, normal 3, incoming 3, backfacing -> fresnel, facing
  * NOISE vector 3, w, scale, detail, roughness, lacunarity, offset, gain, distortion -> value, color 3; dimensions - 1,
@@ -755,7 +760,8 @@ VLR_API vlr_status vlr_scene_add_textured_material(vlr_scene* scene, const vlr_p
  *   position 3, w, radius; dimensions - 1, VLR_VORONOI_*, VLR_METRIC_*, 1: normalized + 2: integer hash of Blender 5
  * WAVE vector 3, scale, distortion, detail, detail scale, detail roughness, phase -> factor; 0: bands, 1: rings,
  *   VLR_WAVE_AXIS_*, VLR_WAVE_PROFILE_*
- * GRADIENT vector 3 -> factor; VLR_GRADIENT_*. CHECKER vector 3, color 3, color 3, scale -> factor, color 3
+ * GRADIENT vector 3 -> factor; VLR_GRADIENT_*
+ * CHECKER vector 3, color 3, color 3, scale -> factor, color 3
  * BRICK vector 3, color 3, color 3, mortar 3, scale, mortar size, mortar smooth, bias, width, height, offset, squash ->
  *   factor, color 3; frequencies of offset and squash
  * MAGIC vector 3, scale, distortion -> factor, color 3; depth, 1: scaled before it is wrapped, as in newer Blenders
