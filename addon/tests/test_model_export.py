@@ -8,6 +8,8 @@ import xml.etree.ElementTree as ElementTree
 import inputs
 import pytest
 from command_line import refused, velour
+from velour.core.analytic.materialx import document
+from velour.core.analytic.open_pbr import OpenPbr
 
 ANGLES = ["5", "30", "60", "75", "85"]
 
@@ -72,6 +74,11 @@ def test_a_brushed_model_lies_along_its_rougher_direction(tmp_path):
     velour("export", inputs.BRUSHED_MODEL, "--to", "principled", "-o", principled, "--quiet")
     is_turned = json.loads(principled.read_text())["parameters"]["anisotropic_rotation"] > 0
     assert (ElementTree.parse(path).getroot().find("bitangent") is not None) == is_turned
+
+
+def test_a_turned_tangent_is_in_the_space_of_the_surface():
+    text = document("brushed", OpenPbr(), along_bitangent=True, note="")
+    assert ElementTree.fromstring(text).find("bitangent/input[@name='space']").get("value") == "world"
 
 
 def test_gltf_declares_what_it_uses(exported):

@@ -18,7 +18,9 @@ def document(name: str, material: OpenPbr, along_bitangent: bool, note: str) -> 
         root, "open_pbr_surface", name=f"SR_{own}", type="surfaceshader", doc=note
     )
     if along_bitangent:
-        root.insert(0, ElementTree.Element("bitangent", name=f"T_{own}", type="vector3"))
+        bitangent = ElementTree.Element("bitangent", name=f"T_{own}", type="vector3")
+        _add(bitangent, "space", "string", value="world")  # that of the surface; the default is the object's
+        root.insert(0, bitangent)
         _add(shader, "geometry_tangent", "vector3", nodename=f"T_{own}")
     for key, value in material.inputs().items():
         is_color = isinstance(value, list)
