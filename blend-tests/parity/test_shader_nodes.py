@@ -478,9 +478,9 @@ class Views(BoardTest):
         self.assert_parity("Fresnel, Layer Weight")
 
     def test_bump(self):
-        def bumped(**settings):
+        def bumped(coordinates="Object", **settings):
             def built(nodes, shader):
-                place = nodes.add("TexCoord").outputs["Object"]
+                place = nodes.add("TexCoord").outputs[coordinates]
                 height = nodes.add("TexNoise", {"Vector": place, "Scale": 4.0, "Detail": 0.0})
                 inputs = {"Height": height.outputs[0], "Distance": 0.2, "Strength": 0.8}
                 bump = nodes.add("Bump", inputs, **settings)
@@ -498,9 +498,9 @@ class Views(BoardTest):
             )
             nodes.set(shader, "Normal", second.outputs[0])
 
-        for number, build in enumerate((bumped(), bumped(invert=True), chained)):
+        for number, build in enumerate((bumped(), bumped(invert=True), chained, bumped("Normal"))):
             self._sphere(number, build)
-        self.assert_parity("Bump: strength, distance, invert, chained")
+        self.assert_parity("Bump: strength, distance, invert, chained, by normals")
 
     def test_bump_and_units(self):
         def bumped(nodes, shader):
