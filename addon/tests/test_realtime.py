@@ -11,10 +11,7 @@ from inputs import BTF_MODEL
 from velour.core.mesh_arrays import MeshArrays
 from velour.core.mesh_queue import MeshQueue
 from velour.native import (
-    Instruction,
     Model,
-    Output,
-    Program,
     Scene,
     TextureSlot,
     Tile,
@@ -57,18 +54,6 @@ def _added(*squares):
         queue.add(square, "Square")
     queue.numbers()
     return scene
-
-
-def test_each_world_of_nodes_asks_for_a_light_map():
-    directions = Instruction("source", ("position", 0, "none"), (), 0)
-    with Program.new(3, [], [directions], [Output(0, "color")]) as program, RealtimeScene() as scene:
-        keys = [scene.world_key]
-        for _edit in range(2):
-            scene.set_world_program(program, 0, 16, 8)
-            keys.append(scene.world_key)
-        assert len(set(keys)) == 3
-        with light_map_job(scene) as job:
-            assert job.run()["lobes"] > 1
 
 
 def test_light_map_of_a_constant_world_is_that_world_everywhere():
