@@ -237,6 +237,21 @@ class Images(Usd):
         group.nodes.remove(images[1])
         self.assertNotIn("normal", self._exported()[1])
 
+    def test_a_roughness_map_is_connected(self):
+        maps = {"color_map": np.ones((4, 4, 4)), "roughness_map": np.full((4, 4), 0.6)}
+        self._approximation(**maps)
+        material, _values, _stage = self._exported()
+        surface = material.ComputeSurfaceSource()[0]
+        self.assertTrue(surface.GetInput("roughness").HasConnectedSource())
+        texture = self._node(material, "Velour_Roughness")
+        self.assertEqual(texture.GetInput("sourceColorSpace").Get(), "raw")
+        stored = scenes.read(self.folder / texture.GetInput("file").Get().path)
+        np.testing.assert_allclose(stored[..., 0], 0.6, atol=0.01)
+        scenes.set_look(self.material, roughness=0.5)
+        material, values, _stage = self._exported()
+        self.assertGreater(values["roughness"], _PLASTIC["roughness"])
+        self.assertFalse(self._node(material, "Velour_Roughness"))
+
     def test_names_of_texture_coordinates(self):
         self._quarters()
         self.obj.data.uv_layers[0].name = "First"
@@ -311,6 +326,36 @@ class MaterialX(Usd):
         scenes.set_look(self.material, rotation=0.5)
         material, _values, _stage = self._exported()
         self.assertIn("Velour_Turned_Tangent", self._known(material))
+        self._is_in_world_space(material)
+
+    def _is_in_world_space(self, material):
+        for name in ("Velour_Tangent", "Velour_Bitangent"):
+            self.assertEqual(self._node(material, name).GetInput("space").Get(), "world")
+
+    def _shares(self, material, name):
+        """Shares of the tangent and the bitangent in a direction."""
+        return [self._node(material, f"Velour_{name}_Part_{n}").GetInput("in2").Get() for n in (1, 2)]
+
+    def test_a_roughness_map_is_connected(self):
+        self._approximation(color_map=np.ones((4, 4, 4)), roughness_map=np.full((4, 4), 0.6))
+        material, _values, _stage = self._exported()
+        self.assertIn("Velour_MaterialX_Roughness", self._known(material))
+        self.assertTrue(self._surface(material).GetInput("specular_roughness").HasConnectedSource())
+
+    def test_normals_turn_with_the_tiles(self):
+        tilted = np.broadcast_to(np.array((0.36, -0.48, 0.8)), (4, 4, 3))
+        self._approximation(color_map=np.ones((4, 4, 4)), normal_map=tilted)
+        material, _values, _stage = self._exported()
+        self.assertNotIn("Velour_Tangent", self._known(material))
+        scenes.set_look(self.material, rotation=0.5)
+        material, _values, _stage = self._exported()
+        self._known(material)
+        self._is_in_world_space(material)
+        cos, sin = np.cos(0.5), np.sin(0.5)
+        np.testing.assert_allclose(self._shares(material, "Tangent"), (cos, sin), rtol=1e-5)
+        np.testing.assert_allclose(self._shares(material, "Bitangent"), (-sin, cos), rtol=1e-5)
+        for name in ("tangent", "bitangent"):
+            self.assertTrue(self._node(material, "Velour_Relief").GetInput(name).HasConnectedSource())
 
     def test_images_are_connected_and_placed(self):
         self._model(inputs.quarters_model())

@@ -7,6 +7,8 @@ import numpy as np
 
 from ..core import srgb
 from ..core.tile_maps import encoded
+from ..export.measured_look import constant_look
+from ..export.nodes import approximation_node, velour_node
 
 COLORS, NORMALS, ROUGHNESS, HEIGHT = ROLES = (
     "Colors",
@@ -31,6 +33,16 @@ def images_of(tree):
     textures = [node for node in tree.nodes if node.bl_idname == "ShaderNodeTexImage"]
     found = {_role(node): node.image for node in textures if node.image and not node.velour.enabled}
     return TileImages(*(found.get(role) for role in ROLES))
+
+
+def images_to_export(material):
+    """The TileImages of a measured material for other programs.
+
+    They cannot spread the highlights of a roughness map: with a roughness offset there is none.
+    """
+    images = images_of(approximation_node(material).node_tree)
+    is_spread = constant_look(velour_node(material)).roughness > 0
+    return images._replace(roughness=None) if is_spread else images
 
 
 def _role(node):

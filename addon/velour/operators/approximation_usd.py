@@ -5,11 +5,11 @@ Blender's exporter does not read node groups, and writes a material without a su
 
 import numpy as np
 
+from ..core.approximation_uv import chain
 from ..export.color import working_to_rec709
 from ..export.nodes import approximation_node
-from .approximation_image import images_of
+from .approximation_image import images_to_export
 from .approximation_look import is_surface, shown
-from .approximation_uv import chain
 from .materialx_usd import READER as MATERIALX_READER
 from .usd_nodes import add, coordinate_name, exported, value_type
 
@@ -29,8 +29,9 @@ def write(context, material, usd_material):
     shader = add(usd_material, "Velour_Approximation", "UsdPreviewSurface")
     for name, (kind, value) in _inputs(values).items():
         shader.CreateInput(name, value_type(kind)).Set(value)
-    if images_of(tree).colors:
-        _write_images(context, usd_material, shader, tree, values)
+    pictures = images_to_export(material)
+    if pictures.colors:
+        _write_images(context, usd_material, shader, tree, values, pictures)
     output = shader.CreateOutput("surface", value_type("Token"))
     usd_material.CreateSurfaceOutput().ConnectToSource(output)
     return True
@@ -81,7 +82,7 @@ def _ior(level):
     return float((1 + f0) / (1 - f0))
 
 
-def _write_images(context, usd_material, shader, tree, values):
+def _write_images(context, usd_material, shader, tree, values, pictures):
     def texture_of(name, image, color_space, scale):
         texture = add(usd_material, name, "UsdUVTexture")
         texture.CreateInput("file", value_type("Asset")).Set(exported(context, image))
@@ -93,13 +94,16 @@ def _write_images(context, usd_material, shader, tree, values):
         return texture, texture.CreateOutput("rgb", value_type("Float3"))
 
     uvs = _write_uvs(usd_material, values.placed)
-    pictures = images_of(tree)
     texture, color = texture_of("Velour_Color", pictures.colors, "sRGB", working_to_rec709(values.gain))
     shader.CreateInput("diffuseColor", value_type("Color3f")).ConnectToSource(color)
     principled = next(node for node in tree.nodes if node.bl_idname == "ShaderNodeBsdfPrincipled")
     if principled.inputs["Alpha"].is_linked:
         alpha = texture.CreateOutput("a", value_type("Float"))
         shader.CreateInput("opacity", value_type("Float")).ConnectToSource(alpha)
+    if pictures.roughness:
+        texture, _rgb = texture_of("Velour_Roughness", pictures.roughness, "raw", (1.0, 1.0, 1.0))
+        red = texture.CreateOutput("r", value_type("Float"))
+        shader.CreateInput("roughness", value_type("Float")).ConnectToSource(red)
     if pictures.normals:
         texture, normals = texture_of("Velour_Normals", pictures.normals, "raw", (2.0, 2.0, 2.0))
         texture.CreateInput("bias", value_type("Float4")).Set((-1.0, -1.0, -1.0, 0.0))

@@ -5,15 +5,15 @@ import math
 
 from ..core.analytic.open_pbr import OpenPbr
 from ..core.analytic.open_pbr_fit import fitted_open_pbr
+from ..core.approximation_uv import affine
 from ..core.model_export import error_note
 from ..export.color import working_to_rec709
 from ..export.files import read_model
 from ..export.measured_look import constant_look
 from ..export.nodes import approximation_node, velour_node
 from ..properties.approximation_state import VIEW_ANGLES
-from .approximation_image import images_of
+from .approximation_image import images_to_export
 from .approximation_look import fitted, is_surface, shown
-from .approximation_uv import affine
 from .usd_nodes import add, coordinate_name, exported, value_type
 
 READER = "Velour_Geomprop"  # prim of the texture coordinates; its input "geomprop" is their name
@@ -33,9 +33,10 @@ def write(context, material, usd_material):
         return False
     tree = approximation_node(material).node_tree
     shader = add(usd_material, "Velour_OpenPBR", "ND_open_pbr_surface_surfaceshader")
-    if images_of(tree).colors:
+    pictures = images_to_export(material)
+    if pictures.colors:
         _write_values(shader, OpenPbr.of_principled(values.principled), _stored_errors(tree))
-        _write_images(context, usd_material, shader, tree, values)
+        _write_images(context, usd_material, shader, tree, values, pictures)
     else:
         _write_brdf(usd_material, shader, material, tree)
     output.ConnectToSource(shader.CreateOutput("out", value_type("Token")))
@@ -76,23 +77,33 @@ def _write_brdf(usd_material, shader, material, tree):
 
 def _write_tangent(usd_material, shader, turn):
     """Connects the tangent, turned counterclockwise by `turn` radians."""
-    parts = []
-    for name, share in (("tangent", math.cos(turn)), ("bitangent", math.sin(turn))):
-        direction = add(usd_material, f"Velour_{name.title()}", f"ND_{name}_vector3")
-        scaled = add(usd_material, f"Velour_Share_Of_{name.title()}", "ND_multiply_vector3FA")
+    directions = _directions(usd_material)
+    tangent = _sum(usd_material, "Tangent", directions, (math.cos(turn), math.sin(turn)))
+    _connect(shader, "geometry_tangent", "Float3", tangent)
+
+
+def _directions(usd_material):
+    """The tangent and the bitangent of the mesh, in the space of OpenPBR's and of normal maps."""
+    found = [add(usd_material, f"Velour_{n.title()}", f"ND_{n}_vector3") for n in ("tangent", "bitangent")]
+    for direction in found:
+        direction.CreateInput("space", value_type("String")).Set("world")
+    return found
+
+
+def _sum(usd_material, name, directions, shares):
+    """The sum of shares of the tangent and the bitangent."""
+    both = add(usd_material, f"Velour_Turned_{name}", "ND_add_vector3")
+    for number, (direction, share) in enumerate(zip(directions, shares, strict=True), start=1):
+        scaled = add(usd_material, f"Velour_{name}_Part_{number}", "ND_multiply_vector3FA")
         _connect(scaled, "in1", "Float3", direction)
         scaled.CreateInput("in2", value_type("Float")).Set(share)
-        parts.append(scaled)
-    both = add(usd_material, "Velour_Turned_Tangent", "ND_add_vector3")
-    for name, part in zip(("in1", "in2"), parts, strict=True):
-        _connect(both, name, "Float3", part)
-    _connect(shader, "geometry_tangent", "Float3", both)
+        _connect(both, f"in{number}", "Float3", scaled)
+    return both
 
 
-def _write_images(context, usd_material, shader, tree, values):
-    """Connects images of colors, opacity and normals."""
+def _write_images(context, usd_material, shader, tree, values, pictures):
+    """Connects images of colors, opacity, roughness and normals."""
     uvs = _write_uvs(usd_material, values.placed)
-    pictures = images_of(tree)
     color = _texture(usd_material, "Color", "color3", exported(context, pictures.colors), uvs, "srgb_texture")
     dyed = add(usd_material, "Velour_Tint", "ND_multiply_color3")
     _connect(dyed, "in1", "Color3f", color)
@@ -104,11 +115,23 @@ def _write_images(context, usd_material, shader, tree, values):
         alpha = add(usd_material, "Velour_Alpha", "ND_separate4_color4")
         _connect(alpha, "in", "Color4f", both)
         _connect(shader, "geometry_opacity", "Float", alpha, "outa")
+    if pictures.roughness:
+        roughness = _texture(usd_material, "Roughness", "float", exported(context, pictures.roughness), uvs)
+        _connect(shader, "specular_roughness", "Float", roughness)
     if pictures.normals:
         texels = _texture(usd_material, "Normals", "vector3", exported(context, pictures.normals), uvs)
         relief = add(usd_material, "Velour_Relief", "ND_normalmap_float")
         _connect(relief, "in", "Float3", texels)
+        if values.placed.rotation != 0:
+            _turn_frame(usd_material, relief, values.placed.rotation)
         _connect(shader, "geometry_normal", "Float3", relief)
+
+
+def _turn_frame(usd_material, relief, turn):
+    """Turns the frame of a normal map counterclockwise, as the tiles are."""
+    directions, cos, sin = _directions(usd_material), math.cos(turn), math.sin(turn)
+    for name, shares in (("Tangent", (cos, sin)), ("Bitangent", (-sin, cos))):
+        _connect(relief, name.lower(), "Float3", _sum(usd_material, name, directions, shares))
 
 
 def _texture(usd_material, name, kind, path, uvs, color_space="raw"):
