@@ -1,9 +1,7 @@
 """The nodes in a measured material's group that show it where there is no Velour."""
 
 import hashlib
-import json
 from unittest import mock
-from urllib.parse import unquote
 
 import bpy
 import numpy as np
@@ -414,54 +412,6 @@ class Group(Approximation):
         material = bpy.data.materials[name]
         self.assertEqual(tuple(material.diffuse_color), color)
         self.assertEqual(_kinds(group_of(material).node_tree), kinds)
-
-
-class Exported(Approximation):
-    def _gltf(self):
-        """The file, as numbers and names."""
-        bpy.ops.preferences.addon_enable(module="io_scene_gltf2")
-        path = self.folder / "exported.gltf"
-        bpy.ops.export_scene.gltf(filepath=str(path), export_format="GLTF_SEPARATE")
-        return json.loads(path.read_text())
-
-    def test_gltf_files_carry_it(self):
-        self._import(self._model_file(inputs.model_bytes(inputs.plastic_measurement())))
-        scenes.set_look(self.material, tint=(0.5, 0.9, 1.0))
-        shown = inputs.module("operators.approximation_look").shown(self.material)
-        (written,) = self._gltf()["materials"]
-        pbr = written["pbrMetallicRoughness"]
-        np.testing.assert_allclose(pbr["baseColorFactor"][:3], shown.principled["base_color"], 1e-5)
-        for name in ("metallic", "roughness"):
-            self.assertAlmostEqual(pbr.get(f"{name}Factor", 1.0), shown.principled[name], 5)
-
-    def test_gltf_files_carry_the_image_of_a_btf(self):
-        self._import(self._model_file(inputs.quarters_model()))
-        written = self._gltf()
-        (material,), (image,) = written["materials"], written["images"]
-        self.assertEqual(material["pbrMetallicRoughness"]["baseColorTexture"]["index"], 0)
-        picture = scenes.read(self.folder / unquote(image["uri"]))
-        ours = _images(group_of(self.material).node_tree).colors
-        self.assertEqual(picture.shape[:2], tuple(ours.size)[::-1])
-        self.assertGreater(picture[..., :3].std(), 0.05)
-
-    def test_gltf_files_carry_normals(self):
-        self._import(self._model_file(inputs.weave_model()))
-        written = self._gltf()
-        (material,) = written["materials"]
-        textures = material["pbrMetallicRoughness"]["baseColorTexture"], material["normalTexture"]
-        self.assertNotIn("scale", textures[1])
-        images = [written["textures"][texture["index"]]["source"] for texture in textures]
-        self.assertNotEqual(*images)
-        path = self.folder / unquote(written["images"][images[1]]["uri"])
-        picture = bpy.data.images.load(str(path), check_existing=False)
-        picture.colorspace_settings.is_data = True
-        ours = _images(group_of(self.material).node_tree).normals
-        np.testing.assert_allclose(picture.pixels, ours.pixels, atol=1.5 / 255)
-        self.assertGreater(np.std(np.array(ours.pixels).reshape(-1, 4)[:, 0]), 0.05)
-
-    def test_gltf_files_of_what_is_flat_carry_none(self):
-        self._import(self._model_file(inputs.quarters_model()))
-        self.assertNotIn("normalTexture", self._gltf()["materials"][0])
 
 
 class Refusals(Approximation):
