@@ -12,11 +12,12 @@ namespace {
 
 Picture checked_picture(uint32_t width, uint32_t height, uint32_t channels) {
   constexpr uint32_t kLargest = 65536;
-  if (width == 0 || height == 0 || channels == 0 || width > kLargest || height > kLargest || channels > 64) {
-    throw Error(Status::invalid_argument,
-                "An image cannot have " + std::to_string(width) + " x " + std::to_string(height) + " pixels and " +
-                    std::to_string(channels) +
-                    " channels; 1 to 65536 pixels along each side and 1 to 64 channels are supported.");
+  if (width == 0 || height == 0 || channels == 0 || width > kLargest || height > kLargest ||
+      channels > kMaxPictureChannels) {
+    throw Error(Status::invalid_argument, "An image cannot have " + std::to_string(width) + " x " +
+                                              std::to_string(height) + " pixels and " + std::to_string(channels) +
+                                              " channels; 1 to 65536 pixels along each side and 1 to " +
+                                              std::to_string(kMaxPictureChannels) + " channels are supported.");
   }
   return {static_cast<int>(width), static_cast<int>(height), static_cast<int>(channels), {}};
 }

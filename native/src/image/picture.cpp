@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <filesystem>
 #include <iterator>
+#include <limits>
 #include <memory>
 #include "base/error.h"
 #include "base/file.h"
@@ -16,7 +17,6 @@ namespace velour {
 namespace {
 
 constexpr uint64_t kMaxValues = uint64_t{1} << 30;
-constexpr int kMaxChannels = 64;
 
 /// Nearest 8-bit code; NaN and negative values give 0.
 uint8_t srgb_byte(float linear) {
@@ -31,15 +31,18 @@ std::string size_text(int width, int height, int channels) {
 /// The size limits of OpenEXR and OpenImageIO are global to the process, which may be Blender's, and are left alone, so
 /// sizes are checked here.
 /// `pixel_bits`: at least so many are stored per pixel; 0: one per channel.
-void check_size(const std::string& path, const OpenPicture& input, int pixel_bits) {
+void check_size(const std::string& path, const OpenPicture& input, int pixel_bits, uint64_t max_values) {
   const PictureHeader& header = input.header();
   const std::string size = size_text(header.width, header.height, header.channels);
-  if (header.width <= 0 || header.height <= 0 || header.depth > 1 || header.channels <= 0 ||
-      header.channels > kMaxChannels)
+  if (header.channels > kMaxPictureChannels)
+    throw Error(Status::unsupported, path + ": the image has " + std::to_string(header.channels) +
+                                         " channels, but only " + std::to_string(kMaxPictureChannels) +
+                                         " are supported. Save it with fewer passes.");
+  if (header.width <= 0 || header.height <= 0 || header.depth > 1 || header.channels <= 0)
     throw Error(Status::bad_data, path + ": the header claims " + size + ", which is not a valid flat image.");
   const uint64_t pixels = static_cast<uint64_t>(header.width) * static_cast<uint64_t>(header.height);
   const auto bits = static_cast<uint64_t>(pixel_bits > 0 ? pixel_bits : header.channels);
-  const uint64_t bound = std::min(kMaxValues / static_cast<uint64_t>(header.channels),
+  const uint64_t bound = std::min(max_values / static_cast<uint64_t>(header.channels),
                                   input.expansion() * 8 * std::filesystem::file_size(path) / bits);
   if (pixels > bound)
     throw Error(Status::bad_data,
@@ -66,8 +69,9 @@ PictureFormat format_of(const std::string& path) {
   return picture_format_of(read_file_head(path, kPictureHeadBytes), path);  // clear error message about a bad path
 }
 
-std::unique_ptr<OpenPicture> checked(const std::string& path, std::unique_ptr<OpenPicture> input, int pixel_bits = 0) {
-  check_size(path, *input, pixel_bits);
+std::unique_ptr<OpenPicture> checked(const std::string& path, std::unique_ptr<OpenPicture> input, int pixel_bits = 0,
+                                     uint64_t max_values = kMaxValues) {
+  check_size(path, *input, pixel_bits, max_values);
   check_frame(path, input->header());
   return input;
 }
@@ -88,7 +92,9 @@ std::unique_ptr<OpenPicture> open_picture(const std::string& path, const std::st
 }
 
 std::unique_ptr<OpenPicture> open_channels(const std::string& path) {
-  return format_of(path) == PictureFormat::exr ? checked(path, open_exr_channels(path)) : open_picture(path, "");
+  if (format_of(path) != PictureFormat::exr) return open_picture(path, "");
+  // Velour's own renders have as many values as their pixels and passes need; the file's size bounds them.
+  return checked(path, open_exr_channels(path), 0, std::numeric_limits<uint64_t>::max());
 }
 
 bool is_scaled(const PictureHeader& header) { return header.scale != std::array<float, 3>{1, 1, 1}; }

@@ -30,6 +30,9 @@ struct TransferCurve {
   std::optional<float> gamma = std::nullopt;  // empty: sRGB; 1: already linear
 };
 
+/// Maximum number of channels of a picture. The sums of a render with all passes have 159.
+inline constexpr int kMaxPictureChannels = 256;
+
 struct PictureOptions {
   TransferCurve curve = {};
   std::string layer = {};  // name of a layer or channel of an OpenEXR file; empty: the picture itself

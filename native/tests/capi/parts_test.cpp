@@ -147,6 +147,9 @@ TEST(CParts, FilesSayWhereTheyLie) {
   EXPECT_NE(std::string(json).find(R"("frame":{"width":2,"height":3,"x":0,"y":0},"multi_part":false,"texts":{})"),
             std::string::npos);
 
+  const std::vector<float> all_passes(2 * 3 * 159, 0.5f);
+  EXPECT_EQ(VLR_OK, vlr_image_write_part(path.c_str(), 2, 3, 159, all_passes.data(), nullptr, nullptr, 0));
+
   frame.x = 9;  // beyond the right edge
   EXPECT_EQ(VLR_INVALID_ARGUMENT, vlr_image_write_part(path.c_str(), 2, 3, 4, pixels.data(), &frame, nullptr, 0));
   EXPECT_EQ(VLR_INVALID_ARGUMENT, vlr_image_write_part(path.c_str(), 2, 3, 4, pixels.data(), nullptr, nullptr, 1));

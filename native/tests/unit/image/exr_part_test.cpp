@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cstring>
 #include <filesystem>
@@ -54,6 +55,45 @@ TEST(ExrPart, WindowsAreOpenExrs) {
   write_exr_part(path, numbered(3, 2, 1), {10, 8, 4, 1}, {});
   EXPECT_EQ(window_in(path, "displayWindow"), (std::array<int32_t, 4>{0, 0, 9, 7}));
   EXPECT_EQ(window_in(path, "dataWindow"), (std::array<int32_t, 4>{4, 5, 6, 6}));  // rows 1 and 2 of 8 from below
+}
+
+TEST(ExrPart, SumsOfAllPassesAreReadAgain) {
+  const std::string path = test::scratch_folder() / "part.exr";
+  constexpr int kAllPasses = 159;  // with three Cryptomattes of 16 ranks
+  const Picture part = numbered(3, 2, kAllPasses);
+  write_exr_part(path, part, {3, 2, 0, 0}, {});
+  EXPECT_EQ(read_picture_channels(path).pixels, part.pixels);
+  write_exr_part(path, numbered(3, 2, kMaxPictureChannels), {3, 2, 0, 0}, {});
+  EXPECT_EQ(read_picture_channels_header(path).channels, kMaxPictureChannels);
+}
+
+/// 8K frames with many passes. The file's size bounds what is allocated.
+TEST(ExrPart, ValuesAreBoundedByTheFileAlone) {
+  const std::string path = test::scratch_folder() / "large.exr";
+  write_exr_part(path, numbered(4, 1024, 17), {4, 1024, 0, 0}, {});
+  std::vector<uint8_t> bytes = read_file(path);
+  const std::string field = "dataWindow" + std::string("\0box2i\0\x10\0\0\0", 11);
+  const auto window = std::ranges::search(bytes, field).end();
+  const auto right = window + 2 * sizeof(int32_t);
+  ASSERT_EQ(*right, 3);
+  right[0] = right[1] = 0xff;
+  write_file(path, bytes);
+  EXPECT_THROW(read_picture_channels_header(path), Error);
+  std::filesystem::resize_file(path, 8 << 20);
+  const Picture picture = read_picture_channels_header(path);
+  EXPECT_EQ(picture.width, 65536);
+  EXPECT_EQ(picture.channels, 17);
+}
+
+TEST(ExrPart, TooManyChannelsAreNamed) {
+  const std::string path = test::scratch_folder() / "part.exr";
+  write_exr_part(path, numbered(3, 2, kMaxPictureChannels + 1), {3, 2, 0, 0}, {});
+  try {
+    read_picture_channels(path);
+    ADD_FAILURE();
+  } catch (const Error& error) {
+    EXPECT_NE(std::string(error.what()).find("257 channels, but only 256"), std::string::npos) << error.what();
+  }
 }
 
 std::string exr_attribute(const std::string& name, const std::string& type, const std::string& value) {
