@@ -4,6 +4,7 @@ import bpy
 
 from parity import stage
 from parity.board import COLUMNS, ROWS, BoardTest, Nodes
+from parity.case import NEVER
 
 
 def _items(idname, name):
@@ -524,4 +525,4 @@ class Views(BoardTest):
             nodes.set(end, "Displacement", moved.outputs[0])
 
         self._sphere(0, displaced)
-        self.assert_approximate("Displacement as bump", 2.5, exact=((4, 1, 0), (5, 0, 0)))
+        self.assert_approximate("Displacement as bump", 2.5, exact=((4, 1, 0), NEVER))
