@@ -99,7 +99,10 @@ class Files(Approximation):
         scenes.add_plane(copy)
         written = self._gltf()
         self.assertNotIn(_TRANSFORM, written.get("extensionsRequired", []))
-        for material, repeats in zip(written["materials"], (4.0, 6.0), strict=True):
+        expected = {self.material.name: 4.0, copy.name: 6.0}
+        self.assertEqual({each["name"] for each in written["materials"]}, set(expected))
+        for material in written["materials"]:
+            repeats = expected[material["name"]]
             pbr = material["pbrMetallicRoughness"]
             coat = material["extensions"]["KHR_materials_clearcoat"]
             coated = [coat[name] for name in coat if name.endswith("Texture")]  # in Blender 4.1 and newer
