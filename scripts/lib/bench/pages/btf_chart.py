@@ -323,6 +323,7 @@ def _decibels(gain: float | None) -> str:
 
 def values(found: dict) -> dict:
     results, ratio = Results(found["rows"]), int(found["conditions"]["speed_ratio"])
+    targets = list(verdicts(results))
     interpolated = found["interpolated"]
     names = [name for name in results.methods if " " not in name] or results.methods  # without fixed K
     known = {tile: [{"psnr": interpolated[tile]}] if tile in interpolated else [] for tile in results.tiles}
@@ -330,7 +331,9 @@ def values(found: dict) -> dict:
         "sheet_tiles": SHEET_TILES,
         "world": WORLD,
         "speed_spp_named": found["conditions"]["speed_spp"].replace(", ", " and "),
-        "targets": verdicts(results),
+        "missed": [target for target in targets if not target["met"]],
+        "met": sum(target["met"] is True for target in targets),
+        "judged": len(targets),
         "tiles_named": " | ".join(results.tiles),
         "psnr": [{"m": name, "cells": _errors(results, name, names, ratio)} for name in names],
         "costs": [row for name in names if (row := _costs(results, name, ratio))],

@@ -273,7 +273,7 @@ def values(found: dict) -> dict:
     bound_titles = " | exact / `mis`, variance | `product` / `mis`, variance | share of the gain"
     return {
         "scenes": [result.about | {"picture": _picture(result)} for result in results],
-        "missed": [target for target in targets if not target["met"]],
+        "missed": _missed(targets),
         "met": sum(target["met"] is True for target in targets),
         "judged": len(targets),
         "curves": " | ".join(curves),
@@ -289,6 +289,15 @@ def values(found: dict) -> dict:
         "absent": [{"why": absent}] if absent else [],
         "present": [] if absent else [_mitsuba(found["mitsuba"], peers, conditions)],
     }
+
+
+def _missed(targets: list[dict]) -> list[dict]:
+    """A row per target that is not met, with each scene and number."""
+    found: dict[str, list[str]] = {}
+    for each in targets:
+        if not each["met"]:
+            found.setdefault(each["target"], []).append(f"{each['where']}: {each['measured']}")
+    return [{"target": target, "measured": "; ".join(cells)} for target, cells in found.items()]
 
 
 def draw(output: Path, found: dict) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import statistics
 from pathlib import Path
 
 import numpy as np
@@ -89,4 +90,17 @@ def _blocks(picture: np.ndarray) -> np.ndarray:
 
 
 def values(found: dict) -> dict:
-    return {"rows": found["rows"]}
+    """Medians of each material over its pictures."""
+    materials: dict[str, list[dict]] = {}
+    for row in found["rows"]:
+        materials.setdefault(row["material"], []).append(row)
+    worlds = {row["world"] for row in found["rows"]}
+    return {
+        "world_count": len(worlds),
+        "materials": [{"material": name, **_medians(rows)} for name, rows in materials.items()],
+    }
+
+
+def _medians(rows: list[dict]) -> dict:
+    names = [name for name in rows[0] if name not in ("material", "world", "shape")]
+    return {name: statistics.median(row[name] for row in rows) for name in names}

@@ -113,7 +113,6 @@ def values(found: dict) -> dict:
         "floors": [floor] if floor.get("f") is not None else [],
         "summary": _summary(materials),
         "errors": [_errors(own) for own in materials.values()],
-        "angles": [{"material": name, "cells": _angles(own)} for name, own in materials.items()],
     }
 
 
@@ -147,17 +146,6 @@ def _errors(own: Mapping) -> dict:
     """Errors of every model of a material, and alpha of its GGX lobe."""
     errors = {model: row["relative_l2"] for model, row in own.items()}
     return own["ggx"] | errors | {"unturned": errors[UNTURNED]}
-
-
-def _angles(own: Mapping) -> str:
-    """Errors of the default model beside the noise of the measurement, bold where they meet the target."""
-
-    def cell(angle: str) -> str:
-        values = (own[model][f"error_{angle}"] for model in ("parametric", "noise"))
-        error, noise = ("-" if value is None else f"{value:.4f}" for value in values)
-        return f"{f'**{error}**' if meets(own['parametric'], angle, own['noise']) else error} / {noise}"
-
-    return " | ".join(map(cell, ANGLES))
 
 
 def draw(output: Path, found: dict) -> None:

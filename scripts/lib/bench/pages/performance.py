@@ -90,7 +90,6 @@ def values(found: dict) -> dict:
         "pictures": [_picture(*item) for item in found["threads"].items()],
         "by_lobes": lobes,
         "neighbors": [row for row in rows if row["task"] == "eval_neighbors" and row["lobes"] == 16],
-        "targets": [row for row in rows if row["task"] == "eval_on"],
     }
 
 

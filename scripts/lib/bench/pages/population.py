@@ -84,7 +84,7 @@ def values(found: dict) -> dict:
     return {
         "count": len(rows),
         "spreads": [{"what": what, **spread(values)} for what, values in columns.items()],
-        "worst": sorted(rows, key=lambda row: -row["error"])[:12],
+        "worst": sorted(rows, key=lambda row: -row["error"])[:3],
         "beaten": sum(map(beaten, rows)),
         "per_view_models": sum(row["model"] == "per-view" for row in rows),
         "hidden": sum(row["flip"] > _VISIBLE and row["verdict"] != "poor" for row in rows),
