@@ -149,6 +149,8 @@ class Farm(FarmTest):
         settings.samples, settings.split = 32, 8
         self.assertIn("too few for 5 parts", self.save_and_make("many", "--parts", "5", status=1))
         self.save_and_make("enough", "--parts", "4")
+        bpy.context.view_layer.samples = 5  # camera rays
+        self.save_and_make("override", "--parts", "5")
 
     def test_linked_libraries(self):
         """Also what a library links: frames of another state of them are refused, and jobs without them."""

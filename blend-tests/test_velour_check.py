@@ -1,12 +1,16 @@
 """velour-check: other seeds and samples pass, one per cent of exposure does not."""
 
+import importlib
 import shutil
+import sys
 import unittest
+from unittest import mock
 
 import bpy
 
 from support import scenes
-from support.check_folder import SAMPLES, CheckFolderTest
+from support.blender import BlenderTest
+from support.check_folder import ROOT, SAMPLES, CheckFolderTest
 
 
 class VelourCheck(CheckFolderTest):
@@ -130,6 +134,23 @@ _CHANGES = {
     "more": _more,
     "brighter": _brighter,
 }
+
+
+class Samples(BlenderTest):
+    def test_those_of_the_command_line_count_in_all_view_layers(self):
+        with mock.patch.object(sys, "path", [str(ROOT / "blend-tests/regression"), *sys.path]):
+            inside_render = importlib.import_module("inside_render")
+        scene = bpy.context.scene
+        layers = scene.view_layers[0], scene.view_layers.new("Second")
+        for layer in layers:
+            layer.samples = 7
+        scene.keyframe_insert('view_layers["Second"].samples')
+        inside_render._set_samples(scene, None)
+        self.assertEqual([layer.samples for layer in layers], [7, 7])
+        inside_render._set_samples(scene, 64)
+        scene.frame_set(2)
+        self.assertEqual([layer.samples for layer in layers], [0, 0])
+        self.assertEqual(scene.velour.samples, 64)
 
 
 if __name__ == "__main__":

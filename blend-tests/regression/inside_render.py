@@ -50,9 +50,12 @@ def _render_sharp(scene, path):
         return
     kept = [(scene.render, "use_motion_blur"), (scene.velour, "samples"), (scene.velour, "bounces")]
     kept += [(lens, "use_dof")] if focused else []
+    kept += [(layer, "samples") for layer in scene.view_layers]
     before = [getattr(owner, name) for owner, name in kept]
     scene.render.use_motion_blur, scene.velour.bounces = False, 0
     scene.velour.samples = min(scene.velour.samples, max(scene.velour.samples // 4, _LEAST_SAMPLES))
+    for layer in scene.view_layers:
+        layer.samples = -(-layer.samples // 4)  # 0: no override
     if focused:
         lens.use_dof = False
     inside.render(scene, path)
@@ -61,10 +64,15 @@ def _render_sharp(scene, path):
 
 
 def _set_samples(scene, samples):
-    """`samples`: None leaves those of the file."""
-    inside.stop_animation(scene, {"velour.seed"} | ({"velour.samples"} if samples is not None else set()))
-    if samples is not None:
-        scene.velour.samples = samples
+    """Sets the samples of all view layers. None leaves those of the file."""
+    inside.stop_animation(scene, {"velour.seed"})
+    if samples is None:
+        return
+    overrides = {f"{layer.path_from_id()}.samples" for layer in scene.view_layers}
+    inside.stop_animation(scene, {"velour.samples", *overrides})
+    scene.velour.samples = samples
+    for layer in scene.view_layers:
+        layer.samples = 0
 
 
 def _stop_denoising(scene):

@@ -5,6 +5,7 @@ from ..export.denoiser import missing
 from ..export.film import hides_world
 from ..export.world import layer_world
 
+_MAX_SAMPLES = 1 << 20  # the maximum of scene.velour.samples
 _WITHOUT_END = 1 << 24  # light directions per pixel, more than anybody waits for
 
 
@@ -13,12 +14,17 @@ def final_options(depsgraph, view, is_preview):
     settings = scene.velour
     return {
         **_common(scene, layer, view),
-        "spp": settings.preview_samples if is_preview else layer.samples or settings.samples,
+        "spp": settings.preview_samples if is_preview else layer_samples(scene, layer),
         "threads": scene.render.threads,
         "denoise": int(settings.use_denoising and not is_preview),
         "noise": 0.0 if is_preview or not settings.use_noise_target else settings.noise_target,
         "time_limit": settings.time_limit,
     }
+
+
+def layer_samples(scene, layer):
+    """Light directions per pixel. The override of a view layer counts camera rays, as the panels do."""
+    return min(layer.samples * scene.velour.split, _MAX_SAMPLES) or scene.velour.samples
 
 
 def viewport_options(depsgraph, view):

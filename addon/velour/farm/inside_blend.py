@@ -48,7 +48,8 @@ def look(addon, parts):
         return {"error": _SEQUENCER.format(scene=scene.name, strip=strip.name)}
     if parts > 1 and scene.velour.use_noise_target:
         return {"error": _NOISE.format(scene=scene.name)}
-    if too_few := too_few_rays(scene, parts):
+    options = importlib.import_module(f"{addon}.engine.options")
+    if too_few := too_few_rays(scene, parts, options.layer_samples):
         return {"error": too_few}
     node = file_output(scene)
     if parts > 1 and node:
@@ -69,10 +70,10 @@ def look(addon, parts):
     }
 
 
-def too_few_rays(scene, parts):
+def too_few_rays(scene, parts, layer_samples):
     """Why a frame cannot be rendered in so many parts, each of which takes whole camera rays; else None."""
     for layer in scene.view_layers:
-        samples = layer.samples or scene.velour.samples
+        samples = layer_samples(scene, layer)
         split = min(scene.velour.split, samples)
         rays = -(-samples // split)
         if layer.use and rays < parts:
