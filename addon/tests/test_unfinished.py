@@ -99,6 +99,17 @@ def test_pictures_with_a_noise_target_begin_anew(arguments, side, tmp_path):
     np.testing.assert_array_equal(images.read(tmp_path / "o.exr"), images.read(tmp_path / "whole.exr"))
 
 
+def test_a_noise_target_does_not_remove_the_samples_of_another_render(arguments, side, tmp_path):
+    assert velour(*arguments, *AT_ONCE).status == UNFINISHED
+    kept = side.read_bytes()
+    for preview in (("--noise", 0.2), ("--noise", 0.2, "-o", tmp_path / "o.png")):
+        assert f"{side} belongs to another render; remove it" in refused(*arguments, *preview)
+    assert side.read_bytes() == kept
+    side.unlink()
+    assert velour(*arguments, "--noise", 0.2, *AT_ONCE).status == UNFINISHED
+    assert f"{side} belongs to another render; remove it" in refused(*arguments, "--noise", 0.3)
+
+
 def _processor_seconds(pid: int) -> float:
     user, system = Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()[11:13]
     return (int(user) + int(system)) / os.sysconf("SC_CLK_TCK")

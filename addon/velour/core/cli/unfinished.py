@@ -5,10 +5,11 @@ from __future__ import annotations
 from dataclasses import replace
 from pathlib import Path
 
+from ...native import images
 from ...native.errors import refuse
 from ...native.images import Frame
 from .. import picture_parts
-from ..picture_parts import Part
+from ..picture_parts import MADE, SAMPLES, Part
 from . import output, render_part
 from .exit_status import UnfinishedError
 
@@ -20,10 +21,14 @@ def side_file(path: str) -> Path:
 def kept(asked: Part) -> Part | None:
     """The part that earlier runs of this render left. Raises VelourError if it belongs to another render."""
     path = side_file(asked.name)
-    if not _goes_on(asked) or not path.exists():
+    if not path.exists():
+        return None
+    remedy = "remove it to start over, or choose another output"
+    if not _goes_on(asked):
+        if not _is_image_of(path, asked):
+            raise refuse(f"{path} belongs to another render; {remedy}.")
         return None
     part = picture_parts.open_part(path)
-    remedy = "remove it to start over, or choose another output"
     if difference := picture_parts.difference(part, asked):
         raise refuse(f"{path} belongs to another render, as {difference}; {remedy}.")
     (begin, end), (first, last) = asked.ranges[0], (part.ranges[0][0], part.ranges[-1][1])
@@ -37,6 +42,12 @@ def kept(asked: Part) -> Part | None:
 def _goes_on(asked: Part) -> bool:
     """Whether a run can continue from the means of all samples so far."""
     return not (asked.made["noise"] or asked.made["denoise"])
+
+
+def _is_image_of(path: Path, asked: Part) -> bool:
+    """Whether the file is all that an earlier run of `asked` left: an image, without samples to continue."""
+    texts = images.header(path)["texts"]
+    return SAMPLES not in texts and texts.get(MADE) == picture_parts.texts_of(asked)[MADE]
 
 
 def left(asked: Part, before: Part | None) -> Part:
