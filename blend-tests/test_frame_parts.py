@@ -273,6 +273,33 @@ class FrameParts(BlenderTest):
         bpy.data.libraries.write(str(library), {mesh}, fake_user=True)
         self._refused("the linked data differs", blend, "other", "--velour-parts", self.parts)
 
+    def test_another_state_of_an_image_or_cache_is_refused(self):
+        """The file that a sequence has for the frame, a tile and a mesh cache count; unused files do not."""
+        files = {name: self.folder / name for name in ("sky.0001.exr", "map.1001.exr", "m.pc2", "unused.exr")}
+        for path in files.values():
+            inputs.native().images.write(path.with_suffix(".exr"), np.ones((4, 8, 3), np.float32))
+        files["m.pc2"].write_bytes(b"1")
+        blend = self._save(samples=16, size=16)
+        tree = bpy.context.scene.world.node_tree
+        sky = tree.nodes.new("ShaderNodeTexEnvironment")
+        sky.image = bpy.data.images.load(str(files["sky.0001.exr"]))
+        sky.image.source, sky.image_user.frame_duration = "SEQUENCE", 1
+        sky.image.colorspace_settings.name = "Linear"
+        tree.links.new(sky.outputs["Color"], tree.nodes["Background"].inputs["Color"])
+        tiles = bpy.data.images.load(str(files["map.1001.exr"]))
+        tiles.source, tiles.filepath, tiles.use_fake_user = "TILED", str(self.folder / "map.<UDIM>.exr"), True
+        bpy.data.objects["Sphere"].modifiers.new("Cache", "MESH_CACHE").filepath = str(files["m.pc2"])
+        bpy.ops.wm.save_as_mainfile(filepath=str(blend))
+        self._render(blend, "first", "--velour-parts", self.parts, "--velour-samples", "1/2")
+        for name, path in files.items():
+            before = path.read_bytes()
+            path.write_bytes(before + b"\0")
+            if name == "unused.exr":
+                self._render(blend, "other", "--velour-parts", self.parts)
+                continue
+            self._refused("the linked data differs", blend, "other", "--velour-parts", self.parts)
+            path.write_bytes(before)
+
     def test_a_damaged_part_is_refused(self):
         blend = self._save()
         self._render(blend, "part", "--velour-parts", self.parts, "--velour-samples", "0:8")

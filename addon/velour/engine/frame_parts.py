@@ -7,12 +7,12 @@ import bpy
 
 from ..core.film_parts import FilmParts
 from ..core.stopping import Stopping
-from ..export.libraries import library_files
 from ..farm.sources import sha256
 from ..native.errors import refuse
 from ..native.version import version_text
 from . import written_file
 from .arguments import Share
+from .linked_files import linked_files
 
 _ELSEWHERE = {"threads", "time_limit", "cache_folder"}  # options that do not affect the picture
 _superfluous = []  # files to remove once Blender has written the frame
@@ -39,7 +39,7 @@ def frame_parts(given, depsgraph, view, options, models, shown):
         "split": min(options["split"], options["spp"]),
         "version": version_text(),
         "blend": _blend_hash(),
-        "linked_data": sorted(map(sha256, library_files())),
+        "linked_data": sorted(map(sha256, linked_files(scene.frame_current))),
         "scene": scene.name,
         "layer": layer.name,
         "frame": scene.frame_current,
