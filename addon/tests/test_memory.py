@@ -122,7 +122,7 @@ end_header
 def test_the_estimate_is_no_less_than_the_peak_and_not_much_more(what, small, large):
     told = program(*render(small | large[what](), "--json")).json["memory"]
     part = what if what in told["parts"] else "mesh"
-    assert list(told["parts"]) == ["program", "mesh", "material", "world", "picture"]
+    assert list(told["parts"]) == ["program", "mesh", "material", "world", "picture", "rays"]
     assert told["estimated"] == sum(told["parts"].values())
     assert told["peak"] <= told["estimated"] <= MOST * told["peak"]
     assert told["estimated"] - told["parts"][part] < told["peak"], "the part does not show"
@@ -132,8 +132,22 @@ def test_a_render_that_goes_on_from_a_side_file_takes_more(small):
     wide = render(small | {"size": "1600x1200"}, "--spp", 16)
     assert velour(*wide, "--time-limit", 1e-9).status == 3
     told = program(*wide, "--json").json["memory"]
-    assert told["peak"] <= told["estimated"] <= MOST * told["peak"]
+    assert told["peak"] <= told["estimated"] <= MOST * told["peak"] + told["parts"]["rays"]
     assert told["estimated"] - 112 * 1600 * 1200 < told["peak"]
+
+
+def test_recorded_rays_are_estimated(small):
+    """They are not recorded if the limit leaves no memory for them."""
+    many = render(small | {"size": "160x120"}, "--spp", 1024, "--json")
+    free = program(*many).json
+    assert free["ray_share"] > 0
+    rays = free["memory"]["parts"]["rays"]
+    assert rays == 160 * 120 // 16 * 1024 // 8 * 9 * 36
+    assert free["memory"]["peak"] <= free["memory"]["estimated"]
+    tight = program(*many, "--memory", free["memory"]["estimated"] - rays // 2).json
+    assert tight["ray_share"] is None
+    assert tight["memory"]["parts"]["rays"] == 0
+    assert tight["memory"]["peak"] <= tight["memory"]["estimated"] <= MOST * tight["memory"]["peak"]
 
 
 def test_a_terminal_is_told_the_estimate(small):
@@ -144,7 +158,7 @@ def test_a_terminal_is_told_the_estimate(small):
     said = os.read(reader, 1 << 16).decode()
     os.close(terminal)
     os.close(reader)
-    assert re.match(r"velour: Estimated memory: \d+ MiB.*: program \d+ MiB, .* picture \d+ KiB\.\r\n", said)
+    assert re.match(r"velour: Estimated memory: \d+ MiB.*: program \d+ MiB, .* rays \d+ KiB\.\r\n", said)
     assert json.loads(done.stdout)["memory"]
     assert velour(*render(small)).err == ""
 

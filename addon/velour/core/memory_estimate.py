@@ -9,7 +9,7 @@ from __future__ import annotations
 import os
 from dataclasses import dataclass
 
-from ..native import library
+from ..native import library, structs
 from ..native.errors import Status, VelourError
 from .memory_limit import Limit
 from .mesh_memory import mesh_memory
@@ -25,6 +25,9 @@ _MEASUREMENT = 3  # per byte of a table: the table and its proposal
 _WORLD_PIXEL = 22  # per pixel: texels and their sums
 _WORLD_VALUE = 8  # per channel of a pixel, while it is read
 _PIXEL = 96  # per pixel: its sums, and the picture that is written
+_RAY = 36  # per ray that is recorded to measure the share of tracing (ray_log.cpp)
+_MAX_RAYS = 6_000_000
+_RECORDED = 16  # one tile in so many
 _MERGED_PIXEL = 112  # more per pixel if a side file is merged in
 
 
@@ -90,6 +93,13 @@ def estimate(
         "picture": window[0] * window[1] * (_PIXEL + (_MERGED_PIXEL if goes_on else 0)),
     }
     return Estimate(parts, _REMEDIES)
+
+
+def recorded_rays(window: tuple[int, int], options: structs.RenderOptions) -> int:
+    """Upper bound of what measure_ray_share takes, in bytes: paths may leave the scene early."""
+    split = min(options.split, options.spp)
+    rays = window[0] * window[1] * -(-options.spp // split) * (1 + split) * (1 + options.bounces)
+    return min(-(-rays // _RECORDED), _MAX_RAYS) * _RAY
 
 
 def _material(path: str) -> int:

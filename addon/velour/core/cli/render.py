@@ -145,7 +145,8 @@ def run(args: argparse.Namespace) -> dict:
         output.check_picture(args.noisy_image)
     if args.denoise:
         library.denoiser()  # if it is missing, fails before the render, not after it
-    estimate = memory.check(args)
+    estimate = memory.check(args, options)
+    options["measure_ray_share"] = int(estimate.parts["rays"] > 0)
     with contextlib.ExitStack() as handles:
         reference = _read_reference(args)
         start = time.perf_counter()
@@ -259,7 +260,6 @@ def _options(args: argparse.Namespace) -> dict:
     return {
         "width": args.size[0],
         "height": args.size[1],
-        "measure_ray_share": 1,
         "cache_folder": cache_folder,
         "denoise": int(args.denoise),
         **options,
