@@ -201,6 +201,18 @@ def test_inputs_are_not_replaced(tmp_path, model_file, mesh_file, world_file):
     assert "would replace the input" in refused(*votf, "-o", tmp_path / "s.velour", "--json-file", model_file)
 
 
+def test_outputs_do_not_replace_each_other(tmp_path, model_file, mesh_file, world_file):
+    (tmp_path / "link").symlink_to(tmp_path)
+    scene = ["render", "--mesh", mesh_file, "--material", model_file, "--world", world_file]
+    picture, same = tmp_path / "o.exr", tmp_path / "link/o.exr"
+    for option in (("--denoise", "--noisy-image", same), ("--json-file", same)):
+        assert f"{option[-2]} name the same file, {picture}" in refused(*scene, "-o", picture, *option)
+    model = tmp_path / "m.velour"
+    assert "name the same file" in refused("fit", model_file, "-o", model, "--json-file", model)
+    assert "only be written as .obj" in refused("tile", "weave", "-o", tmp_path / "weave.mtl")
+    assert list(tmp_path.glob("*.*")) == []
+
+
 def test_words_are_no_inputs(tmp_path, monkeypatch, model_file):
     """Results are replaced in folders whose names are a verb, a tile, or the value of an option."""
     monkeypatch.chdir(tmp_path)

@@ -39,6 +39,7 @@ def main(arguments: list[str] | None = None) -> int:
         if args.simd:
             library.select_simd(args.simd)
         output.check_inputs_remain(args)
+        output.check_outputs_differ(args)
         if args.json_file:
             output.check_writable(args.json_file)
         output.deliver(args, args.run(args))

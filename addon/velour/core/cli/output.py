@@ -8,6 +8,7 @@ import os
 import sys
 import tempfile
 from collections.abc import Iterator
+from itertools import combinations
 from pathlib import Path
 
 from .. import files
@@ -124,6 +125,17 @@ def check_inputs_remain(args: argparse.Namespace) -> None:
                     f"The output {written} would replace {'a file of ' if inside else ''}the input {read};"
                     " choose another name."
                 )
+
+
+def check_outputs_differ(args: argparse.Namespace) -> None:
+    """Raises OSError if one output would replace another."""
+    given = {name: path for name in _OUTPUTS if (path := getattr(args, name, None))}
+    for (one, first), (other, second) in combinations(given.items(), 2):
+        if os.path.realpath(first) == os.path.realpath(second):
+            options = [f"--{name.replace('_', '-')}" for name in (one, other)]
+            raise OSError(
+                f"{' and '.join(options)} name the same file, {first}; choose another name for one."
+            )
 
 
 def _existing(args: argparse.Namespace, names: tuple[str, ...]) -> Iterator[tuple[str, Path]]:

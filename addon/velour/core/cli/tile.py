@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+from pathlib import Path
 
 from ...native import Tile
 from ..obj import write_obj
@@ -57,6 +58,8 @@ def shape_of(args: argparse.Namespace) -> dict:
 
 
 def run(args: argparse.Namespace) -> dict:
+    if Path(args.output).suffix != ".obj":  # such as .mtl, which is written beside it
+        raise OSError(f"The output {args.output} can only be written as .obj; give it this extension.")
     output.check_writable(args.output)
     with Tile.create(args.kind, **shape_of(args)) as tile:
         info = tile.info()
