@@ -85,9 +85,11 @@ class FilmParts:
                 job.add_sums(_sums(part, job))
 
     def keep_all(self, job: Job) -> Path:
-        """Writes the requested range after complete(); the file replaces all others."""
+        """Writes the requested range after complete(). The file replaces all others, unless they stay:
+        another run may be reading them."""
         written = self._write(job, self.asked)
-        self._remove([part for part in self._all if Path(part.name) != written])
+        if not self.stay:
+            self._remove([part for part in self._all if Path(part.name) != written])
         return written
 
     def _before(self, gap: Range) -> list[Part]:
