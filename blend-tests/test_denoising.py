@@ -80,3 +80,10 @@ class Missing(BlenderTest):
             bpy.ops.render.render()
         scene.velour.use_denoising = False
         bpy.ops.render.render()
+
+
+class LastErrors(BlenderTest):
+    def test_those_of_another_file_are_forgotten(self):
+        denoising.last_errors[bpy.context.scene.name] = "Error of the last image: at most 1 %."
+        bpy.ops.wm.read_homefile()
+        self.assertEqual(denoising.last_errors, {})

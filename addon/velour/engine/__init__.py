@@ -1,6 +1,7 @@
 """The render engine."""
 
 from . import (
+    denoising,
     failed_frame,
     frame_parts,
     freed_engines,
@@ -16,6 +17,7 @@ CLASSES = (VelourRenderEngine, write_lock.VELOUR_OT_allow_writes)
 
 
 def attach():
+    denoising.attach()
     failed_frame.attach()
     frame_parts.attach()
     kept_scene.attach()
@@ -33,3 +35,4 @@ def detach():
     kept_scene.detach()
     frame_parts.detach()
     failed_frame.detach()
+    denoising.detach()

@@ -1,5 +1,7 @@
 """Denoises pictures and reports their errors."""
 
+import bpy
+
 from ..core.sizes import percent
 from ..export.denoiser import missing
 from ..native import denoise_job
@@ -29,3 +31,17 @@ def denoise(job, scene, threads, wait):
         return "relmse unknown"
     last_errors[scene.name] = f"Error of the last image: at most {percent(max(bound, 0.0) ** 0.5)}."
     return f"relmse {max(report['relmse'], 0.0):.3g}, at most {max(bound, 0.0):.3g}"
+
+
+@bpy.app.handlers.persistent
+def _forget(*_arguments):
+    """Another file has scenes of the same names."""
+    last_errors.clear()
+
+
+def attach():
+    bpy.app.handlers.load_post.append(_forget)
+
+
+def detach():
+    bpy.app.handlers.load_post.remove(_forget)
