@@ -5,6 +5,7 @@ from __future__ import annotations
 import errno
 import os
 import random
+import shutil
 import signal
 import subprocess
 import time
@@ -211,6 +212,17 @@ def test_outputs_do_not_replace_each_other(tmp_path, model_file, mesh_file, worl
     assert "name the same file" in refused("fit", model_file, "-o", model, "--json-file", model)
     assert "only be written as .obj" in refused("tile", "weave", "-o", tmp_path / "weave.mtl")
     assert list(tmp_path.glob("*.*")) == []
+
+
+def test_names_that_are_not_utf8_end_in_a_sentence(tmp_path, mesh_file, model_file):
+    strange = os.fsdecode(bytes(tmp_path) + b"/m\xfcll.obj")
+    shutil.copy(mesh_file, strange)
+    votf = ("votf", strange, "--material", model_file, "--texels", 8, "--check-views", 0)
+    result = velour(*votf, "-o", tmp_path / "s.velour")
+    assert result.status == 0, result.err
+    assert velour("info", tmp_path / "s.velour", "--json").json["shell"]["source"].endswith("/m?ll.obj")
+    assert "\\udcfc" not in refused("tile", os.fsdecode(b"\xfc"), "-o", tmp_path / "t.obj")
+    assert "instruction set" in refused("info", model_file, "--simd", os.fsdecode(b"\xfc"))
 
 
 def test_words_are_no_inputs(tmp_path, monkeypatch, model_file):

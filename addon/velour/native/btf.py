@@ -10,7 +10,7 @@ import numpy as np
 
 from . import library, structs, table
 from .arrays import small
-from .handle import Handle, choice, path_bytes, set_fields
+from .handle import Handle, choice, path_bytes, set_fields, text_bytes
 from .job import Job
 from .model import Model
 
@@ -34,7 +34,7 @@ class Btf(Handle):
             if name in options:
                 options[name] = choice(name, options[name], names)
         if "layer" in options:
-            options["layer"] = options["layer"].encode()
+            options["layer"] = text_bytes(options["layer"])
         if "tile_metres" in options:
             options["tile_metres"] = small("tile_metres", options["tile_metres"], 2)
         set_fields(raw, options)

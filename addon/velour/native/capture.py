@@ -9,7 +9,7 @@ from ctypes import POINTER, byref, c_double, c_uint64
 import numpy as np
 
 from . import library, structs, table
-from .handle import choice, path_bytes, set_fields
+from .handle import choice, path_bytes, set_fields, text_bytes
 from .job import Job
 
 _PAIRS = {"texels": ctypes.c_uint32 * 2, "origin": c_double * 2, "period": c_double * 2}
@@ -19,9 +19,9 @@ def directions(name: str) -> np.ndarray:
     """[n x 2] theta and phi of a set in degrees: "81" (Bonn's), "105" (Bonn's and a ring at 85 degrees), or
     another number of directions of equal solid angle."""
     lib, count = library.load(), c_uint64()
-    lib.vlr_directions(name.encode(), None, byref(count))
+    lib.vlr_directions(text_bytes(name), None, byref(count))
     angles = np.empty((count.value, 2))
-    lib.vlr_directions(name.encode(), _doubles(angles), byref(count))
+    lib.vlr_directions(text_bytes(name), _doubles(angles), byref(count))
     return angles
 
 
@@ -46,7 +46,7 @@ def capture_job(tile, path: str | os.PathLike, **options) -> Job:
     if "sides" in options:
         options["sides"] = choice("sides", options["sides"], table.SIDES)
     if "source" in options:
-        options["source"] = options["source"].encode()
+        options["source"] = text_bytes(options["source"])
     set_fields(raw, options)
     return Job._create("vlr_capture_create_job", tile.pointer, byref(raw), path_bytes(path))
 
@@ -82,7 +82,7 @@ def _votf_options(options: dict):
     raw = structs.VotfOptions()
     library.load().vlr_votf_options_init(byref(raw))
     if "source" in options:
-        options["source"] = options["source"].encode()
+        options["source"] = text_bytes(options["source"])
     set_fields(raw, options)
     return byref(raw)
 

@@ -55,6 +55,11 @@ class Handle:
         self.close()
 
 
+def text_bytes(text: str) -> bytes:
+    """UTF-8. Names of files may have other bytes, which become question marks."""
+    return text.encode("utf-8", "replace")
+
+
 def path_bytes(path: str | os.PathLike) -> bytes:
     """A path for the library: UTF-8 or whatever bytes the system gave, without a zero byte."""
     encoded = os.fsencode(path)

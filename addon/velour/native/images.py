@@ -12,7 +12,7 @@ import numpy as np
 from . import library, structs
 from .arrays import checked, pointer
 from .errors import refuse
-from .handle import path_bytes
+from .handle import path_bytes, text_bytes
 
 
 def write(path: str | os.PathLike, pixels: np.ndarray) -> None:
@@ -93,7 +93,7 @@ def picture_warnings(path: str | os.PathLike, layer: str = "", as_stored: bool =
 
 
 def picture_options(layer: str, as_stored: bool) -> structs.PictureOptions:
-    return structs.PictureOptions(as_stored=int(as_stored), layer=layer.encode())
+    return structs.PictureOptions(as_stored=int(as_stored), layer=text_bytes(layer))
 
 
 def compare(pixels: np.ndarray, reference: np.ndarray) -> tuple[float, float]:

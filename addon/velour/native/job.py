@@ -13,7 +13,7 @@ import numpy as np
 from . import library, structs, table
 from .arrays import pointer, small
 from .errors import VelourError, refuse
-from .handle import Handle, choice, path_bytes, set_fields
+from .handle import Handle, choice, path_bytes, set_fields, text_bytes
 from .job_state import JobState, ProgressCallback
 from .measurement import Measurement
 from .model import Model
@@ -204,7 +204,7 @@ def microsurface_job(path: str | os.PathLike, **options) -> Job:
     ior, flake_roughness, rays, seed, threads."""
     raw = _defaults(structs.MicrosurfaceOptions, "vlr_microsurface_options_init")
     if "metal" in options:
-        options["metal"] = options["metal"].encode()
+        options["metal"] = text_bytes(options["metal"])
     if "base_albedo" in options:
         options["base_albedo"] = small("base_albedo", options["base_albedo"], 3)
     set_fields(raw, options)

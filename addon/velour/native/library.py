@@ -51,7 +51,7 @@ def system() -> dict:
 
 def select_simd(name: str) -> None:
     """Pins the instruction set of all kernels: "auto", or one of system()["simd_targets"]."""
-    load().vlr_select_simd(name.encode())
+    load().vlr_select_simd(name.encode("utf-8", "replace"))
 
 
 def denoiser() -> dict:

@@ -8,7 +8,7 @@ from typing import NamedTuple
 import numpy as np
 
 from . import library, structs
-from .handle import Handle, set_fields
+from .handle import Handle, set_fields, text_bytes
 from .scene import Scene
 
 
@@ -44,7 +44,7 @@ class Tile(Handle):
         """
         options = structs.TileOptions()
         library.load().vlr_tile_options_init(byref(options))
-        set_fields(options, {"kind": kind.lower().encode(), **shape})
+        set_fields(options, {"kind": text_bytes(kind.lower()), **shape})
         return cls._create("vlr_tile_create", byref(options))
 
     def mesh(self) -> TileMesh:

@@ -59,7 +59,7 @@ void write_shell(const ModelShell& shell, TensorFile& file) {
   Json json = {{"bottom", v.bottom}, {"top", v.top},       {"reference", v.reference},   {"aspect", v.aspect},
                {"reach", v.reach},   {"closed", v.closed}, {"tile_width", v.tile_width}, {"source", shell.source}};
   if (shell.errors) json.update(Json{{"coverage", shell.errors->coverage}, {"wrong", shell.errors->wrong}});
-  file.attributes[kAttribute] = json.dump();
+  file.attributes[kAttribute] = json.dump(-1, ' ', false, Json::error_handler_t::replace);
   file.tensors[kPart] = {{v.depth, v.height, v.width}, {v.distance.begin(), v.distance.end()}, Precision::halves};
 }
 

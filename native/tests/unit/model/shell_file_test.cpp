@@ -50,6 +50,12 @@ TEST(ShellFile, ComesBackAsItWas) {
   EXPECT_EQ(encode_model(read), encode_model(model));
 }
 
+TEST(ShellFile, ASourceThatIsNotUtf8IsReplaced) {
+  Model model = model_with_shell();
+  model.shell->source = "m\xfcll.obj";
+  EXPECT_EQ(decode_model(encode_model(model), "model.velour").shell->source, "m\xef\xbf\xbdll.obj");
+}
+
 TEST(ShellFile, AModelWithoutItIsReadAsOneWithout) {
   Model model = model_with_shell();
   model.shell.reset();
