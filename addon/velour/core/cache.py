@@ -14,10 +14,12 @@ def keep_in(folder: str | os.PathLike) -> None:
     _instead = Path(folder)
 
 
-def user_cache_folder() -> Path:
-    """${XDG_CACHE_HOME:-~/.cache}/velour, or the folder given to keep_in(); it may not exist."""
+def user_cache_folder() -> Path | str:
+    """${XDG_CACHE_HOME:-~/.cache}/velour, or the folder given to keep_in(); it may not exist.
+    "": the user has no home folder."""
     if _instead is not None:
         return _instead
     base = os.environ.get("XDG_CACHE_HOME", "")
-    # The XDG specification: a relative path counts as unset.
-    return (Path(base) if os.path.isabs(base) else Path.home() / ".cache") / "velour"
+    if not os.path.isabs(base):  # the XDG specification: a relative path counts as unset
+        base = os.path.expanduser("~/.cache")
+    return Path(base) / "velour" if os.path.isabs(base) else ""
