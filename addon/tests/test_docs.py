@@ -109,7 +109,7 @@ def test_every_operator_is_documented():
 
 def test_every_strategy_is_in_the_glossary():
     text = (ROOT / "docs/reference/glossary.md").read_text(encoding="utf-8")
-    assert f"directions of light are drawn: {', '.join(STRATEGIES)} |" in text
+    assert f"directions of light are sampled: {', '.join(STRATEGIES)} |" in text
 
 
 def test_places_that_the_next_engineer_is_sent_to_exist():
