@@ -27,20 +27,25 @@ def measure(run: Run) -> None:
                 file_format, variant = each.get("name").removeprefix(_MARK).split("|", 1)
                 found.setdefault(file_format, {})[variant] = each.get("value")
     # Formats that are refused as a whole share a section.
-    others: dict[str, list[str]] = {}
+    others = found.pop("Others", {})
     for name in sorted(found):
         if list(found[name]) == ["any"]:
-            others.setdefault(found.pop(name)["any"], []).append(name)
+            others[name] = found.pop(name)["any"]
     sections = sorted(found.items())
     if others:
-        sections.append(("Others", {", ".join(names): verdict for verdict, names in others.items()}))
+        sections.append(("Others", others))
     formats = [{"name": name, "lines": _lines(own)} for name, own in sections]
     page.write(ROOT / "docs/reference", "inputs.md", page.text("inputs", {"formats": formats}))
 
 
 def _lines(variants: dict[str, str]) -> str:
-    """A line per variant: what Velour does with it."""
-    lines = (f"- {variant}: {verdict}" for variant, verdict in sorted(variants.items()))
+    """A line per verdict, with the variants that it applies to."""
+    verdicts: dict[str, list[str]] = {}
+    for variant, verdict in sorted(variants.items()):
+        verdicts.setdefault(verdict.replace(", by both builds alike", ""), []).append(
+            "any file" if variant == "any" else variant
+        )
+    lines = (f"- {verdict[:1].upper()}{verdict[1:]}: {'; '.join(found)}" for verdict, found in verdicts.items())
     return "\n".join(
         textwrap.fill(line, 120, subsequent_indent="  ", break_on_hyphens=False) for line in lines
     )
