@@ -30,21 +30,21 @@ def _parse(arguments: list[str] | None) -> argparse.Namespace:
         prog="farm", description="Renders the frames of a .blend with Velour on Slurm, Flamenco or OpenJD."
     )
     add = parser.add_argument
-    add("path", type=Path, metavar="BLEND", help="the .blend; with --status the folder of pictures")
-    add("--output", type=Path, metavar="FOLDER", help="of the pictures (frames, beside the .blend)")
+    add("path", type=Path, metavar="BLEND", help="the .blend; with --status the folder of the images")
+    add("--output", type=Path, metavar="FOLDER", help="folder of the images (frames, beside the .blend)")
     add("--frames", type=ranges.argument, metavar="LIST", help="such as 1-10,15,20-30:2 (those of the scene)")
     add("--format", choices=("OPEN_EXR", "OPEN_EXR_MULTILAYER"), default="OPEN_EXR", help="(OPEN_EXR)")
-    add("--threads", type=_count, default=0, metavar="N", help="of a task (all that its node has)")
-    add("--memory", type=_memory, default=0, metavar="SIZE", help="of a task, such as 8G (what Slurm gives)")
-    add("--tasks", type=_count, default=1000, metavar="N", help="of the array at most (1000)")
-    add("--parts", type=_count, default=1, metavar="N", help="that a frame's samples are shared out to (1)")
+    add("--threads", type=_count, default=0, metavar="N", help="threads per task (all of its node)")
+    add("--memory", type=_memory, default=0, metavar="SIZE", help="memory per task, MiB or 8G (Slurm's)")
+    add("--tasks", type=_count, default=1000, metavar="N", help="maximum number of array elements (1000)")
+    add("--parts", type=_count, default=1, metavar="N", help="parts of the samples of a frame (1)")
     add("--blender", default="blender", metavar="PATH", help="the Blender to run, here and on the nodes")
     add("--addon", default="velour", metavar="MODULE", help="Velour's name there (velour)")
     add("--preferences", action="store_true", help="with user preferences, not factory settings")
     add("--scripts", action="store_true", help="let scripts and drivers inside the .blend run")
     add("--sbatch", action="append", default=[], metavar="OPTION", help="for sbatch; may be repeated")
     add("--no-submit", action="store_true", help="only write the job")
-    add("--status", action="store_true", help="say what is done and what failed")
+    add("--status", action="store_true", help="list finished and failed frames")
     return parser.parse_args(arguments)
 
 
