@@ -93,6 +93,15 @@ def judged(target: str, where: str, measured: str, met: bool | None) -> dict:
     return {"target": target, "where": where, "measured": measured, "met": met, "word": verdict(met)}
 
 
+def missed(targets: list[dict]) -> list[dict]:
+    """A row per target that is not met, with each place and number."""
+    found: dict[str, list[str]] = {}
+    for each in targets:
+        if not each["met"]:
+            found.setdefault(each["target"], []).append(f"{each['where']}: {each['measured']}")
+    return [{"target": target, "measured": "; ".join(cells)} for target, cells in found.items()]
+
+
 def write_rows(path: Path, rows: list[dict], conditions: Mapping) -> None:
     """Writes a CSV: the conditions, as name and value in the first two columns, then the rows."""
     path.parent.mkdir(parents=True, exist_ok=True)

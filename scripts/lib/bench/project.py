@@ -46,7 +46,7 @@ def sentence(c: dict) -> str:
     origin = (
         f"Some rows: {c['added_to']}; this page" if c.get("added_to") else "All numbers come from one run"
     )
-    machine = f"{c['machine']}; {c['threads']} threads used, seed {c['seed']}. {c.get('note') or ''}"
+    machine = f"{c['machine'].split(',')[0]}, {c['threads']} threads, seed {c['seed']}. {c.get('note') or ''}"
     return f"{origin}: {c['date']}, commit {c['commit']},\n{machine}".rstrip()
 
 

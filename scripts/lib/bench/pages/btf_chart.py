@@ -16,7 +16,7 @@ from velour.native.table import COMPRESS_METHODS
 
 from .. import charts
 from ..flip_metric import exposure, flip_map
-from ..page import judged
+from ..page import judged, missed
 from ..project import MissingError, flags, velour
 from ..reference import Curve
 from ..run import Picture, Run
@@ -331,7 +331,7 @@ def values(found: dict) -> dict:
         "sheet_tiles": SHEET_TILES,
         "world": WORLD,
         "speed_spp_named": found["conditions"]["speed_spp"].replace(", ", " and "),
-        "missed": [target for target in targets if not target["met"]],
+        "missed": missed(targets),
         "met": sum(target["met"] is True for target in targets),
         "judged": len(targets),
         "tiles_named": " | ".join(results.tiles),

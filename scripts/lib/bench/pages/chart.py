@@ -11,7 +11,7 @@ import numpy as np
 from velour.native.table import STRATEGIES
 
 from .. import charts, mitsuba
-from ..page import judged
+from ..page import judged, missed
 from ..project import BUILT
 from ..reference import Curve, Reading, Reference, points, ratio, shown
 from ..run import Run, words_of
@@ -269,11 +269,11 @@ def values(found: dict) -> dict:
     targets = list(verdicts(results, peers, equal_spp))
     bounded = all(result.about["bound"] for result in results)
     curves = [name for name in _SHOWN if name in results[0].points]
-    every = sorted({p["spp"] for p in results[0].points["product"]})[-2:]
-    bound_titles = " | exact / `mis`, variance | `product` / `mis`, variance | share of the gain"
+    every = [equal_spp]
+    bound_titles = " | share of the gain"
     return {
         "scenes": [result.about | {"picture": _picture(result)} for result in results],
-        "missed": _missed(targets),
+        "missed": missed(targets),
         "met": sum(target["met"] is True for target in targets),
         "judged": len(targets),
         "curves": " | ".join(curves),
@@ -289,15 +289,6 @@ def values(found: dict) -> dict:
         "absent": [{"why": absent}] if absent else [],
         "present": [] if absent else [_mitsuba(found["mitsuba"], peers, conditions)],
     }
-
-
-def _missed(targets: list[dict]) -> list[dict]:
-    """A row per target that is not met, with each scene and number."""
-    found: dict[str, list[str]] = {}
-    for each in targets:
-        if not each["met"]:
-            found.setdefault(each["target"], []).append(f"{each['where']}: {each['measured']}")
-    return [{"target": target, "measured": "; ".join(cells)} for target, cells in found.items()]
 
 
 def draw(output: Path, found: dict) -> None:
@@ -330,8 +321,6 @@ def _equal_samples(result: Result, every: list[int], equal_spp: int, bounded: bo
     has_both = DISSERTATION in result.points
     cells.append(f"{result.gain(DEFAULT, DISSERTATION, equal_spp)[0]:.2f}" if has_both else "")
     if bounded:
-        bound = result.about["bound"]
-        cells += [f"{bound[name] / bound['mis']:.3f}" for name in ("exact", "product")]
         cells.append(f"{100 * result.share_of_bound:.0f} %")
     return {"name": result.about["name"], "cells": " | ".join(cells)}
 

@@ -163,18 +163,9 @@ def values(found: dict) -> dict:
     counts = Counter(event["kind"] for event in night["events"])
     share = sum(on_farm) / len(shift.NODES)
     refused = [each for each in night["submissions"] if each["status"]]
-    summary = [
-        _summary("seconds, in one process", [row["seconds"] for row in rows]),
-        _summary("seconds, on the farm", on_farm),
-        _summary("rays, millions", [row["rays"] / 1e6 for row in rows]),
-        _summary("noise", [row["noise"] for row in rows]),
-        _summary("resident memory, MiB", [row["resident_mib"] for row in rows]),
-        _summary("warnings", [row["warnings"] or 0 for row in rows]),
-    ]
     return {
         "judgements": found["judgements"],
         "kinds": [{"kind": kind, "count": counts[kind]} for kind in trouble.KINDS],
-        "summary": summary,
         "seconds": night["seconds"],
         "share": share,
         "ratio": night["seconds"] / share if share else None,
@@ -187,8 +178,3 @@ def values(found: dict) -> dict:
         "still": found["still"],
         "no_disk": "" if night["has_disk"] else " No disk could be mounted here, so none was full.",
     }
-
-
-def _summary(what: str, values: list[float]) -> dict:
-    ordered = sorted(values) or [0.0]
-    return {"what": what, "least": ordered[0], "median": ordered[len(ordered) // 2], "most": ordered[-1]}
