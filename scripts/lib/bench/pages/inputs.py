@@ -14,6 +14,14 @@ SETTINGS = {}
 _PROGRAMS = ("image/test_image", "image/test_portable_picture", "scene/test_scene")
 _PROGRAMS += ("brdf/measure/test_brdf_measure", "btf/measure/test_btf_measure")
 _MARK = "input|"
+# Measurements, whose own pages state what is read.
+_ELSEWHERE = (
+    "BSDF XML of Radiance and WINDOW",
+    "BTF images named by angles",
+    "CSV index of a BTF",
+    "Cornell .brdf",
+    "MERL .binary",
+)
 
 
 def measure(run: Run) -> None:
@@ -25,7 +33,8 @@ def measure(run: Run) -> None:
         for each in ET.parse(report).getroot().iter("property"):
             if each.get("name").startswith(_MARK):
                 file_format, variant = each.get("name").removeprefix(_MARK).split("|", 1)
-                found.setdefault(file_format, {})[variant] = each.get("value")
+                if file_format not in _ELSEWHERE:
+                    found.setdefault(file_format, {})[variant] = each.get("value")
     # Formats that are refused as a whole share a section.
     others = found.pop("Others", {})
     for name in sorted(found):
