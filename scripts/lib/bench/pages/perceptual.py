@@ -86,7 +86,6 @@ def values(found: dict) -> dict:
         "at_default": len(at),
         "means_below": sum(row["flip_mean"] < mean for row in at),
         "orders": [_of_order(*item) for item in orders.items()],
-        "above": [row for row in at if not row["is_below"]],
     }
 
 

@@ -89,8 +89,12 @@ def values(found: dict) -> dict:
         "busy": project.busy(found["conditions"]["load"]),
         "pictures": [_picture(*item) for item in found["threads"].items()],
         "by_lobes": lobes,
-        "neighbors": [row for row in rows if row["task"] == "eval_neighbors" and row["lobes"] == 16],
+        "kernel": next(row for row in rows if _is_shown(row)),
     }
+
+
+def _is_shown(row: dict) -> bool:
+    return (row["task"], row["lobes"], row["directions"]) == ("eval_neighbors", 16, 16)
 
 
 def _picture(strategy: str, runs: list[dict]) -> dict:

@@ -11,7 +11,7 @@ from ..page import replaced
 from ..project import RESULTS, ROOT
 from ..run import Run
 
-SETTINGS = {"shown": (3, 3)}  # number of slowest tests shown per group
+SETTINGS = {"shown": (1, 1)}  # number of slowest tests shown per group
 PAGES = {"test_times.md": "test_times"}
 _TIMES = ROOT / "build/release/tests/times.json"
 _DEMO = ROOT / "out/demo/seconds.json"
