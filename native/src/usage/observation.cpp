@@ -329,7 +329,7 @@ std::string encode_observation(const SceneObservation& observation) {
       {"terms",
        {{"count", observation.wl.size()}, {"wl", base64_of(observation.wl)}, {"light", base64_of(observation.light)}}}};
   if (domain.surface.weight() > 0) json["surface"] = surface_json(domain.surface);
-  return json.dump(1) + "\n";
+  return json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
 SceneObservation decode_observation(std::span<const uint8_t> bytes, const std::string& name) {
