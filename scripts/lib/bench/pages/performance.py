@@ -90,6 +90,7 @@ def values(found: dict) -> dict:
         "pictures": [_picture(*item) for item in found["threads"].items()],
         "by_lobes": lobes,
         "kernel": next(row for row in rows if _is_shown(row)),
+        "targets": [row for row in rows if row["task"] == "eval_on"],
     }
 
 
