@@ -54,7 +54,9 @@ def _lines(variants: dict[str, str]) -> str:
         verdicts.setdefault(verdict.replace(", by both builds alike", ""), []).append(
             "any file" if variant == "any" else variant
         )
-    lines = (f"- {verdict[:1].upper()}{verdict[1:]}: {'; '.join(found)}" for verdict, found in verdicts.items())
+    lines = (
+        f"- {verdict[:1].upper()}{verdict[1:]}: {'; '.join(found)}" for verdict, found in verdicts.items()
+    )
     return "\n".join(
         textwrap.fill(line, 120, subsequent_indent="  ", break_on_hyphens=False) for line in lines
     )
