@@ -18,12 +18,13 @@ _RUNNER = ("scripts/lib/checks/", "scripts/lib/test_run.py")
 _TESTS = ("addon/tests/", "native/tests/", "native/fuzz/")
 # Measured pages that no test renders; the tests of their scripts are in Python.
 _PAGES = tuple(f"scripts/lib/bench/{part}" for part in ("pages/", "night/", "inside/night", "inside/gallery"))
+_DOCUMENTS = ("docs/", "README.md", "CHANGELOG.md")
 # Paths that no test of a group reads. Groups that are not listed may read everything.
 _UNREAD: dict[str, tuple[str, ...]] = {
-    "native": ("addon/", "blend-tests/", "docs/", "scripts/lib/"),
-    "fuzz": ("addon/", "blend-tests/", "docs/", "scripts/lib/"),
-    "scenes": (*_TESTS, *_PAGES, "docs/", *_RUNNER),
-    "night": (*_TESTS, "docs/", *_RUNNER),
+    "native": ("addon/", "blend-tests/", *_DOCUMENTS, "scripts/lib/"),
+    "fuzz": ("addon/", "blend-tests/", *_DOCUMENTS, "scripts/lib/"),
+    "scenes": (*_TESTS, *_PAGES, *_DOCUMENTS, *_RUNNER),
+    "night": (*_TESTS, *_DOCUMENTS, *_RUNNER),
     "blender": (*_TESTS, *_PAGES, *_RUNNER),
 }
 # blend-tests/run itself sees whether these have changed.
