@@ -27,6 +27,7 @@ pixels = material.preview.image_pixels_float
 assert abs(pixels[0] - 0.248) < 0.01 and abs(pixels[1] - 0.485) < 0.01, pixels[:4]
 group = next(n for n in material.node_tree.nodes if n.bl_idname == "ShaderNodeGroup")
 node = next(n for n in group.node_tree.nodes if n.bl_idname == "ShaderNodeTexImage" and n.velour.enabled)
+assert '"masking": "correlated"' in group.node_tree.velour.fitted, "fitted for Blender 3.4"
 assert node.image.packed_file and node.image.packed_file.size > 1000
 assert not [image.name for image in bpy.data.images if image.source == "FILE" and not image.packed_file]
 print("ASSET READ")

@@ -5,6 +5,8 @@ from __future__ import annotations
 import inputs
 import numpy as np
 import pytest
+from conftest import ROOT
+from velour.core.approximation import Steps
 from velour.native import Model, Status, VelourError
 
 SAMPLES = 65
@@ -66,6 +68,30 @@ def test_they_show_the_model_at_the_normal(model, closures):
         distribution = ggx if lobe["distribution"] == "GGX" else beckmann
         value += np.outer(distribution(lobe["roughness"][0] ** 2, half) / 4, lobe["color"][0])
     assert value == pytest.approx(f * np.cos(angle)[:, None], rel=0.1)
+
+
+def test_a_material_with_closures_has_the_coat_and_tints_of_exporters_in_any_blender(model):
+    def approximation(has_layers: bool):
+        steps = Steps(model, has_layers, "correlated")
+        while job := steps.next_job():
+            job.start().wait()
+        return steps.result
+
+    old, new = approximation(has_layers=False), approximation(has_layers=True)
+    assert old.principled == new.principled
+    assert old.closures["masking"] == "correlated"
+
+
+def test_the_page_says_how_dark_lobes_for_newer_blenders_are_in_3_4():
+    """In the mirror direction, where view and light are masked alike."""
+    page = " ".join((ROOT / "docs/reference/other_programs.md").read_text().split())
+
+    def loss(alpha, degrees):
+        masked = (np.sqrt(1 + (alpha * np.tan(np.radians(degrees))) ** 2) - 1) / 2
+        return 1 - (1 + 2 * masked) / (1 + masked) ** 2
+
+    at_75, at_85 = (f"{100 * loss(0.5, view):.0f} %" for view in (75, 85))
+    assert f"highlights of alpha 0.5 darker: {at_75} at 75 degrees, {at_85} at 85" in page
 
 
 def test_options(model):

@@ -63,7 +63,8 @@ class Steps:
     """The jobs of an approximation. Run each one before requesting the next."""
 
     def __init__(self, model: Model, has_layers: bool, masking: str | None):
-        """has_layers: this Blender's Principled BSDF has the coat and the tints of the library's.
+        """has_layers: this Blender's Principled BSDF has the coat and the tints of the library's. A material
+        with closures always has them, since only exporters use its Principled BSDF.
 
         masking: of the closures of a BRDF, as for Model.closures; None: without them.
         """
@@ -75,15 +76,16 @@ class Steps:
 
     def _run(self, model: Model, has_layers: bool, masking: str | None) -> Iterator[Job]:
         info = model.info()
-        isotropic = info.get("isotropic", True)
-        peer = ("principled" if has_layers else "plain_principled") if isotropic else "ggx"
+        isotropic, size = info.get("isotropic", True), size_of(info)
+        is_layered = has_layers or (masking is not None and not size)
+        peer = ("principled" if is_layered else "plain_principled") if isotropic else "ggx"
         making = ReadJob(lambda: model_peer_job(model, peer))  # a ReadJob, because this tabulates the model
         yield making
         with making.result() as job:
             yield job
             report = job.report()
         values = {"principled": report[peer.removeprefix("plain_")]} if isotropic else from_ggx(report["ggx"])
-        if size := size_of(info):
+        if size:
             making = ReadJob(lambda: map_job(model, size))
             yield making
             with making.result() as job:

@@ -6,7 +6,7 @@ from ..native import Model
 
 
 def closures_of(model: Model, masking: str) -> dict:
-    """What operators/closure_network.py takes, with the keys relative_l2, by_view_angle and reason.
+    """What operators/closure_network.py takes, with the keys masking, relative_l2, by_view_angle and reason.
 
     masking: see Model.closures. relative_l2: the mean of the views up to 75 degrees. reason: a sentence if
     the error is large, otherwise "".
@@ -14,6 +14,7 @@ def closures_of(model: Model, masking: str) -> dict:
     fit = model.closures(masking=masking)
     by_view_angle = zip(fit["views"], fit["relative_l2"], strict=True)
     return {
+        "masking": masking,
         "frame": fit["frame"],
         "diffuse": fit["diffuse"],
         "lobes": fit["lobes"],

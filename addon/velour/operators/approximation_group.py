@@ -24,6 +24,8 @@ from .look_nodes import LookNodes
 
 _NO_IMAGES = TileImages()
 DISPLACEMENT = "Displacement"  # output of the group, if its tile has a relief
+# Masking and shadowing of this Blender's Glossy BSDFs, as for Model.closures.
+MASKING = "separable" if SEPARABLE_SHADOWS else "correlated"
 FRAME = "Other Engines"  # contains the nodes that are replaced; an artist's own nodes are outside of it
 
 
@@ -34,7 +36,15 @@ def has_layers():
 
 def steps(model):
     """The jobs that approximate a model with this Blender's shaders."""
-    return Steps(model, has_layers(), "separable" if SEPARABLE_SHADOWS else "correlated")
+    return Steps(model, has_layers(), MASKING)
+
+
+def mismatch(tree):
+    """A sentence if the nodes of a group are not right in this Blender; otherwise ""."""
+    closures = tree.velour.fitted and approximation_look.fitted(tree).get("closures")
+    if closures and closures.get("masking", MASKING) != MASKING:
+        return "The nodes were fitted for other versions of Blender."
+    return ""
 
 
 def is_editable(material):

@@ -189,7 +189,8 @@ def detach():
 def _rounded(closures):
     """The curves alone, with as many digits as nodes keep."""
     lobes = [{key: _digits(value) for key, value in lobe.items()} for lobe in closures["lobes"]]
-    return {"frame": closures["frame"], "diffuse": _digits(closures["diffuse"]), "lobes": lobes}
+    kept = {key: closures[key] for key in ("masking", "frame")}
+    return {**kept, "diffuse": _digits(closures["diffuse"]), "lobes": lobes}
 
 
 def _digits(values):

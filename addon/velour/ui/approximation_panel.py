@@ -5,6 +5,7 @@ import bpy
 from ..core.sizes import percent
 from ..export.nodes import approximation_node, velour_node
 from ..operators.approximate import VELOUR_OT_approximate
+from ..operators.approximation_group import mismatch
 from ..operators.approximation_image import images_of
 from ..operators.displace import VELOUR_OT_displace
 from ..properties.approximation_state import VIEW_ANGLES
@@ -37,10 +38,10 @@ class VELOUR_MATERIAL_PT_approximation(MaterialPanel, bpy.types.Panel):
             errors = (error if error >= 0.0 else None for error in state.by_view_angle)
             draw_error_by_angle(layout.box(), dict(zip(VIEW_ANGLES, errors, strict=True)))
         digest = _digest(velour_node(context.material).image)
-        if digest and digest != state.model:
-            draw_sentence(
-                context, layout, "The approximation is of another model. Press Refresh.", icon="ERROR"
-            )
+        is_other = digest and digest != state.model
+        wrong = "The approximation is of another model." if is_other else mismatch(group.node_tree)
+        if wrong:
+            draw_sentence(context, layout, f"{wrong} Press Refresh.", icon="ERROR")
         layout.operator(VELOUR_OT_approximate.bl_idname, text="Refresh", icon="FILE_REFRESH")
         if images_of(group.node_tree).height is not None:
             is_on = state.displaces

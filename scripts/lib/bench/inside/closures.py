@@ -47,7 +47,7 @@ def material(task, masking):
         steps = approximation_group.Steps(
             model,
             approximation_group.has_layers(),
-            masking and ("separable" if approximation_group.SEPARABLE_SHADOWS else "correlated"),
+            masking and approximation_group.MASKING,
         )
         while job := steps.next_job():
             job.start().wait()

@@ -1,5 +1,7 @@
 """Writes a .blend of the preset materials with packed models, marked as assets."""
 
+from unittest import mock
+
 import addon_utils
 import bpy
 import numpy as np
@@ -7,6 +9,7 @@ from velour.core import presets
 from velour.core.presets import AUTHOR, LICENCE
 from velour.core.srgb import encoded
 from velour.native import images
+from velour.operators import approximation_group
 
 from . import scene as build
 
@@ -22,7 +25,9 @@ def main(task):
 def write(task):
     """`task`: path of the .blend, folder of the presets, and the id of each catalog by name."""
     for preset in presets.listed(task["folder"]):
-        bpy.ops.velour.add_preset(preset=preset.name, directory=task["folder"], assign=False)
+        # Assets are not refitted where they are used: they are right in Blender 3.5 and newer.
+        with mock.patch.object(approximation_group, "MASKING", "correlated"):
+            bpy.ops.velour.add_preset(preset=preset.name, directory=task["folder"], assign=False)
         _describe(bpy.data.materials[preset.name], preset, task["catalogs"][preset.catalog])
     bpy.context.preferences.filepaths.save_version = 0
     bpy.ops.wm.save_as_mainfile(filepath=task["path"], compress=True)
