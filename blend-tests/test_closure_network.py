@@ -212,6 +212,19 @@ class Controls(Network):
         self.build(curves, roughness=self.value("ShaderNodeValue", 0))
         self.assertLess(self.error(curves), _EXACT)
 
+    def test_roughness_of_stretched_lobes(self):
+        """Squared alphas add along and across, and none exceeds 1."""
+        roughness = 0.35 + 0.25 * SMOOTH
+        for amount in (0.6, -0.6, 1.2 * (SMOOTH - 0.5)):
+            lobe = {"color": COLORS, "roughness": roughness, "anisotropy": amount + 0 * SMOOTH}
+            curves = closures.curves(lobes=[lobe])
+            self.build(curves, roughness=self.value("ShaderNodeValue", 0))
+            self.assertLess(self.error(curves), 2 * _EXACT)
+            for blur in (0.5, 0.9):
+                self.build(curves, roughness=self.value("ShaderNodeValue", blur))
+                blurred = closures.curves(lobes=[{**lobe, **_blurred(lobe, blur)}])
+                self.assertLess(self.error(blurred), 2 * _EXACT)
+
     def test_rotation_of_a_brushed_surface(self):
         lobe = {"roughness": 0.5, "anisotropy": 0.5}
         curves = {**closures.curves(lobes=[lobe]), "frame": "surface"}
@@ -255,6 +268,13 @@ class Controls(Network):
 def _other_distributions():
     """What fits take beside GGX for brushed surfaces."""
     return ["BECKMANN"] if closures.is_correlated() else ["ASHIKHMIN_SHIRLEY"]
+
+
+def _blurred(lobe, blur):
+    ratio = (1 - np.abs(lobe["anisotropy"])) ** 2  # alphas are roughness^2 times and over its root
+    narrow, wide = (np.minimum(lobe["roughness"] ** 4 * each + blur**4, 1) for each in (ratio, 1 / ratio))
+    stretched = np.sign(lobe["anisotropy"]) * (1 - (narrow / wide) ** 0.25)
+    return {"roughness": (wide * narrow) ** 0.125, "anisotropy": stretched}
 
 
 def _dyed(curves, gain):
@@ -301,7 +321,8 @@ class Tree(Network):
                 self.assertTrue(beside or apart, f"{name} lies on {other}")
 
     def test_links_run_to_the_right(self):
-        self.build(CASES["all"], normal=self.vector(0, 0, 0))
+        blur = self.value("ShaderNodeValue", 0.1)
+        self.build(CASES["all"], normal=self.vector(0, 0, 0), roughness=blur)
         for link in self.tree.links:
             if link.from_node.parent and link.to_node.parent:
                 self.assertLess(link.from_node.location.x, link.to_node.location.x, link.to_node.name)

@@ -1,8 +1,10 @@
 """What tint, exposure and roughness offset make of an approximation's values."""
 
+import inputs
 import pytest
 from velour.core.approximation import UNFITTED
 from velour.core.approximation_look import Look, with_look
+from velour.native import Model, model_peer_job
 
 
 def values(**principled):
@@ -59,3 +61,20 @@ def test_squares_of_alphas_add():
     wide, narrow = (((0.25 * a) ** 2 + 0.09**2) ** 0.5 for a in (1 / aspect, aspect))
     assert shown["principled"]["roughness"] == pytest.approx((wide * narrow) ** 0.25)
     assert 1 - 0.9 * shown["anisotropic"] == pytest.approx(narrow / wide)
+
+
+def test_brushed_highlights_get_rounder_as_those_of_the_model():
+    """Ratios of alphas. Squared alphas add along both axes, so that the narrower one grows more."""
+    model = Model.load(inputs.BRUSHED_MODEL)
+    fitted = _ggx(model)["alpha"]
+    assert min(fitted) / max(fitted) < 0.3
+    for offset, most in ((0.2, 0.05), (0.35, 0.1), (0.5, 0.05), (0.7, 0.1)):
+        rough = _ggx(model.roughened(offset))["alpha"]
+        added = [(alpha**2 + offset**4) ** 0.5 for alpha in fitted]
+        assert min(rough) / max(rough) == pytest.approx(min(added) / max(added), abs=most)
+
+
+def _ggx(model):
+    with model_peer_job(model, "ggx") as job:
+        job.run()
+        return job.report()["ggx"]

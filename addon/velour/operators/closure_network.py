@@ -24,6 +24,7 @@ _TAG = "velour_closures"
 _SAME = 1e-5  # curves that vary by less are constants
 _PARTS, _SUMS = 5.5, 9.7  # columns where BSDFs and their sums begin
 _CURVE, _ROW = -330, -60  # from a color's curve to the next row, and between rows
+_BLUR_ROWS = 4  # rows of a stretched lobe's roughness and anisotropy, where they are blurred
 
 
 class Inputs(NamedTuple):
@@ -134,17 +135,25 @@ class _Network:
     def _add_lobe(self, number, lobe):
         nodes = self._nodes
         is_stretched, is_tilted = _is_used(lobe["anisotropy"]), _is_used(lobe["tilt"])
-        self._begin_bsdf(f"Lobe {number}", rows=1 + is_stretched + is_tilted)
+        is_blurred_by_axis = is_stretched and self._blur is not None
+        rows = _BLUR_ROWS if is_blurred_by_axis else 1 + is_stretched
+        self._begin_bsdf(f"Lobe {number}", rows=rows + is_tilted)
         is_plain = not is_stretched and hasattr(bpy.types, "ShaderNodeBsdfGlossy")  # gone since Blender 4.0
         shader = nodes.add("ShaderNodeBsdfGlossy" if is_plain else "ShaderNodeBsdfAnisotropic", 3)
         shader.distribution = lobe["distribution"]
         nodes.put(shader.inputs["Color"], self._color(lobe["color"]))
         y = _CURVE
-        roughness = self._curve(lobe["roughness"], y, "Roughness")
-        nodes.put(shader.inputs["Roughness"], self._blurred(roughness, y))
+        if is_blurred_by_axis:
+            roughness, anisotropy = self._blurred_by_axis(lobe, y)
+            y += (_BLUR_ROWS - 1) * _ROW
+        else:
+            roughness = self._blurred(self._curve(lobe["roughness"], y, "Roughness"), y)
+            if is_stretched:
+                y += _ROW
+                anisotropy = self._curve(lobe["anisotropy"], y, "Anisotropy")
+        nodes.put(shader.inputs["Roughness"], roughness)
         if is_stretched:
-            y += _ROW
-            nodes.put(shader.inputs["Anisotropy"], self._curve(lobe["anisotropy"], y, "Anisotropy"))
+            nodes.put(shader.inputs["Anisotropy"], anisotropy)
             nodes.put(shader.inputs["Tangent"], self._tangent)
             if self._turns is not None:
                 nodes.put(shader.inputs["Rotation"], self._turns)
@@ -217,6 +226,32 @@ class _Network:
         own = nodes.math("POWER", 1.1, roughness, 4.0, y=y, label="Squared alpha")
         both = nodes.math("ADD", 1.7, own, self._blur, y=y, label="Blur", use_clamp=True)
         return nodes.math("POWER", 2.3, both, 0.25, y=y, label="Roughness")
+
+    def _blurred_by_axis(self, lobe, y):
+        """Roughness and anisotropy of a stretched lobe: squared alphas add along x and along y."""
+        nodes, squares = self._nodes, []
+        rows = [y + row * _ROW for row in range(_BLUR_ROWS)]
+        for axis, root, row in zip("xy", _roots_of_alphas(lobe), rows, strict=False):
+            own = nodes.math("POWER", 1.1, self._curve(root, row, f"Root of alpha {axis}"), 4.0, y=row)
+            squares.append(nodes.math("ADD", 1.7, own, self._blur, y=row, label="Blur", use_clamp=True))
+        both = nodes.math("MULTIPLY", 2.25, *squares, y=y)
+        # Roots of alpha_x / alpha_y and of its inverse, at most 1: one is 1, the other 1 - |anisotropy|.
+        along, across = (
+            nodes.math("POWER", 2.3, nodes.math("DIVIDE", 1.75, *each, y=row), 0.25, y=row, use_clamp=True)
+            for each, row in zip((squares, squares[::-1]), rows[2:], strict=True)
+        )
+        return (
+            nodes.math("POWER", 2.8, both, 0.125, y=y, label="Roughness"),
+            nodes.math("SUBTRACT", 2.85, across, along, y=rows[2], label="Anisotropy"),
+        )
+
+
+def _roots_of_alphas(lobe):
+    """Roots of alpha_x and of alpha_y over the view: roughness by axis."""
+    roughness, anisotropy = (np.array(lobe[key], float) for key in ("roughness", "anisotropy"))
+    narrow = np.sqrt(1 - np.abs(anisotropy))
+    x, y = roughness * narrow, roughness / narrow
+    return np.where(anisotropy < 0, (y, x), (x, y))
 
 
 def _is_used(values):
