@@ -3,6 +3,7 @@
 from unittest import mock
 
 import bpy
+import numpy as np
 
 from support import inputs, scenes
 from support.blender import BlenderTest
@@ -47,3 +48,39 @@ class Versions(Elsewhere):
             self._approximate()
             self.assertNotIn(wrong, self._texts())
         self.assertIn(wrong, self._texts())
+
+
+_REC2020 = np.array(((0.6274, 0.3293, 0.0433), (0.0691, 0.9195, 0.0114), (0.0164, 0.0880, 0.8956)))
+
+
+class WorkingSpaces(Elsewhere):
+    """Blender 5.0 can change the working space of a file; it converts neither curves nor vectors."""
+
+    def _in_rec2020(self):
+        color = inputs.module("export.color")
+        return mock.patch.object(color, "_to_scene_linear", lambda rgb: tuple(_REC2020 @ np.array(rgb)))
+
+    def _shown(self):
+        values = inputs.module("operators.approximation_look").shown(self.material)
+        return np.array([values.principled["base_color"], values.diffuse, values.color])
+
+    def test_the_panel_says_if_nodes_are_in_another(self):
+        wrong = "The nodes are in another working color space. Press Refresh."
+        self._approximate()
+        self.assertNotIn(wrong, self._texts())
+        with self._in_rec2020():
+            self.assertIn(wrong, self._texts())
+            self._approximate()
+            self.assertNotIn(wrong, self._texts())
+        self.assertIn(wrong, self._texts())
+
+    def test_exporters_and_solid_mode_have_colors_in_the_present_one(self):
+        self._approximate()
+        before = self._shown()
+        self.assertGreater(np.ptp(before[0]), 0.1)
+        with self._in_rec2020():
+            converted = before @ _REC2020.T
+            np.testing.assert_allclose(self._shown(), converted, atol=1e-5)
+            self._approximate()
+            np.testing.assert_allclose(self._shown(), converted, atol=1e-5)
+        np.testing.assert_allclose(self._shown(), before, atol=1e-5)

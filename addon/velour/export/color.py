@@ -30,6 +30,14 @@ def working_to_rec709(color):
     return tuple(float(c) for c in np.linalg.inv(matrix) @ np.array(color[:3]))
 
 
+def rec709_color_to_working(color):
+    """Converts a linear Rec. 709 triple to the working space: the inverse of working_to_rec709()."""
+    matrix = rec709_to_working()
+    if np.allclose(matrix, np.eye(3), atol=1e-4):  # up to Blender's rounding
+        return tuple(color)
+    return tuple(float(c) for c in matrix @ np.array(color))
+
+
 def rec709_pixels_to_working(pixels):
     """Converts linear Rec. 709 [... x channels], with or without alpha, to Blender's scene-linear space."""
     rgb = pixels[..., :3] @ rec709_to_working().T.astype(np.float32)

@@ -32,7 +32,8 @@ def fill(gltf_material, material, export_settings):
     tree = approximation_node(material).node_tree
     writes_images = export_settings.get("gltf_image_format") != "NONE"
     pictures = images_to_export(material) if writes_images else TileImages()
-    principled = {**values.principled, "base_color": working_to_rec709(values.principled["base_color"])}
+    colors = {name: working_to_rec709(values.principled[name]) for name in ("base_color", "specular_tint")}
+    principled = {**values.principled, **colors}
     base, pbr.metallic_factor = base_and_metallic(principled, working_to_rec709(values.diffuse))
     color = working_to_rec709(values.gain) if pictures.colors else base
     pbr.base_color_factor = [*(min(max(c, 0.0), 1.0) for c in color), 1.0]

@@ -1,8 +1,10 @@
 """Blender's own nodes in a measured material's group: what engines other than Velour render."""
 
 import bpy
+import numpy as np
 
 from ..core.approximation import Steps
+from ..export.color import rec709_to_working
 from ..export.nodes import first_input, measured_nodes
 from ..export.shaders.readers import SEPARABLE_SHADOWS
 from ..export.uv_maps import placed_by
@@ -41,9 +43,13 @@ def steps(model):
 
 def mismatch(tree):
     """A sentence if the nodes of a group are not right in this Blender; otherwise ""."""
-    closures = tree.velour.fitted and approximation_look.fitted(tree).get("closures")
+    if not tree.velour.model:
+        return ""
+    closures = approximation_look.stored(tree).get("closures")
     if closures and closures.get("masking", MASKING) != MASKING:
         return "The nodes were fitted for other versions of Blender."
+    if not np.allclose(tree.velour.to_working, rec709_to_working().ravel(), atol=1e-3):
+        return "The nodes are in another working color space."
     return ""
 
 
@@ -83,6 +89,7 @@ def rebuild(node, material):
 
 
 def _build(tree, material, images, is_seen_through, fed):
+    tree.velour.to_working = rec709_to_working().ravel()
     source, sink = _only(tree, "NodeGroupInput", (-1300, 0)), _only(tree, "NodeGroupOutput", (600, 0))
     others = set(tree.nodes)
     fitted = approximation_look.fitted(tree)

@@ -7,7 +7,7 @@ import numpy as np
 
 from ..core.approximation_look import Look, dyed, with_look
 from ..core.placement import repeats_of
-from ..export.color import rec709_to_working
+from ..export.color import rec709_color_to_working
 from ..export.measured_look import constant_look
 from ..export.nodes import (
     active_output,
@@ -55,13 +55,12 @@ class Shown(NamedTuple):
 
 
 def kept(approximation):
-    """An approximation as JSON, to be stored in the group; colors are in the working space."""
-    principled = {**approximation.principled, "base_color": _working(approximation.principled["base_color"])}
+    """An approximation as JSON, to be stored in the group; colors are linear Rec. 709."""
     return json.dumps(
         {
-            "principled": principled,
-            "diffuse": _working(approximation.diffuse),
-            "color": _working(approximation.color),
+            "principled": approximation.principled,
+            "diffuse": approximation.diffuse,
+            "color": approximation.color,
             "anisotropic": approximation.anisotropic,
             "turned": approximation.turned,
             "tile_metres": approximation.tile_metres,
@@ -71,9 +70,20 @@ def kept(approximation):
     )
 
 
-def fitted(tree):
+def stored(tree):
     """The values that kept() has stored in a tree."""
     return json.loads(tree.velour.fitted)
+
+
+def fitted(tree):
+    """The values that kept() has stored in a tree, with colors in the working space; closures keep theirs."""
+    values = stored(tree)
+    for owner, names in (
+        (values["principled"], ("base_color", "specular_tint")),
+        (values, ("diffuse", "color")),
+    ):
+        owner.update({name: rec709_color_to_working(owner[name]) for name in names})
+    return values
 
 
 def shown(material):
@@ -114,7 +124,7 @@ def _place(node):
     if group.id_data.library is not None:
         return
     if "Repeats" in group.inputs:
-        repeats = _repeats(placement, fitted(group.node_tree)["tile_metres"])
+        repeats = _repeats(placement, stored(group.node_tree)["tile_metres"])
         _set(group.inputs["Repeats"], "default_value", (*repeats, 1.0))
         _set(group.inputs["Offset"], "default_value", (*placement.offset, 0.0))
     if group.node_tree.library is None:
@@ -122,7 +132,7 @@ def _place(node):
             if part.bl_idname in ("ShaderNodeTangent", "ShaderNodeNormalMap"):
                 _set(part, "uv_map", placed_by(node))
             elif part.label == HEIGHT:
-                height = fitted(group.node_tree)["height"] / placement.density()[0]
+                height = stored(group.node_tree)["height"] / placement.density()[0]
                 _set(part.inputs[1], "default_value", height)
 
 
@@ -197,8 +207,3 @@ def _digits(values):
     if isinstance(values, list):
         return [_digits(value) for value in values]
     return values if isinstance(values, str) else float(f"{values:.6g}")
-
-
-def _working(color):
-    """Converts linear Rec. 709 to Blender's scene-linear space."""
-    return [float(c) for c in rec709_to_working() @ color]

@@ -13,7 +13,7 @@ from ..export.measured_look import constant_look
 from ..export.nodes import approximation_node, velour_node
 from ..properties.approximation_state import VIEW_ANGLES
 from .approximation_image import images_to_export
-from .approximation_look import fitted, is_surface, shown
+from .approximation_look import is_surface, shown, stored
 from .usd_nodes import add, coordinate_name, exported, value_type
 
 READER = "Velour_Geomprop"  # prim of the texture coordinates; its input "geomprop" is their name
@@ -59,16 +59,14 @@ def _stored_errors(tree):
 
 def _write_brdf(usd_material, shader, material, tree):
     """Writes OpenPBR fitted to the model with the look of the material."""
-    node, values = velour_node(material), fitted(tree)
+    node, values = velour_node(material), stored(tree)
     look = constant_look(node)
-    principled = values["principled"]
-    start = {**principled, "base_color": working_to_rec709(principled["base_color"])}
     with contextlib.ExitStack() as opened:
         model = opened.enter_context(read_model(node.image, f"Material '{material.name}'"))
         if look.roughness > 0:
             model = opened.enter_context(model.roughened(look.roughness))
         gain = working_to_rec709(look.gain)
-        found = fitted_open_pbr(model, start, values["anisotropic"], values["turned"], gain)
+        found = fitted_open_pbr(model, values["principled"], values["anisotropic"], values["turned"], gain)
     _write_values(shader, found.material, found.errors)
     turn = look.rotation + (math.pi / 2 if found.is_turned else 0.0)
     if found.material.specular_roughness_anisotropy > 0 and turn != 0:
