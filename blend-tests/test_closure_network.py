@@ -30,6 +30,7 @@ CASES = {
         lobes=[{"color": COLORS, "roughness": 0.4 + 0.2 * SMOOTH, "distribution": "BECKMANN"}]
     ),
     "to the viewer": closures.curves(lobes=[{"color": COLORS, "roughness": 0.5, "tilt": 0.8 * SMOOTH}]),
+    "by a constant": closures.curves(lobes=[{"color": COLORS, "roughness": 0.5, "tilt": 0.6}]),
     "from the viewer": closures.curves(
         lobes=[{"roughness": 0.5, "tilt": -0.15 * np.sin(np.pi * closures.X)}]
     ),

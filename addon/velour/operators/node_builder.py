@@ -43,10 +43,11 @@ class NodeBuilder:
         return self._calculation("ShaderNodeVectorMath", operation, column, values, **settings)
 
     def put(self, socket, value):
-        """Links an output to an input socket, or sets a constant."""
+        """Links an output to an input socket, or sets a constant: a number for a vector sets all three."""
         if isinstance(value, bpy.types.NodeSocket):
             self._tree.links.new(value, socket)
         else:
+            value = (value,) * 3 if socket.type == "VECTOR" and isinstance(value, float) else value
             socket.default_value = (*value, 1.0) if socket.type == "RGBA" else value
 
     def _calculation(self, idname, operation, column, values, y=0, label="", **settings):
