@@ -40,14 +40,14 @@ class Files(Approximation):
         found = inputs.module("core.approximation").UNFITTED._replace(**changed)
         group_module().put(scenes.velour_node(self.material), self.material, found, info)
 
-    def _put_maps(self, **principled):
-        """A tile with all maps; returns the one of roughness."""
+    def _put_maps(self, kind="texels", **principled):
+        """A tile with all maps, of a BTF or, with "shell", of a VOTF; returns the one of roughness."""
         values = {**inputs.module("core.approximation").UNFITTED.principled, **principled}
         rough = np.linspace(0.2, 0.8, 16, dtype=np.float32).reshape(4, 4)
         normals = np.broadcast_to(np.array((0.36, -0.48, 0.8), np.float32), (4, 4, 3))
         colors = np.full((4, 4, 4), (0.2, 0.5, 0.3, 1), np.float32)
         maps = {"color_map": colors, "normal_map": normals, "roughness_map": rough}
-        self._put({"texels": (4, 4)}, principled=values, **maps)
+        self._put({kind: (4, 4)}, principled=values, **maps)
         return rough
 
     def test_files_carry_it(self):
@@ -153,7 +153,7 @@ class Files(Approximation):
         np.testing.assert_allclose(texels[..., 2], 1, atol=1.5 / 255)  # metallic
 
     def test_a_roughness_offset_replaces_the_map(self):
-        self._put_maps()
+        self._put_maps("shell")
         scenes.set_look(self.material, roughness=0.5)
         pbr = self._gltf()["materials"][0]["pbrMetallicRoughness"]
         self.assertNotIn("metallicRoughnessTexture", pbr)

@@ -53,12 +53,12 @@ class Usd(InCycles):
         bpy.ops.velour.load_material(filepath=str(path))
         return group_of(self.material)
 
-    def _approximation(self, **changed):
+    def _approximation(self, tile="texels", **changed):
         """A material of such values, as a fit makes them of a plastic; its group."""
         bpy.ops.velour.add_material()
         core = inputs.module("core.approximation")
         values = {"principled": {**core.UNFITTED.principled, **_PLASTIC}, **changed}
-        info = {"texels": (4, 4)} if "color_map" in changed else {"isotropic": "anisotropic" not in changed}
+        info = {tile: (4, 4)} if "color_map" in changed else {"isotropic": "anisotropic" not in changed}
         found = core.UNFITTED._replace(**values)
         module("approximation_group").put(scenes.velour_node(self.material), self.material, found, info)
         return group_of(self.material).node_tree
@@ -239,7 +239,7 @@ class Images(Usd):
 
     def test_a_roughness_map_is_connected(self):
         maps = {"color_map": np.ones((4, 4, 4)), "roughness_map": np.full((4, 4), 0.6)}
-        self._approximation(**maps)
+        self._approximation("shell", **maps)
         material, _values, _stage = self._exported()
         surface = material.ComputeSurfaceSource()[0]
         self.assertTrue(surface.GetInput("roughness").HasConnectedSource())

@@ -24,10 +24,11 @@ _LOOK = (
         "Float",
         "FACTOR",
         bounds=(0, 1),
-        description="Widens the highlights of a BRDF model, keeping their brightness",
+        description="Widens the highlights, keeping their brightness",
     ),
     Input("Normal", "Vector", default=(0, 0, 0), hides_value=True),
 )
+_NOT_OF_BTFS = {"Roughness Offset"}
 _ROTATION = Input(
     "Rotation",
     "Float",
@@ -47,7 +48,8 @@ def wanted(info):
     """The inputs of a group for a model. `info`: the model's; empty without a model."""
     has_tiles = "texels" in info or "shell" in info
     turns = (_ROTATION,) if has_tiles or not info.get("isotropic", True) else ()
-    return (*_LOOK, *turns, *(_TILES if has_tiles else ()))
+    look = (each for each in _LOOK if "texels" not in info or each.name not in _NOT_OF_BTFS)
+    return (*look, *turns, *(_TILES if has_tiles else ()))
 
 
 def put(tree, inputs):

@@ -13,8 +13,9 @@ class LookNodes:
         stops = self.math("POWER", 2.0, source.outputs["Exposure"])
         self.gain = self.vector("SCALE", source.outputs["Tint"], scale=stops)
         self._brightness = self.vector("DOT_PRODUCT", self.gain, (1 / 3,) * 3, output="Value")
+        offset = source.outputs.get("Roughness Offset")  # not of BTFs
         # Squared GGX alpha of the offset.
-        self._spread = self.math("POWER", source.outputs["Roughness Offset"], 4.0)
+        self._spread = self.math("POWER", offset, 4.0) if offset else 0.0
 
     def color(self, color):
         """A color, or its socket, times the gain; at most 1."""
