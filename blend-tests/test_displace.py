@@ -7,7 +7,7 @@ from support import inputs, scenes
 from support.blender import BlenderTest
 
 
-class Displace(BlenderTest):
+class _Weave(BlenderTest):
     def setUp(self):
         super().setUp()
         self.material = scenes.measured_material(inputs.weave_model(), "Weave")
@@ -20,6 +20,8 @@ class Displace(BlenderTest):
         node = scenes.velour_node(self.material)
         inputs.module("operators.approximation_group").put(node, self.material, found, {"texels": (4, 4)})
 
+
+class Displace(_Weave):
     def _look(self, material):
         """Whether a material has the normal map, and whether it is displaced."""
         tree = scenes.velour_node(material).group.node_tree
@@ -56,3 +58,33 @@ class Displace(BlenderTest):
         with self.assertRaisesRegex(RuntimeError, "is inside a node group"):
             bpy.ops.velour.displace()
         self.assertFalse(inner.node_tree.velour.displaces)
+
+
+class Size(_Weave):
+    """The relief is as high as its tile is wide."""
+
+    def _values(self, unit, density):
+        """Height of one repeat and the middle, in a scene with this Unit Scale."""
+        bpy.context.scene.unit_settings.scale_length = unit
+        node = scenes.velour_node(self.material)
+        node.velour.placement.uv_density = density
+        inputs.module("operators.approximation_look").follow(self.material)
+        nodes = node.group.node_tree.nodes
+        height = next(each for each in nodes if each.label == "Height of Relief").inputs[1]
+        relief = next(each for each in nodes if each.bl_idname == "ShaderNodeDisplacement")
+        return height.default_value, relief.inputs["Midlevel"].default_value
+
+    def test_its_height_is_in_proportion_to_a_tile_under_any_unit_scale(self):
+        """On a mesh that is 2 units wide, with u from 0 to 1: one repeat is 2 units wide."""
+        for unit in (1.0, 0.001, 1000.0):
+            height, _middle = self._values(unit, (0.5 / unit,) * 2)
+            self.assert_close(height, 2, 1e-4)
+
+    def test_without_a_density_a_unit_of_coordinates_is_one_of_blender(self):
+        for unit in (1.0, 0.001):
+            height, _middle = self._values(unit, (0, 0))
+            self.assert_close(height, 1, 1e-4)
+
+    def test_the_mean_of_the_surface_stays(self):
+        _height, middle = self._values(1.0, (0, 0))
+        self.assert_close(middle, 0.25, 1e-6)

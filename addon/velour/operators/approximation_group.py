@@ -172,7 +172,8 @@ def _principled(tree, source, sink, fitted, images, is_seen_through):
             bent = _relief(tree, add_texture(tree, images.normals, tiles, NORMALS), source)
             relief = relief if tree.velour.displaces else bent
         if images.height is not None:
-            _displace(tree, source, sink, add_texture(tree, images.height, tiles, HEIGHT))
+            height = add_texture(tree, images.height, tiles, HEIGHT)
+            _displace(tree, source, sink, height, fitted.get("middle", 0.5))
     for socket in filter(None, map(_normal, (shader, base))):
         tree.links.new(relief, socket)
     tree.links.new(relief, first_input(shader, "Coat Normal", "Clearcoat Normal"))
@@ -234,10 +235,11 @@ def _relief(tree, texture, source):
     return relief.outputs["Normal"]
 
 
-def _displace(tree, source, sink, texture):
+def _displace(tree, source, sink, texture, middle):
     """Adds the relief to the group's output Displacement, for surfaces whose material uses it.
 
     Its height is in proportion to the width of a tile; approximation_look.follow() sets it for one repeat.
+    middle: value of the texture where the surface stays.
     """
     kinds = ("Displacement", "SeparateXYZ", "Math", "Math")
     relief, repeats, size, height = (tree.nodes.new(f"ShaderNode{kind}") for kind in kinds)
@@ -245,6 +247,7 @@ def _displace(tree, source, sink, texture):
         node.location = -720 + 180 * number, -1300
     size.operation, height.operation = "DIVIDE", "MULTIPLY"
     height.label = approximation_look.HEIGHT
+    relief.inputs["Midlevel"].default_value = middle
     for output, socket in (
         (source.outputs["Scale"], height.inputs[0]),
         (height.outputs[0], size.inputs[0]),

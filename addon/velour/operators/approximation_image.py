@@ -71,6 +71,11 @@ def height_range(height):
     return float(np.ptp(height))
 
 
+def middle_of(height):
+    """Value in the image of the undisplaced surface, at the mean height."""
+    return float(_normalized(height).mean())
+
+
 def _normalized(height):
     return (height - height.min()) / max(height_range(height), 1e-12)
 

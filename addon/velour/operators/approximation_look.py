@@ -3,6 +3,7 @@
 import json
 from typing import NamedTuple
 
+import bpy
 import numpy as np
 
 from ..core.approximation_look import Look, dyed, with_look
@@ -17,9 +18,10 @@ from ..export.nodes import (
     source,
     velour_node,
 )
+from ..export.units import metres_per_unit
 from ..export.uv_maps import linked_uv_map, placed_by
 from ..properties import changed
-from .approximation_image import height_range
+from .approximation_image import height_range, middle_of
 
 # The library's names: names of Blender's sockets across versions.
 _SOCKETS = {
@@ -31,7 +33,7 @@ _SOCKETS = {
     "coat": ("Coat Weight", "Clearcoat"),
     "coat_roughness": ("Coat Roughness", "Clearcoat Roughness"),
 }
-HEIGHT = "Height of Relief"  # label of the node with the height for one repeat, in meters
+HEIGHT = "Height of Relief"  # label of the node with the height for one repeat, in Blender units
 _NEGLIGIBLE = 1e-6
 
 
@@ -56,6 +58,7 @@ class Shown(NamedTuple):
 
 def kept(approximation):
     """An approximation as JSON, to be stored in the group; colors are linear Rec. 709."""
+    height = approximation.height_map
     return json.dumps(
         {
             "principled": approximation.principled,
@@ -64,7 +67,8 @@ def kept(approximation):
             "anisotropic": approximation.anisotropic,
             "turned": approximation.turned,
             "tile_metres": approximation.tile_metres,
-            "height": 0.0 if approximation.height_map is None else height_range(approximation.height_map),
+            "height": 0.0 if height is None else height_range(height),
+            "middle": 0.5 if height is None else middle_of(height),
             "closures": approximation.closures and _rounded(approximation.closures),
         }
     )
@@ -132,7 +136,7 @@ def _place(node):
             if part.bl_idname in ("ShaderNodeTangent", "ShaderNodeNormalMap"):
                 _set(part, "uv_map", placed_by(node))
             elif part.label == HEIGHT:
-                height = stored(group.node_tree)["height"] / placement.density()[0]
+                height = stored(group.node_tree)["height"] / _density_per_unit(placement)
                 _set(part.inputs[1], "default_value", height)
 
 
@@ -154,6 +158,12 @@ def _repeats(placement, metres):
     if placement.mode == "REPEATS":
         return tuple(placement.repeats)
     return repeats_of(placement.tile_metres(metres) or (1.0, 1.0), placement.density())
+
+
+def _density_per_unit(placement):
+    """Density of u per Blender unit; 1 unless one was entered."""
+    metres = metres_per_unit(bpy.context.scene)
+    return metres * placement.density((1 / metres,) * 2)[0]
 
 
 def _set(owner, name, value):
