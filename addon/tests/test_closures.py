@@ -91,7 +91,7 @@ def test_the_page_says_how_dark_lobes_for_newer_blenders_are_in_3_4():
         return 1 - (1 + 2 * masked) / (1 + masked) ** 2
 
     at_75, at_85 = (f"{100 * loss(0.5, view):.0f} %" for view in (75, 85))
-    assert f"highlights of alpha 0.5 darker: {at_75} at 75 degrees, {at_85} at 85" in page
+    assert f"highlights of alpha 0.5 {at_75} darker at 75 degrees, {at_85} at 85" in page
 
 
 def test_options(model):
