@@ -385,6 +385,7 @@ FAULTS = {
     "missing": "has no shot.passes.npz",
     "another picture": "belongs to another shot.exr",
     "cut": "cannot be read",
+    "damaged": "cannot be read",
     "no archive": "cannot be read",
     "newer": "has version 3, not 2",
     "size": "cannot be read",
@@ -404,6 +405,10 @@ def test_reference_without_usable_passes_is_compared_without_causes(stored, faul
         path.write_bytes(kept)
     elif fault == "cut":
         path.write_bytes(path.read_bytes()[:-100])
+    elif fault == "damaged":
+        contents = bytearray(path.read_bytes())
+        contents[200:-2000:7] = bytes(len(contents[200:-2000:7]))
+        path.write_bytes(contents)
     elif fault == "no archive":
         path.write_text("no passes")
     else:

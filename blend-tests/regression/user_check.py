@@ -9,7 +9,7 @@ import signal
 import sys
 import tempfile
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -42,7 +42,11 @@ def main() -> int:
     except (folder.FolderError, blender.BlenderError, OSError) as error:
         print(f"velour-check: {error}", file=sys.stderr)
         return 1
-    return _run(arguments, cases, installation, output)
+    try:
+        return _run(arguments, cases, installation, output)
+    except OSError as error:  # of the page, of what is replaced or of the JUnit report
+        print(f"velour-check: {error}", file=sys.stderr)
+        return 1
 
 
 def _arguments() -> argparse.Namespace:
@@ -126,8 +130,10 @@ def _run(
     staged = update.Staged(output / "new") if arguments.update else None
 
     def work(case: Case) -> list[Outcome]:
-        start = time.monotonic()
-        outcomes = _outcomes(case, installation, settings, pictures, staged)
+        start, outcomes = time.monotonic(), []
+        for outcome in _outcomes(case, installation, settings, pictures, staged):
+            shown.draw(outcome)
+            outcomes.append(outcome)
         for outcome in outcomes:
             outcome.seconds = (time.monotonic() - start) / len(outcomes)
         return outcomes
@@ -140,13 +146,15 @@ def _run(
         shown.add(outcome)
         ended.append(outcome)
     print(f"page: {shown.finish()}")
+    failed = sum(not outcome.passed for outcome in ended)
+    status = int(failed > 0)
+    if staged:
+        status = max(status, staged.approve(arguments.yes))
+    else:
+        print(f"{len(ended) - failed} as expected, {failed} not")
     if arguments.junit:
         _write_junit(arguments.junit.resolve(), ended)
-    failed = sum(not outcome.passed for outcome in ended)
-    if staged:
-        return max(int(failed > 0), staged.approve(arguments.yes))
-    print(f"{len(ended) - failed} as expected, {failed} not")
-    return 1 if failed else 0
+    return status
 
 
 def _in_order(work: Callable[[Case], list[Outcome]], cases: list[Case], jobs: int) -> Iterator[Outcome]:
@@ -165,7 +173,7 @@ def _in_order(work: Callable[[Case], list[Outcome]], cases: list[Case], jobs: in
 
 def _outcomes(
     case: Case, installation: blender.Installation, settings: Settings, pictures: int, staged: Staged | None
-) -> list[Outcome]:
+) -> Iterable[Outcome]:
     from regression import check, update
 
     if staged is not None:

@@ -1,0 +1,122 @@
+"""scripts/velour-check with simulated renders: what it holds, leaves behind and reports."""
+
+from __future__ import annotations
+
+import itertools
+import json
+import sys
+import weakref
+
+import numpy as np
+import pytest
+from regression import check, page, user_check
+from test_causes import HEIGHT, WIDTH, Scene
+from velour.native import images
+
+
+class Blender:
+    """Renders nothing; check.read_frame() is simulated."""
+
+    def run(self, *_arguments):
+        return {"layer": "Layer"}
+
+
+@pytest.fixture
+def shots(tmp_path):
+    made = tmp_path / "shots"
+    made.mkdir()
+    return made
+
+
+@pytest.fixture
+def call(shots, monkeypatch, capsys):
+    """Runs velour-check on `shots`: the status and what is said."""
+    monkeypatch.setattr(user_check, "_installation", lambda _arguments: Blender())
+    seeds = itertools.count()
+    monkeypatch.setattr(check, "read_frame", lambda *_: check.Renders(*Scene().renders(next(seeds))))
+
+    def run(*arguments, paths=(shots,)):
+        monkeypatch.setattr(sys, "argv", ["velour-check", *map(str, (*paths, *arguments))])
+        try:
+            status = user_check.main()
+        except SystemExit as ended:
+            status = ended.code
+        said = capsys.readouterr()
+        return status, said.out + said.err
+
+    return run
+
+
+def outcomes(folder):
+    found = json.loads((folder / "velour-check/report.json").read_text())["outcomes"]
+    return {outcome["name"]: outcome for outcome in found}
+
+
+def add(folder, *names):
+    for name in names:
+        folder.mkdir(exist_ok=True)
+        (folder / f"{name}.blend").touch()
+
+
+def test_one_picture_at_a_time_is_held(shots, call, monkeypatch):
+    add(shots, "a", "b")
+    frames = [part for frame in range(4) for part in ("--frame", frame)]
+    held, read = [], check.read_frame
+
+    def counted(*arguments):
+        assert not [each for each in held if each() is not None]
+        found = read(*arguments)
+        held.append(weakref.ref(found.picture.mean))
+        return found
+
+    monkeypatch.setattr(check, "read_frame", counted)
+    assert call("--update", "--jobs", 1, *frames)[0] == 0
+    assert call("--jobs", 1)[0] == 0
+    assert len(held) == 16
+    assert len(list((shots / "velour-check/pictures").iterdir())) == 8 * 3
+
+
+def test_renders_are_removed_once_they_are_read(shots, call):
+    add(shots, "a", "b")
+    assert call("--update")[0] == 0
+    images.write(shots / "b.exr", np.zeros((HEIGHT, WIDTH, 4), np.float32))
+    assert call()[0] == 1
+    assert call("--update")[0] == 1
+    assert not list(shots.rglob("renders"))
+
+
+def test_trouble_with_one_frame_stops_no_other(shots, call, monkeypatch):
+    """As a full disk, or a picture larger than the memory."""
+    add(shots, "a", "b")
+    two = ("--update", "--frame", 1, "--frame", 2)
+    assert call(*two)[0] == 0
+    write = check.write
+
+    def fails(path, renders):
+        if path.name == "a_0001.exr":
+            raise MemoryError
+        return write(path, renders)
+
+    before = {path: path.read_bytes() for path in shots.glob("*.exr")}
+    monkeypatch.setattr(check, "write", fails)
+    status, said = call(*two, "--yes", "--junit", "/dev/full")
+    assert status == 1
+    assert "FAILED: a, frame 1: a.blend: MemoryError" in said
+    assert "3 references replaced" in said
+    kept = {path.name for path, was in before.items() if path.read_bytes() == was}
+    assert kept == {"a_0001.exr", "a_0001.error.exr"}
+    assert "No space left" in said
+    assert outcomes(shots).keys() == {f"{name}, frame {frame}" for name in "ab" for frame in (1, 2)}
+
+
+def test_page_without_room_for_pictures(shots, call, monkeypatch):
+    add(shots, "a")
+    assert call("--update")[0] == 0
+
+    def full(*_arguments):
+        raise OSError("No space left on device")
+
+    monkeypatch.setattr(page.images, "write", full)
+    status, said = call()
+    assert status == 0, said
+    assert "Its pictures are not shown: No space left" in (shots / "velour-check/index.html").read_text()
