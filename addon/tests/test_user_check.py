@@ -9,7 +9,7 @@ import weakref
 
 import numpy as np
 import pytest
-from regression import check, page, user_check
+from regression import blender, check, page, room, user_check
 from test_causes import HEIGHT, WIDTH, Scene
 from velour.native import images
 
@@ -120,3 +120,50 @@ def test_page_without_room_for_pictures(shots, call, monkeypatch):
     status, said = call()
     assert status == 0, said
     assert "Its pictures are not shown: No space left" in (shots / "velour-check/index.html").read_text()
+
+
+def test_strange_folder_is_left_alone(shots, call, tmp_path):
+    add(shots, "a")
+    mine = tmp_path / "pictures"
+    mine.mkdir()
+    for name in ("holiday.png", "report.json"):  # other programs write reports, too
+        (mine / name).touch()
+    status, said = call("--update", "--output", mine)
+    assert status == 2
+    assert "name another --output" in said
+    assert len(list(mine.iterdir())) == 2
+
+
+def test_two_runs_do_not_share_a_page(shots, call):
+    add(shots, "a")
+    assert call("--update")[0] == 0
+    with room.take(shots / "velour-check"):
+        status, said = call()
+    assert (status, "Another run writes to" in said) == (2, True)
+
+
+@pytest.mark.parametrize("trouble", ["no Blender", "no .blend", "no report"])
+def test_no_earlier_report_is_taken_for_one_of_a_refused_run(shots, call, tmp_path, monkeypatch, trouble):
+    add(shots, "a")
+    report = tmp_path / "reports/report.xml"
+    assert call("--update", "--junit", report)[0] == 0
+    assert report.is_file()
+    if trouble == "no Blender":
+
+        def missing(_arguments):
+            raise blender.BlenderError("There is no Blender.")
+
+        monkeypatch.setattr(user_check, "_installation", missing)
+    elif trouble == "no .blend":
+        (shots / "a.blend").unlink()
+    elif trouble == "no report":
+        report = shots / "a.blend/report.xml"
+    status, said = call("--junit", report)
+    assert status == 2, said
+    assert not report.is_file()
+    assert not (shots / "velour-check/index.html").is_file()
+
+
+def test_a_name_that_is_wrong_makes_no_folder(shots, call):
+    assert call(paths=(shots / "none",))[0] == 2
+    assert not list(shots.iterdir())

@@ -12,7 +12,7 @@ from typing import NamedTuple
 TESTS = Path(__file__).resolve().parents[1]
 sys.path.insert(0, str(TESTS))
 
-from regression import blender  # noqa: E402
+from regression import blender, room  # noqa: E402
 from regression.case import Outcome  # noqa: E402
 
 STAGE = TESTS.parent / "build/release/blender"
@@ -31,6 +31,15 @@ class Effort(NamedTuple):
 
 def main() -> int:
     arguments = _arguments()
+    try:
+        with room.take(arguments.output.resolve()):
+            return _run(arguments)
+    except (room.RoomError, OSError) as error:
+        print(f"parity: {error}", file=sys.stderr)
+        return 1
+
+
+def _run(arguments: argparse.Namespace) -> int:
     stage = Path(os.environ.get("VELOUR_STAGE", STAGE)).resolve()
     if arguments.blender is None or not (stage / "addons/velour").is_dir():
         missing = "There is no Blender" if arguments.blender is None else f"{stage} holds no add-on"
@@ -94,7 +103,6 @@ def _judged(name, blend, installation, effort, work, pictures) -> list[Outcome]:
     """One of each number of bounces, or what went wrong: with one engine, so that it is known whose it is."""
     for engine in ENGINES:
         folder = work / engine.lower()
-        shutil.rmtree(folder, ignore_errors=True)
         folder.mkdir(parents=True)
         task = {"blend": str(blend), "engine": engine, "bounces": BOUNCES, "folder": str(folder)}
         task |= effort._asdict() | {"seeds": list(range(effort.seeds))}

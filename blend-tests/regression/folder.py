@@ -23,6 +23,11 @@ def cases(paths: Iterable[Path], work: Path, frames: list[int] | None = None) ->
     ]
 
 
+def parent(path: Path) -> Path:
+    """The folder that a path of the command line names, or that its .blend lies in."""
+    return path if path.is_dir() else _blends(path)[0].parent
+
+
 def own_reference(blend: Path) -> Path:
     """Path of the reference of the frame that the file was saved at."""
     return blend.with_suffix(".exr")

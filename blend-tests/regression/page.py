@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import html
 import itertools
-import shutil
 from pathlib import Path
 
 import numpy as np
@@ -45,8 +44,7 @@ class Page:
         self._records: list[dict] = []
         self._failed = 0
         self._numbers = itertools.count(1)  # of pictures
-        shutil.rmtree(folder / "pictures", ignore_errors=True)
-        (folder / "pictures").mkdir(parents=True)
+        (folder / "pictures").mkdir(parents=True, exist_ok=True)
 
     def draw(self, outcome: Outcome) -> None:
         """Writes the pictures of an outcome, which lets go of them. Threads may call it, before add()."""

@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING
 TESTS = Path(__file__).resolve().parents[1]
 sys.path.insert(0, str(TESTS))
 
-from regression import blender, folder  # noqa: E402
+from regression import blender, folder, room  # noqa: E402
 from regression.case import Case, Outcome, Settings  # noqa: E402
 from support import junit, process, report  # noqa: E402
 
@@ -28,25 +28,27 @@ STAGE = TESTS.parent / "build/release/blender"
 JOBS = min(2, os.cpu_count() or 1)  # starting and reading keep one core busy
 SECONDS = 900  # that all renders of a .blend may take
 INTERRUPTED = 130
-PAGE_MARK = ".velour-check"  # in every folder that velour-check made
-MADE = ("index.html", "report.json", "pictures", "work", "new")  # what it leaves there
+NOTHING_CHECKED = 2  # as wrong usage
 
 
 def main() -> int:
     arguments = _arguments()
-    output = (arguments.output or _default_output(arguments.path[0])).resolve()
     try:
-        installation = _installation(arguments)
+        output = (arguments.output or folder.parent(arguments.path[0]) / "velour-check").resolve()
+        held = room.take(output)  # the earlier page goes first, so that none is taken for one of this run
+        if arguments.junit:
+            _forget_report(arguments.junit)
         cases = folder.cases(arguments.path, output / "work", arguments.frame)
-        _make_room(output)
-    except (folder.FolderError, blender.BlenderError, OSError) as error:
+        installation = _installation(arguments)
+    except (folder.FolderError, room.RoomError, blender.BlenderError, OSError) as error:
         print(f"velour-check: {error}", file=sys.stderr)
-        return 1
-    try:
-        return _run(arguments, cases, installation, output)
-    except OSError as error:  # of the page, of what is replaced or of the JUnit report
-        print(f"velour-check: {error}", file=sys.stderr)
-        return 1
+        return NOTHING_CHECKED
+    with held:
+        try:
+            return _run(arguments, cases, installation, output)
+        except OSError as error:  # of the page, of what is replaced or of the JUnit report
+            print(f"velour-check: {error}", file=sys.stderr)
+            return 1
 
 
 def _arguments() -> argparse.Namespace:
@@ -86,18 +88,12 @@ def _arguments() -> argparse.Namespace:
     return arguments
 
 
-def _default_output(first: Path) -> Path:
-    return (first if first.is_dir() else first.parent) / "velour-check"
-
-
-def _make_room(output: Path) -> None:
-    """An earlier page goes, and nothing else."""
-    if output.is_dir() and any(output.iterdir()) and not (output / PAGE_MARK).is_file():
-        raise folder.FolderError(f"{output} holds something else than a page; name another --output.")
-    for path in (output / name for name in MADE):
-        shutil.rmtree(path) if path.is_dir() else path.unlink(missing_ok=True)
-    output.mkdir(parents=True, exist_ok=True)
-    (output / PAGE_MARK).touch()
+def _forget_report(path: Path) -> None:
+    """Removes that of an earlier run. Raises OSError where none could be written."""
+    path.parent.mkdir(parents=True, exist_ok=True)
+    path.open("ab").close()
+    if path.is_file():
+        path.unlink()
 
 
 def _installation(arguments: argparse.Namespace) -> blender.Installation:
