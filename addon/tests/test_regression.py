@@ -95,11 +95,15 @@ def test_checks_and_references_share_no_seed():
 def test_pictures_belong_to_files(tmp_path):
     for name in ("shot.blend", "shot_0012.blend", "shot.exr", "shot.error.exr", "shot_0007.exr"):
         (tmp_path / name).touch()
-    for name in ("shot_0012.exr", "shot_12.exr", "sky.exr", "old.blend1"):
+    for name in ("shot_0012.exr", "shot_12.exr", "shot_-005.exr", "sky.exr", "old.blend1"):
         (tmp_path / name).touch()
     cases = folder.cases([tmp_path, tmp_path / "shot.blend"], tmp_path)
     assert {case.name: case.references for case in cases} == {
-        "shot": {None: tmp_path / "shot.exr", 7: tmp_path / "shot_0007.exr"},
+        "shot": {
+            None: tmp_path / "shot.exr",
+            -5: tmp_path / "shot_-005.exr",
+            7: tmp_path / "shot_0007.exr",
+        },
         "shot_0012": {None: tmp_path / "shot_0012.exr"},
     }
 

@@ -167,3 +167,42 @@ def test_no_earlier_report_is_taken_for_one_of_a_refused_run(shots, call, tmp_pa
 def test_a_name_that_is_wrong_makes_no_folder(shots, call):
     assert call(paths=(shots / "none",))[0] == 2
     assert not list(shots.iterdir())
+
+
+def test_a_file_that_is_gone_fails(shots, call):
+    add(shots, "a", "b", "c_0001")
+    assert call("--update")[0] == 0
+    assert call("--update", "--frame", 3, "--frame", -5, paths=(shots / "b.blend",))[0] == 0
+    for name in "ab":
+        (shots / f"{name}.blend").unlink()
+    status, said = call()
+    assert status == 1
+    assert {name: each["passed"] for name, each in outcomes(shots).items()} == {
+        "a": False,
+        "b": False,
+        "c_0001": True,
+    }
+    assert "FAILED: a: a.blend is missing, but its reference is there" in said
+    assert call("--update", "--yes")[0] == 1
+
+
+def test_files_of_one_name_are_told_apart_and_others_mentioned(shots, call, tmp_path):
+    add(shots, "shot")
+    add(shots / "more", "shot")
+    add(shots / "more/deep", "shot")
+    both = (shots, shots / "more")
+    assert call("--update", paths=both)[0] == 0
+    report = tmp_path / "report.xml"
+    status, said = call("--junit", report, paths=both)
+    assert status == 0
+    assert outcomes(shots).keys() == {"shot", "more/shot"}
+    assert 'name="more/shot"' in report.read_text()
+    assert "not checked: 1 .blend files in folders below" in said
+    assert "not checked: 2 .blend" in call()[1]
+
+
+def test_references_of_negative_frames_are_checked(shots, call):
+    add(shots, "shot")
+    assert call("--update", "--frame", -5)[0] == 0
+    assert call()[0] == 0
+    assert outcomes(shots).keys() == {"shot, frame -5"}

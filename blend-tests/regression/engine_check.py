@@ -14,6 +14,7 @@ sys.path.insert(0, str(TESTS))
 
 from regression import blender, room  # noqa: E402
 from regression.case import Outcome  # noqa: E402
+from regression.folder import named  # noqa: E402
 
 STAGE = TESTS.parent / "build/release/blender"
 BOUNCES = (0, 4)
@@ -91,12 +92,9 @@ def _arguments() -> argparse.Namespace:
 
 def _blends(paths: list[Path]) -> dict[str, Path]:
     """By what they are called on the page."""
-    found = {}
-    for path in paths:
-        inside = sorted(path.resolve().rglob("*.blend")) if path.is_dir() else [path.resolve()]
-        base = path.resolve() if path.is_dir() else path.resolve().parent
-        found |= {str(blend.relative_to(base).with_suffix("")): blend for blend in inside}
-    return found
+    resolved = [path.resolve() for path in paths]
+    found = [sorted(path.rglob("*.blend")) if path.is_dir() else [path] for path in resolved]
+    return named(dict.fromkeys(blend for blends in found for blend in blends))
 
 
 def _judged(name, blend, installation, effort, work, pictures) -> list[Outcome]:

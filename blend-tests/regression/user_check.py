@@ -141,6 +141,8 @@ def _run(
         print(outcome.line, flush=True)
         shown.add(outcome)
         ended.append(outcome)
+    if count := folder.left_out(arguments.path, (case.blend for case in cases)):
+        print(f"not checked: {count} .blend files in folders below; name those folders as well")
     print(f"page: {shown.finish()}")
     failed = sum(not outcome.passed for outcome in ended)
     status = int(failed > 0)
@@ -172,6 +174,9 @@ def _outcomes(
 ) -> Iterable[Outcome]:
     from regression import check, update
 
+    if not case.blend.is_file():
+        sentence = f"{case.blend.name} is missing, but its reference is there; bring it back, or remove both."
+        return [Outcome(case.name, False, sentence)]
     if staged is not None:
         if not case.references:
             case.references[None] = folder.own_reference(case.blend)
