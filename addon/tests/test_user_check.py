@@ -206,3 +206,12 @@ def test_references_of_negative_frames_are_checked(shots, call):
     assert call("--update", "--frame", -5)[0] == 0
     assert call()[0] == 0
     assert outcomes(shots).keys() == {"shot, frame -5"}
+
+
+def test_a_reference_has_as_many_renders_as_a_check(shots, call):
+    """A check takes its errors for as certain as its own."""
+    add(shots, "a")
+    status, said = call("--update", "--seeds", 3)
+    assert (status, "--seeds: a reference needs at least 4" in said) == (2, True)
+    assert call("--update", "--seeds", 4)[0] == 0
+    assert call("--seeds", 2)[0] == 0

@@ -18,7 +18,7 @@ TESTS = Path(__file__).resolve().parents[1]
 sys.path.insert(0, str(TESTS))
 
 from regression import blender, folder, room  # noqa: E402
-from regression.case import Case, Outcome, Settings  # noqa: E402
+from regression.case import CHECK_SEEDS, REFERENCE_SEEDS, Case, Outcome, Settings  # noqa: E402
 from support import junit, process, report  # noqa: E402
 
 if TYPE_CHECKING:  # it imports the package, which _installation() finds
@@ -64,7 +64,12 @@ def _arguments() -> argparse.Namespace:
     add("--output", type=Path, metavar="FOLDER", help="of the page (velour-check in the first FOLDER)")
     add("--junit", type=Path, metavar="FILE", help="write a JUnit XML report")
     add("--jobs", type=int, default=JOBS, metavar="N", help=f"Blenders that run at a time ({JOBS})")
-    add("--seeds", type=int, metavar="N", help="renders of each picture (4; of a reference 16)")
+    add(
+        "--seeds",
+        type=int,
+        metavar="N",
+        help=f"renders of each picture ({CHECK_SEEDS}; of a reference {REFERENCE_SEEDS})",
+    )
     add("--samples", type=int, metavar="N", help="directions a pixel (those of the .blend)")
     add(
         "--blender",
@@ -78,6 +83,8 @@ def _arguments() -> argparse.Namespace:
     arguments = parser.parse_intermixed_args()
     if arguments.seeds is not None and arguments.seeds < 2:
         parser.error("--seeds: at least 2 are needed to know how noisy they are")
+    if arguments.update and arguments.seeds is not None and arguments.seeds < CHECK_SEEDS:
+        parser.error(f"--seeds: a reference needs at least {CHECK_SEEDS}, as many as a check renders")
     for name in ("jobs", "samples", "timeout"):
         if getattr(arguments, name) is not None and getattr(arguments, name) < 1:
             parser.error(f"--{name}: at least 1")
