@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+import numpy as np
+import pytest
 from regression import engine_check
+from velour.native import images
 
 
 def test_files_of_one_name_are_all_rendered(tmp_path):
@@ -16,3 +19,18 @@ def test_files_of_one_name_are_all_rendered(tmp_path):
     )
     assert engine_check._blends([tmp_path / "b"]).keys() == {"shot", "more/shot"}
     assert engine_check._blends([tmp_path / "b/more"]).keys() == {"shot"}
+
+
+@pytest.mark.parametrize(("alpha", "alike"), [(1, True), (0.99, True), (0.9, False), (0, False)])
+def test_alpha_must_agree_like_color(tmp_path, alpha, alike):
+    """As for a black object on a transparent film."""
+    effort = engine_check.Effort(2, 64, 32, False)
+    for name, value in (("cycles", 1), ("velour", alpha)):
+        (tmp_path / name).mkdir()
+        for seed in range(effort.seeds):
+            picture = np.ones((32, 32, 4), np.float32)
+            picture[..., :3] += 0.001 * np.random.default_rng(seed).standard_normal((32, 32, 3))
+            picture[:16, :16] = 0, 0, 0, value
+            images.write(tmp_path / name / f"0-{seed}.exr", picture)
+    outcome = engine_check._compared("shot", tmp_path, 0, effort, 2)
+    assert outcome.passed == alike, outcome.sentence

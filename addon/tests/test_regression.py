@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import os
 import sys
 import time
@@ -10,7 +11,7 @@ import numpy as np
 import pytest
 from regression import check, folder, reference, scene
 from regression.case import Outcome, Settings
-from regression.comparison import compare
+from regression.comparison import compare, smallest_factor
 from regression.page import Page
 from regression.views import MAGNIFICATION, crop, views
 from support import judge, process
@@ -84,6 +85,21 @@ def test_sees_is_what_is_refused(renders):
     for factor, agrees in ((0.3, True), (1.5, False)):
         mean = renders.mean * ([1 + factor * sees / 100] * 3 + [1])
         assert compare(renders._replace(mean=mean), renders, 1).agrees == agrees
+
+
+def test_channels_without_light_tell_no_factor(tmp_path, renders):
+    """As all of a picture under red lamps but its red."""
+    red = renders._replace(mean=renders.mean * [1, 0, 0, 1], variance=renders.variance * [1, 0, 0, 1])
+    alone = renders._replace(mean=renders.mean[..., [0, 0, 0]], variance=renders.variance[..., [0, 0, 0]])
+    sees = smallest_factor(red, red, 4.0)
+    assert sees == pytest.approx(smallest_factor(alone, alone, 4.0))
+    black = renders._replace(mean=renders.mean * [0, 0, 0, 1], variance=renders.variance * 0)
+    found = compare(black, black, 1)
+    assert (found.agrees, found.sees) == (True, np.inf)
+    page = Page(tmp_path, "Test")
+    page.add(Outcome("black", True, check.describe(found), comparison=found))
+    page.finish()
+    assert json.loads((tmp_path / "report.json").read_text())["outcomes"][0]["sees"] is None
 
 
 def test_checks_and_references_share_no_seed():

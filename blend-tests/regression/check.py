@@ -118,7 +118,9 @@ def judged(case: Case, frame: int | None, renders: Renders, pictures: int) -> Ou
     if both and not comparison.agrees:
         outcome.causes = causes.find(renders.picture, known, both)
         outcome.sentence = f"{'; '.join(map(str, outcome.causes))}. It {outcome.sentence}"
-    if comparison.sees > LEAST_SEEN:
+    if np.isinf(comparison.sees):
+        outcome.notes.append("It is black: no exposure can be told.")
+    elif comparison.sees > LEAST_SEEN:
         outcome.notes.append(
             f"Too noisy to tell {LEAST_SEEN:g} % of exposure ({comparison.sees:.1f} %):"
             " give the scene more samples, or the check more --seeds."

@@ -118,8 +118,8 @@ def _words(bounces: int) -> str:
 def _compared(name, work, bounces, effort, pictures) -> Outcome:
     from velour.native import VelourError, images
 
-    from regression.comparison import compare
-    from support.judge import BLOCK, estimate
+    from regression.comparison import ALPHA, compare
+    from support.judge import BLOCK, estimate, scores
 
     def known(engine):
         folder = work / engine.lower()
@@ -128,6 +128,8 @@ def _compared(name, work, bounces, effort, pictures) -> Outcome:
     try:
         theirs, ours = map(known, ENGINES)
         found = compare(ours, theirs, pictures)
+        alpha = scores(ours.channels(ALPHA), theirs.channels(ALPHA))
+        found = found._replace(percent=max(found.percent, 100 * abs(alpha.first - alpha.second).max()))
     except (VelourError, OSError, ValueError) as error:
         return Outcome(name, False, str(error), notes=_notes(work))
     agrees = found.agrees or found.percent <= MOST_PERCENT

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import html
 import itertools
+import math
 from pathlib import Path
 
 import numpy as np
@@ -132,6 +133,8 @@ def _row(outcome: Outcome, number: int) -> str:
 
 def _record(outcome: Outcome) -> dict:
     numbers = outcome.comparison._asdict() if outcome.comparison else {}
+    if numbers and math.isinf(numbers["sees"]):
+        numbers["sees"] = None
     causes = [cause._asdict() for cause in outcome.causes]
     record = {"name": outcome.name, "passed": outcome.passed, "sentence": outcome.sentence}
     return {**record, "seconds": round(outcome.seconds, 2), "causes": causes, **numbers}
