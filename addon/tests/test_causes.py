@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import json
+import struct
+import zipfile
 
 import numpy as np
 import pytest
@@ -14,7 +16,7 @@ from support import judge
 from velour.core import files
 
 HEIGHT, WIDTH = 48, 64
-SEEDS, REFERENCE_SEEDS = 4, 16
+SEEDS, REFERENCE_SEEDS, RAYS = 4, 16, 32
 NAMES = ("Floor", "Ball", "Box")
 CHANNELS = {"picture": 4, "shape": 4, "coordinates": 2, "albedo": 3}
 RELATIVE = {"picture": 0.02, "shape": 2e-3, "coordinates": 1e-3, "albedo": 1e-3}  # noise of one render
@@ -48,6 +50,7 @@ class Scene:
         self.picture = np.dstack([colors, np.ones((HEIGHT, WIDTH))])
         self.world = random.uniform(0.1, 1.0, (WORLD, WORLD, 3))
         self.larger_parts = None  # labels of pixels that are no one's alone
+        self.opacity = np.ones((HEIGHT, WIDTH))  # chance that a ray ends at the surface
         self.blurred = None
 
     def where(self, name):
@@ -64,8 +67,11 @@ class Scene:
             return simulated(random, values, noise, count)
 
         passes = {name: seen(name, getattr(self, name)) for name in CHANNELS if name != "picture"}
-        numbers = {kind: getattr(self, kind) for kind in ("objects", "materials")}
-        mostly = numbers if self.larger_parts is None else dict.fromkeys(numbers, self.larger_parts)
+        full = random.random(self.objects.shape) < self.opacity ** (RAYS * count)
+        numbers = {kind: np.where(full, getattr(self, kind), MIXED) for kind in ("objects", "materials")}
+        where = self.opacity > 0.6
+        mostly = {kind: np.where(where, getattr(self, kind), MIXED) for kind in numbers}
+        mostly = mostly if self.larger_parts is None else dict.fromkeys(numbers, self.larger_parts)
         labels = {kind: Labels(numbers[kind], NAMES, mostly[kind]) for kind in numbers}
         passes |= labels | {"world": seen("world", self.world)}
         if self.blurred is not None:
@@ -212,6 +218,36 @@ def test_change_is_found_and_named(change):
         assert WORDS.get(change, "") in str(found[0])
 
 
+def _seen_through(opacity, name="Box"):
+    """A scene whose material lets some rays through; of a range, more from left to right."""
+    scene = Scene()
+    mask = scene.where(name)
+    scene.opacity[mask] = np.interp(np.argwhere(mask)[:, 1], (40, 55), opacity)
+    return scene
+
+
+@pytest.mark.parametrize(
+    "opacity", [(0.95, 0.95), (0.99, 0.99), (0.996, 0.996), (0.9986, 0.9986), (1, 0.99), (1, 0.9)]
+)
+def test_nearly_opaque_material_is_not_named(opacity):
+    """Far fewer pixels show nothing else in 16 renders than in 4."""
+    for seed in range(2, 22):
+        before, scene = _seen_through(opacity), _seen_through(opacity)
+        _lamp(scene)
+        _, found = judged(scene, seed, before)
+        assert [cause.kind for cause in found] == ["light"], found
+
+
+@pytest.mark.parametrize("opacities", [(1, 0.9), (1, 0.3), (0.9995, 0.9), (0.9, 1), (0.3, 1), (0.99, 1)])
+def test_another_opacity_is_named(opacities):
+    before, after = (_seen_through((each, each)) for each in opacities)
+    for seed in range(2, 12):
+        _lamp(after)
+        _, found = judged(after, seed, before)
+        assert found[0].kind == "material", found
+        assert str(found[0]).endswith("'Box', its transparency")
+
+
 def test_two_causes_are_both_named():
     scene = Scene()
     _refit(scene)
@@ -315,7 +351,7 @@ def test_no_cause_is_made_up():
 def false_alarms(runs, pictures=50, errors=1.0):
     """How many of `runs` runs of `pictures` unchanged scenes fail. `errors`: factor on the stated errors."""
     scene, alarms = Scene(), 0
-    for name in (*CHANNELS, "objects", "materials"):  # a part that has all kinds of pixels
+    for name in (*CHANNELS, "objects", "materials", "opacity"):  # a part that has all kinds of pixels
         setattr(scene, name, getattr(scene, name)[:32, 8:40])
     for run in range(runs):
         agree = True
@@ -385,6 +421,7 @@ FAULTS = {
     "missing": "has no shot.passes.npz",
     "another picture": "belongs to another shot.exr",
     "cut": "cannot be read",
+    "damaged": "cannot be read",
     "no archive": "cannot be read",
     "newer": "has version 3, not 2",
     "size": "cannot be read",
@@ -404,6 +441,8 @@ def test_reference_without_usable_passes_is_compared_without_causes(stored, faul
         path.write_bytes(kept)
     elif fault == "cut":
         path.write_bytes(path.read_bytes()[:-100])
+    elif fault == "damaged":
+        _damage(path)
     elif fault == "no archive":
         path.write_text("no passes")
     else:
@@ -417,6 +456,16 @@ def test_reference_without_usable_passes_is_compared_without_causes(stored, faul
     _exposure(scene)
     outcome = judge_stored(stored, scene.renders(2))
     assert (outcome.passed, outcome.causes) == (False, [])
+
+
+def _damage(path):
+    """The compressed numbers of the first array begin with what no compressor writes."""
+    contents = bytearray(path.read_bytes())
+    with zipfile.ZipFile(path) as archive:
+        begin = archive.infolist()[1].header_offset
+    lengths = struct.unpack_from("<HH", contents, begin + 26)  # of the name, and of what follows it
+    contents[begin + 30 + sum(lengths)] = 0xFF
+    path.write_bytes(contents)
 
 
 def _spoil(path, fault):

@@ -65,6 +65,18 @@ def test_a_running_job_is_left_as_it_is(farm, tmp_path, other):
     assert _files(folder) != before
 
 
+def test_the_queue_is_that_of_the_cluster(farm, tmp_path):
+    """Another cluster has no such job, or somebody else's of the same number."""
+    _program(tmp_path / "programs/sbatch", "#!/bin/sh\necho '17;big'\n")
+    status, said = farm("--sbatch=--clusters=big")
+    assert (status, "Slurm's job 17;" in said) == (0, True), said
+    other = "echo slurm_load_jobs error: Invalid job id specified >&2; exit 1"
+    status, said = farm(squeue=f'[ "$1 $2" = "-M big" ] && echo PD || {{ {other}; }}')
+    assert status == 1
+    assert "end it with: scancel -M big 17" in said
+    assert farm(squeue='echo CLUSTER: big; [ "$1 $2" = "-M big" ] || echo PD')[0] == 0
+
+
 def test_a_slurm_that_does_not_answer(farm, tmp_path):
     """Nobody can say whether the job still runs: nothing is changed, and the remedy is named."""
     farm()
@@ -128,3 +140,10 @@ def test_a_frame_that_fails_again_at_once_is_told(farm, tmp_path):
     assert farm()[0] == 0
     assert [path.name for path in notes.iterdir()] == ["0002.txt"]
     assert (notes / "0002.txt").read_text() == "No lamp.\n"
+
+
+def test_a_path_of_blender_is_no_output(farm, tmp_path):
+    """//frames is beside the .blend for Blender, and /frames for everybody else."""
+    status, said = farm("--no-submit", "--output", f"/{tmp_path}/frames")
+    assert (status, "// means beside the .blend" in said) == (1, True), said
+    assert not (tmp_path / "frames").exists()

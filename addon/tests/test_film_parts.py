@@ -64,3 +64,26 @@ def test_parts_that_stay_can_be_assembled_by_two_runs(halves):
         assembled.keep_all(film)
     assert names(halves) == ["frame.0-16.exr", "frame.0-8.exr", "frame.8-16.exr"]
     assert parts(halves, stay=True).gaps == []
+
+
+def test_what_another_run_writes_meanwhile_is_not_counted_twice(tmp_path):
+    """The gaps are rendered as they were found, whoever else renders one of them."""
+    ends = [(0, 8), (8, 16), (16, 24), (24, 32)]
+    made = {"spp": 32, "split": 8}
+
+    def opened(asked=None):
+        return FilmParts(tmp_path, "frame", made, Film.size, asked)
+
+    opened(ends[1]).keep_all(Film(10))
+    assembled, film = opened(), Film(1)
+    first, last = assembled.gaps
+    assert (first, last) == ((0, 8), (16, 32))
+    opened(ends[2]).keep_all(Film(100))
+    assembled.begin(film, first)
+    assembled.keep(film, first, first[1])
+    film = Film(1000)
+    assembled.begin(film, last)
+    assembled.complete(film, last)
+    np.testing.assert_array_equal(film.sums, 1011)
+    assembled.keep_all(film)
+    assert "frame.0-32.exr" in names(tmp_path)

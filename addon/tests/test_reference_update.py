@@ -103,12 +103,19 @@ def test_replacement_that_is_cut_off_is_noticed(staged, path, monkeypatch, whole
             passes_file.read(path, (HEIGHT, WIDTH))
 
 
+class Rendered:
+    """In place of Blender."""
+
+    def run(self, *_arguments):
+        return {"layer": None}
+
+
 def test_new_references_are_written_and_others_wait(tmp_path, path, monkeypatch):
     new = tmp_path / "new_0002.exr"
     case = Case("shot", tmp_path / "shot.blend", {None: path, 2: new}, tmp_path / "work")
-    monkeypatch.setattr(check, "rendered", lambda *_arguments, **_options: {None: brighter(), 2: brighter()})
+    monkeypatch.setattr(check, "read_frame", lambda *_arguments: brighter())
     before, staged = contents(path), update.Staged(tmp_path / "waiting")
-    first, second = update.update(case, None, Settings(passes=True), 1, staged)
+    first, second = update.update(case, Rendered(), Settings(passes=True), 1, staged)
     assert contents(path) == before
     assert (first.passed, first.to_approve, second.to_approve) == (True, True, False)
     assert first.line.startswith("to approve: shot: exposure: all colors times 1.0")

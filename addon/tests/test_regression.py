@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import os
 import sys
 import time
@@ -10,7 +11,7 @@ import numpy as np
 import pytest
 from regression import check, folder, reference, scene
 from regression.case import Outcome, Settings
-from regression.comparison import compare
+from regression.comparison import compare, smallest_factor
 from regression.page import Page
 from regression.views import MAGNIFICATION, crop, views
 from support import judge, process
@@ -86,6 +87,21 @@ def test_sees_is_what_is_refused(renders):
         assert compare(renders._replace(mean=mean), renders, 1).agrees == agrees
 
 
+def test_channels_without_light_tell_no_factor(tmp_path, renders):
+    """As all of a picture under red lamps but its red."""
+    red = renders._replace(mean=renders.mean * [1, 0, 0, 1], variance=renders.variance * [1, 0, 0, 1])
+    alone = renders._replace(mean=renders.mean[..., [0, 0, 0]], variance=renders.variance[..., [0, 0, 0]])
+    sees = smallest_factor(red, red, 4.0)
+    assert sees == pytest.approx(smallest_factor(alone, alone, 4.0))
+    black = renders._replace(mean=renders.mean * [0, 0, 0, 1], variance=renders.variance * 0)
+    found = compare(black, black, 1)
+    assert (found.agrees, found.sees) == (True, np.inf)
+    page = Page(tmp_path, "Test")
+    page.add(Outcome("black", True, check.describe(found), comparison=found))
+    page.finish()
+    assert json.loads((tmp_path / "report.json").read_text())["outcomes"][0]["sees"] is None
+
+
 def test_checks_and_references_share_no_seed():
     settings = Settings()
     assert (len(settings.seed_list(False)), len(settings.seed_list(True))) == (4, 16)
@@ -95,11 +111,15 @@ def test_checks_and_references_share_no_seed():
 def test_pictures_belong_to_files(tmp_path):
     for name in ("shot.blend", "shot_0012.blend", "shot.exr", "shot.error.exr", "shot_0007.exr"):
         (tmp_path / name).touch()
-    for name in ("shot_0012.exr", "shot_12.exr", "sky.exr", "old.blend1"):
+    for name in ("shot_0012.exr", "shot_12.exr", "shot_-005.exr", "sky.exr", "old.blend1"):
         (tmp_path / name).touch()
     cases = folder.cases([tmp_path, tmp_path / "shot.blend"], tmp_path)
     assert {case.name: case.references for case in cases} == {
-        "shot": {None: tmp_path / "shot.exr", 7: tmp_path / "shot_0007.exr"},
+        "shot": {
+            None: tmp_path / "shot.exr",
+            -5: tmp_path / "shot_-005.exr",
+            7: tmp_path / "shot_0007.exr",
+        },
         "shot_0012": {None: tmp_path / "shot_0012.exr"},
     }
 

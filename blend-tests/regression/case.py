@@ -50,6 +50,7 @@ class Outcome:
     comparison: Comparison | None = None
     ours: np.ndarray | None = None  # [height x width x channels], linear, row 0 at the bottom
     reference: np.ndarray | None = None
+    figures: list[str] = field(default_factory=list)  # HTML of both, once they are files of a page
     notes: list[str] = field(default_factory=list)
     causes: list[Cause] = field(default_factory=list)  # of a difference, where the reference has passes
     seconds: float = 0.0

@@ -56,15 +56,32 @@ def _in_passes(sides: Sides) -> list[Cause]:
 def _transparency(sides: Sides) -> tuple[list[Cause], np.ndarray]:
     """Materials that fill most of their pixels in one of the two only; and the pixels of their objects."""
     causes, explained = [], np.zeros(sides.known.objects.numbers.shape, bool)
-    for kind in (sides.known.materials, sides.ours.materials):
-        other = sides.ours.materials if kind is sides.known.materials else sides.known.materials
-        for name in kind.names:
-            mask = kind.where(name)
-            mixed = np.count_nonzero(mask & (other.numbers == MIXED))
-            if mixed >= FEWEST and 2 * mixed > np.count_nonzero(mask):
+    if sides.worst_only:  # names that fill half of a pixel do so in fewer pixels the more renders there are
+        return causes, explained
+    for side, other in ((sides.known, sides.ours), (sides.ours, sides.known)):
+        for name in side.materials.names:
+            mask = side.materials.where(name)
+            mixed = np.count_nonzero(mask & (other.materials.numbers == MIXED))
+            if mixed >= FEWEST and mixed > max(0.5 * np.count_nonzero(mask), _most_mixed(side, other, name)):
                 causes.append(Cause("material", f"'{name}', its transparency", (name,)))
                 explained |= mask
     return causes, explained
+
+
+def _most_mixed(side: Passes, other: Passes, name: str) -> float:
+    """Pixels full of a material on `side` that are mixed on the other by chance, if both are alike.
+
+    A pixel is full if no ray of any render has passed. If a pixel of the material is so with a mean chance
+    p in the renders of `side`, one that is so there is so on the other, which has r times as many, with a
+    mean chance of at least p^r [Jensen], however the material's opacity varies from place to place.
+    """
+    labels = side.materials
+    count = np.count_nonzero(labels.where(name))
+    mostly = max(count, np.count_nonzero(labels.mostly == 1 + labels.names.index(name)))
+    chance, times = (count + 1) / (mostly + 2), max(1.0, other.shape.seeds / side.shape.seeds)
+    stays = chance**times
+    variance = stays * (1 - stays) / count + (times * stays / chance) ** 2 * chance * (1 - chance) / mostly
+    return count * (1 - stays + z_limit(2 * len(labels.names), LEVEL) * np.sqrt(variance))
 
 
 def _geometry(sides: Sides, usable: np.ndarray) -> tuple[list[Cause], np.ndarray]:

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import shutil
+import traceback
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import NamedTuple
 
@@ -26,29 +28,35 @@ class Renders(NamedTuple):
     passes: Passes | None  # None: not asked for
 
 
-def check(case: Case, blender: Installation, settings: Settings, pictures: int) -> list[Outcome]:
+def check(case: Case, blender: Installation, settings: Settings, pictures: int) -> Iterator[Outcome]:
     """`pictures`: of the whole run, which share one chance of a false alarm."""
-    found = rendered(case, blender, settings, update=False)
-    if isinstance(found, Outcome):
-        return [found]
-    outcomes = [judged(case, frame, renders, pictures) for frame, renders in found.items()]
-    if all(outcome.passed for outcome in outcomes):
+    passed = True
+    for outcome in rendered(
+        case, blender, settings, False, lambda frame, renders: judged(case, frame, renders, pictures)
+    ):
+        passed &= outcome.passed
+        yield outcome
+    if passed:
         shutil.rmtree(case.work, ignore_errors=True)  # what is left is to look into
-    return outcomes
 
 
 def update(
     case: Case, blender: Installation, settings: Settings, most_bytes: int | None = None
-) -> list[Outcome]:
+) -> Iterator[Outcome]:
     """Writes the references of a case; refuses one of more than `most_bytes`."""
-    found = rendered(case, blender, settings, update=True)
-    if isinstance(found, Outcome):
-        return [found]
-    return [written(case, frame, renders, most_bytes) for frame, renders in found.items()]
+    return rendered(
+        case, blender, settings, True, lambda frame, renders: written(case, frame, renders, most_bytes)
+    )
 
 
-def rendered(case: Case, blender: Installation, settings: Settings, update: bool) -> dict | Outcome:
-    """Renders by frame, or what is in the way."""
+def rendered(
+    case: Case,
+    blender: Installation,
+    settings: Settings,
+    update: bool,
+    outcome_of: Callable[[int | None, Renders], Outcome],
+) -> Iterator[Outcome]:
+    """Renders the frames of a case, reads them one by one, so that one is held, and removes them."""
     seeds, pictures = settings.seed_list(update), case.work / "renders"
     try:
         shutil.rmtree(pictures, ignore_errors=True)
@@ -63,9 +71,16 @@ def rendered(case: Case, blender: Installation, settings: Settings, update: bool
             "folder": str(pictures),
         }
         layer = blender.run("inside_render.py", task, case.work)["layer"]
-        return {frame: read_frame(pictures, frame, seeds, layer) for frame in case.references}
-    except (BlenderError, VelourError, OSError, ValueError) as error:
-        return _outcome(case, None, False, f"{case.blend.name}: {error}")
+    except (BlenderError, OSError) as error:
+        yield _failure(case, None, error)
+        return
+    for frame in case.references:
+        try:
+            outcome = outcome_of(frame, read_frame(pictures, frame, seeds, layer))
+        except Exception as error:  # trouble with one frame stops no other
+            outcome = _failure(case, frame, error)
+        yield outcome
+    shutil.rmtree(pictures, ignore_errors=True)
 
 
 def read_frame(folder: Path, frame: int | None, seeds: list[int], layer: str | None) -> Renders:
@@ -103,7 +118,9 @@ def judged(case: Case, frame: int | None, renders: Renders, pictures: int) -> Ou
     if both and not comparison.agrees:
         outcome.causes = causes.find(renders.picture, known, both)
         outcome.sentence = f"{'; '.join(map(str, outcome.causes))}. It {outcome.sentence}"
-    if comparison.sees > LEAST_SEEN:
+    if np.isinf(comparison.sees):
+        outcome.notes.append("It is black: no exposure can be told.")
+    elif comparison.sees > LEAST_SEEN:
         outcome.notes.append(
             f"Too noisy to tell {LEAST_SEEN:g} % of exposure ({comparison.sees:.1f} %):"
             " give the scene more samples, or the check more --seeds."
@@ -152,6 +169,12 @@ def written(case: Case, frame: int | None, renders: Renders, most_bytes: int | N
     outcome = _outcome(case, frame, True, f"{path.name} written, {size} bytes with its error")
     outcome.ours = outcome.reference = renders.picture.mean
     return outcome
+
+
+def _failure(case: Case, frame: int | None, error: Exception) -> Outcome:
+    if not isinstance(error, (BlenderError, VelourError, OSError, ValueError)):
+        traceback.print_exception(error)
+    return _outcome(case, frame, False, f"{case.blend.name}: {str(error) or type(error).__name__}")
 
 
 def _outcome(case: Case, frame: int | None, passed: bool, sentence: str) -> Outcome:

@@ -76,13 +76,15 @@ def has_worlds(passes: tuple[Passes, Passes]) -> bool:
 
 
 def smallest_factor(ours: Estimate, reference: Estimate, limit: float) -> float:
-    """In per cent: what all colors must be off by to be refused, by the picture as a whole."""
+    """In per cent: what all colors must be off by to be refused, by the picture as a whole. Infinite for a
+    black one."""
     sides = [side.channels(COLOR) for side in (ours, reference)]
     count = sides[0].mean[..., 0].size
     variance = sum(side.variance.sum(axis=(0, 1)) for side in sides) / count**2
     mean = np.abs(sides[1].mean).mean(axis=(0, 1))
-    relative = np.sqrt(variance) / np.maximum(mean, 1e-30) + sides[1].rounding
-    return float(100 * (limit + POWER) * relative.min())
+    lit = mean > 0
+    relative = np.sqrt(variance[lit]) / mean[lit] + sides[1].rounding
+    return float(100 * (limit + POWER) * relative.min(initial=np.inf))
 
 
 def comparisons(shape: tuple[int, ...]) -> int:

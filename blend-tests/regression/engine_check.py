@@ -12,8 +12,9 @@ from typing import NamedTuple
 TESTS = Path(__file__).resolve().parents[1]
 sys.path.insert(0, str(TESTS))
 
-from regression import blender  # noqa: E402
+from regression import blender, room  # noqa: E402
 from regression.case import Outcome  # noqa: E402
+from regression.folder import named  # noqa: E402
 
 STAGE = TESTS.parent / "build/release/blender"
 BOUNCES = (0, 4)
@@ -31,6 +32,15 @@ class Effort(NamedTuple):
 
 def main() -> int:
     arguments = _arguments()
+    try:
+        with room.take(arguments.output.resolve()):
+            return _run(arguments)
+    except (room.RoomError, OSError) as error:
+        print(f"parity: {error}", file=sys.stderr)
+        return 1
+
+
+def _run(arguments: argparse.Namespace) -> int:
     stage = Path(os.environ.get("VELOUR_STAGE", STAGE)).resolve()
     if arguments.blender is None or not (stage / "addons/velour").is_dir():
         missing = "There is no Blender" if arguments.blender is None else f"{stage} holds no add-on"
@@ -82,19 +92,15 @@ def _arguments() -> argparse.Namespace:
 
 def _blends(paths: list[Path]) -> dict[str, Path]:
     """By what they are called on the page."""
-    found = {}
-    for path in paths:
-        inside = sorted(path.resolve().rglob("*.blend")) if path.is_dir() else [path.resolve()]
-        base = path.resolve() if path.is_dir() else path.resolve().parent
-        found |= {str(blend.relative_to(base).with_suffix("")): blend for blend in inside}
-    return found
+    resolved = [path.resolve() for path in paths]
+    found = [sorted(path.rglob("*.blend")) if path.is_dir() else [path] for path in resolved]
+    return named(dict.fromkeys(blend for blends in found for blend in blends))
 
 
 def _judged(name, blend, installation, effort, work, pictures) -> list[Outcome]:
     """One of each number of bounces, or what went wrong: with one engine, so that it is known whose it is."""
     for engine in ENGINES:
         folder = work / engine.lower()
-        shutil.rmtree(folder, ignore_errors=True)
         folder.mkdir(parents=True)
         task = {"blend": str(blend), "engine": engine, "bounces": BOUNCES, "folder": str(folder)}
         task |= effort._asdict() | {"seeds": list(range(effort.seeds))}
@@ -112,8 +118,8 @@ def _words(bounces: int) -> str:
 def _compared(name, work, bounces, effort, pictures) -> Outcome:
     from velour.native import VelourError, images
 
-    from regression.comparison import compare
-    from support.judge import BLOCK, estimate
+    from regression.comparison import ALPHA, compare
+    from support.judge import BLOCK, estimate, scores
 
     def known(engine):
         folder = work / engine.lower()
@@ -122,6 +128,8 @@ def _compared(name, work, bounces, effort, pictures) -> Outcome:
     try:
         theirs, ours = map(known, ENGINES)
         found = compare(ours, theirs, pictures)
+        alpha = scores(ours.channels(ALPHA), theirs.channels(ALPHA))
+        found = found._replace(percent=max(found.percent, 100 * abs(alpha.first - alpha.second).max()))
     except (VelourError, OSError, ValueError) as error:
         return Outcome(name, False, str(error), notes=_notes(work))
     agrees = found.agrees or found.percent <= MOST_PERCENT

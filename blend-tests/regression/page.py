@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import html
-import shutil
+import itertools
+import math
 from pathlib import Path
 
 import numpy as np
 from velour.core import files
-from velour.native import images
+from velour.native import VelourError, images
 
 from .case import Outcome
 from .views import GAIN, MAGNIFICATION, MARGIN, crop, views
@@ -34,7 +35,7 @@ img { image-rendering: pixelated; max-width: 100%; background: #000 }
 
 
 class Page:
-    """Takes outcomes one by one, so that pictures need not be held; `finish` writes the rest."""
+    """Takes outcomes one by one; `finish` writes the rest."""
 
     def __init__(self, folder: Path, title: str, names: dict[str, str] | None = None):
         """`names`: of "reference" and "new" on this page."""
@@ -43,10 +44,21 @@ class Page:
         self._sections: list[str] = []
         self._records: list[dict] = []
         self._failed = 0
-        shutil.rmtree(folder / "pictures", ignore_errors=True)
-        (folder / "pictures").mkdir(parents=True)
+        self._numbers = itertools.count(1)  # of pictures
+        (folder / "pictures").mkdir(parents=True, exist_ok=True)
+
+    def draw(self, outcome: Outcome) -> None:
+        """Writes the pictures of an outcome, which lets go of them. Threads may call it, before add()."""
+        if outcome.ours is None:
+            return
+        try:
+            outcome.figures = self._pictures(outcome, f"{next(self._numbers):03d}")
+        except (VelourError, OSError) as error:
+            outcome.notes.append(f"Its pictures are not shown: {error}")
+        outcome.ours = outcome.reference = None
 
     def add(self, outcome: Outcome) -> None:
+        self.draw(outcome)
         number = len(self._rows) + 1
         self._failed += not outcome.passed
         self._rows.append(_row(outcome, number))
@@ -71,9 +83,7 @@ class Page:
         parts = [f'<h2 id="{number}">{html.escape(outcome.name)} {_word(outcome)}</h2>']
         tested = [f"Tested: {outcome.quantity}"] if outcome.quantity else []
         parts += [_tag("p", html.escape(text)) for text in (*tested, outcome.sentence, *outcome.notes)]
-        if outcome.ours is not None:
-            parts += self._pictures(outcome, f"{number:03d}")
-        return "\n".join(parts)
+        return "\n".join([*parts, *outcome.figures])
 
     def _pictures(self, outcome: Outcome, stem: str) -> list[str]:
         made, caption = views(outcome)
@@ -123,6 +133,8 @@ def _row(outcome: Outcome, number: int) -> str:
 
 def _record(outcome: Outcome) -> dict:
     numbers = outcome.comparison._asdict() if outcome.comparison else {}
+    if numbers and math.isinf(numbers["sees"]):
+        numbers["sees"] = None
     causes = [cause._asdict() for cause in outcome.causes]
     record = {"name": outcome.name, "passed": outcome.passed, "sentence": outcome.sentence}
     return {**record, "seconds": round(outcome.seconds, 2), "causes": causes, **numbers}

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import io
 import json
-import zipfile
 from pathlib import Path
 
 import numpy as np
@@ -61,9 +60,9 @@ def read(path: Path, size: tuple[int, int]) -> Passes:
             sentence = f"{file.name} belongs to another {path.name}: compared without causes; {_AGAIN}."
             raise PassesError(sentence)
         return _passes(found, head, size)
-    except (OSError, KeyError, TypeError, ValueError, zipfile.BadZipFile) as error:
-        if isinstance(error, PassesError):
-            raise
+    except PassesError:
+        raise
+    except Exception as error:  # damaged archives raise errors of many kinds
         raise PassesError(f"{file.name} cannot be read: compared without causes; {_AGAIN}.") from error
 
 

@@ -29,7 +29,7 @@ def run(scene: Scene, blender: Installation, work: Path, pictures: int, update: 
         return [Outcome(scene.name, False, f"its MEANINGS lack {meaning!r}", scene.quantity)]
     case = Case(scene.name, blend, scene.references(meaning), work, scene.quantity)
     if update:
-        return check.update(case, blender, Settings(), MOST_BYTES)
+        return list(check.update(case, blender, Settings(), MOST_BYTES))
     return [_sharp(outcome) for outcome in check.check(case, blender, Settings(), pictures)]
 
 

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+import itertools
 import shutil
 import sys
-import threading
+from collections.abc import Iterator
 from pathlib import Path
 
 from velour.core import files
@@ -18,15 +19,15 @@ class Staged:
     """New references that wait in a folder for approval. Threads may add to it."""
 
     def __init__(self, folder: Path):
-        self._folder, self._lock = folder, threading.Lock()
+        self._folder, self._numbers = folder, itertools.count(1)
         self._made: dict[Path, Path] = {}  # new picture by the path that it is for
 
     def add(self, path: Path, renders: check.Renders) -> None:
         """`path`: of the picture of the reference that is to be replaced."""
-        with self._lock:
-            self._made[path] = new = self._folder / f"{len(self._made) + 1:03d}" / path.name
+        new = self._folder / f"{next(self._numbers):03d}" / path.name
         new.parent.mkdir(parents=True)
         check.write(new, renders)
+        self._made[path] = new
 
     def approve(self, yes: bool) -> int:
         """Replaces the references if `yes`, or if the terminal says so; the exit status."""
@@ -47,22 +48,19 @@ class Staged:
 
 def update(
     case: Case, blender: Installation, settings: Settings, pictures: int, staged: Staged
-) -> list[Outcome]:
+) -> Iterator[Outcome]:
     """Writes the references that do not exist yet; those that do are compared and go to `staged`."""
-    found = check.rendered(case, blender, settings, update=True)
-    if isinstance(found, Outcome):
-        return [found]
-    outcomes = []
-    for frame, renders in found.items():
+
+    def outcome_of(frame: int | None, renders: check.Renders) -> Outcome:
         path = case.references[frame]
         if not path.is_file():
-            outcomes.append(check.written(case, frame, renders))
-            continue
+            return check.written(case, frame, renders)
         outcome = check.judged(case, frame, renders, pictures)
         staged.add(path, renders)
         outcome.passed, outcome.to_approve = True, True
-        outcomes.append(outcome)
-    return outcomes
+        return outcome
+
+    return check.rendered(case, blender, settings, True, outcome_of)
 
 
 def _replace(path: Path, new: Path) -> None:

@@ -9,7 +9,7 @@ import signal
 import sys
 import tempfile
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -17,8 +17,8 @@ from typing import TYPE_CHECKING
 TESTS = Path(__file__).resolve().parents[1]
 sys.path.insert(0, str(TESTS))
 
-from regression import blender, folder  # noqa: E402
-from regression.case import Case, Outcome, Settings  # noqa: E402
+from regression import blender, folder, room  # noqa: E402
+from regression.case import CHECK_SEEDS, REFERENCE_SEEDS, Case, Outcome, Settings  # noqa: E402
 from support import junit, process, report  # noqa: E402
 
 if TYPE_CHECKING:  # it imports the package, which _installation() finds
@@ -28,21 +28,27 @@ STAGE = TESTS.parent / "build/release/blender"
 JOBS = min(2, os.cpu_count() or 1)  # starting and reading keep one core busy
 SECONDS = 900  # that all renders of a .blend may take
 INTERRUPTED = 130
-PAGE_MARK = ".velour-check"  # in every folder that velour-check made
-MADE = ("index.html", "report.json", "pictures", "work", "new")  # what it leaves there
+NOTHING_CHECKED = 2  # as wrong usage
 
 
 def main() -> int:
     arguments = _arguments()
-    output = (arguments.output or _default_output(arguments.path[0])).resolve()
     try:
-        installation = _installation(arguments)
+        output = (arguments.output or folder.parent(arguments.path[0]) / "velour-check").resolve()
+        held = room.take(output)  # the earlier page goes first, so that none is taken for one of this run
+        if arguments.junit:
+            _forget_report(arguments.junit)
         cases = folder.cases(arguments.path, output / "work", arguments.frame)
-        _make_room(output)
-    except (folder.FolderError, blender.BlenderError, OSError) as error:
+        installation = _installation(arguments)
+    except (folder.FolderError, room.RoomError, blender.BlenderError, OSError) as error:
         print(f"velour-check: {error}", file=sys.stderr)
-        return 1
-    return _run(arguments, cases, installation, output)
+        return NOTHING_CHECKED
+    with held:
+        try:
+            return _run(arguments, cases, installation, output)
+        except OSError as error:  # of the page, of what is replaced or of the JUnit report
+            print(f"velour-check: {error}", file=sys.stderr)
+            return 1
 
 
 def _arguments() -> argparse.Namespace:
@@ -58,7 +64,12 @@ def _arguments() -> argparse.Namespace:
     add("--output", type=Path, metavar="FOLDER", help="of the page (velour-check in the first FOLDER)")
     add("--junit", type=Path, metavar="FILE", help="write a JUnit XML report")
     add("--jobs", type=int, default=JOBS, metavar="N", help=f"Blenders that run at a time ({JOBS})")
-    add("--seeds", type=int, metavar="N", help="renders of each picture (4; of a reference 16)")
+    add(
+        "--seeds",
+        type=int,
+        metavar="N",
+        help=f"renders of each picture ({CHECK_SEEDS}; of a reference {REFERENCE_SEEDS})",
+    )
     add("--samples", type=int, metavar="N", help="directions a pixel (those of the .blend)")
     add(
         "--blender",
@@ -72,6 +83,8 @@ def _arguments() -> argparse.Namespace:
     arguments = parser.parse_intermixed_args()
     if arguments.seeds is not None and arguments.seeds < 2:
         parser.error("--seeds: at least 2 are needed to know how noisy they are")
+    if arguments.update and arguments.seeds is not None and arguments.seeds < CHECK_SEEDS:
+        parser.error(f"--seeds: a reference needs at least {CHECK_SEEDS}, as many as a check renders")
     for name in ("jobs", "samples", "timeout"):
         if getattr(arguments, name) is not None and getattr(arguments, name) < 1:
             parser.error(f"--{name}: at least 1")
@@ -82,18 +95,12 @@ def _arguments() -> argparse.Namespace:
     return arguments
 
 
-def _default_output(first: Path) -> Path:
-    return (first if first.is_dir() else first.parent) / "velour-check"
-
-
-def _make_room(output: Path) -> None:
-    """An earlier page goes, and nothing else."""
-    if output.is_dir() and any(output.iterdir()) and not (output / PAGE_MARK).is_file():
-        raise folder.FolderError(f"{output} holds something else than a page; name another --output.")
-    for path in (output / name for name in MADE):
-        shutil.rmtree(path) if path.is_dir() else path.unlink(missing_ok=True)
-    output.mkdir(parents=True, exist_ok=True)
-    (output / PAGE_MARK).touch()
+def _forget_report(path: Path) -> None:
+    """Removes that of an earlier run. Raises OSError where none could be written."""
+    path.parent.mkdir(parents=True, exist_ok=True)
+    path.open("ab").close()
+    if path.is_file():
+        path.unlink()
 
 
 def _installation(arguments: argparse.Namespace) -> blender.Installation:
@@ -126,8 +133,10 @@ def _run(
     staged = update.Staged(output / "new") if arguments.update else None
 
     def work(case: Case) -> list[Outcome]:
-        start = time.monotonic()
-        outcomes = _outcomes(case, installation, settings, pictures, staged)
+        start, outcomes = time.monotonic(), []
+        for outcome in _outcomes(case, installation, settings, pictures, staged):
+            shown.draw(outcome)
+            outcomes.append(outcome)
         for outcome in outcomes:
             outcome.seconds = (time.monotonic() - start) / len(outcomes)
         return outcomes
@@ -139,14 +148,18 @@ def _run(
         print(outcome.line, flush=True)
         shown.add(outcome)
         ended.append(outcome)
+    if count := folder.left_out(arguments.path, (case.blend for case in cases)):
+        print(f"not checked: {count} .blend files in folders below; name those folders as well")
     print(f"page: {shown.finish()}")
+    failed = sum(not outcome.passed for outcome in ended)
+    status = int(failed > 0)
+    if staged:
+        status = max(status, staged.approve(arguments.yes))
+    else:
+        print(f"{len(ended) - failed} as expected, {failed} not")
     if arguments.junit:
         _write_junit(arguments.junit.resolve(), ended)
-    failed = sum(not outcome.passed for outcome in ended)
-    if staged:
-        return max(int(failed > 0), staged.approve(arguments.yes))
-    print(f"{len(ended) - failed} as expected, {failed} not")
-    return 1 if failed else 0
+    return status
 
 
 def _in_order(work: Callable[[Case], list[Outcome]], cases: list[Case], jobs: int) -> Iterator[Outcome]:
@@ -165,9 +178,12 @@ def _in_order(work: Callable[[Case], list[Outcome]], cases: list[Case], jobs: in
 
 def _outcomes(
     case: Case, installation: blender.Installation, settings: Settings, pictures: int, staged: Staged | None
-) -> list[Outcome]:
+) -> Iterable[Outcome]:
     from regression import check, update
 
+    if not case.blend.is_file():
+        sentence = f"{case.blend.name} is missing, but its reference is there; bring it back, or remove both."
+        return [Outcome(case.name, False, sentence)]
     if staged is not None:
         if not case.references:
             case.references[None] = folder.own_reference(case.blend)

@@ -69,12 +69,16 @@ class FilmParts:
             job.add_sums(_sums(part, job))
 
     def keep(self, job: Job, gap: Range, end: int) -> Path:
-        """Writes the samples that begin() added and `job` rendered, up to `end`; removes the files before."""
-        before = self._before(gap)
-        written = self._write(job, (self.asked[0], end))
+        """Writes the samples that begin() added and `job` rendered, up to `end`; removes the files before.
+
+        Files that other runs have written meanwhile do not count: their samples are in the gaps."""
+        before, span = self._before(gap), (self.asked[0], end)
+        written = self._write(job, span)
         self._remove(before)
-        self._all = self._found()
-        self._kept = self._disjoint()
+        self._all, self._kept = (
+            [self._part(str(written), span), *(part for part in parts if part not in before)]
+            for parts in (self._all, self._kept)
+        )
         return written
 
     def complete(self, job: Job, gap: Range | None) -> None:

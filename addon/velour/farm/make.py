@@ -49,7 +49,9 @@ def make(given: argparse.Namespace) -> job.Job:
 
 
 def _check_path(output: Path) -> None:
-    """Raises JobError for characters with a special meaning in Slurm's scripts or the paths of Blender 5."""
+    """Raises JobError for what has a special meaning in Slurm's scripts or in Blender's paths."""
+    if str(output).startswith("//"):
+        raise job.JobError(f"{output}: // means beside the .blend to Blender; name the --output without it.")
     signs = sorted({sign for sign in str(output) if sign in '"\\{}' or not sign.isprintable()})
     if signs:
         raise job.JobError(f"{output}: a path with {' '.join(map(repr, signs))} in it cannot be an --output.")

@@ -42,9 +42,9 @@ def submit(job: Job, tasks: list[int], options: list[str]) -> str:
     array = f"--array={ranges.words(tasks)}"
     command = ["sbatch", "--parsable", array, *options, str(job.folder / SCRIPT)]
     said = _slurm(*command, otherwise="; --no-submit only writes the job.")
-    number = said.strip().split(";")[0]  # ";CLUSTER" follows if there are several
-    replace_text(job.folder / SUBMITTED, number + "\n")
-    return number
+    submitted = said.strip()  # NUMBER, or NUMBER;CLUSTER if there are several
+    replace_text(job.folder / SUBMITTED, submitted + "\n")
+    return submitted.split(";")[0]
 
 
 def refuse_while_running(job: Job) -> None:
@@ -52,16 +52,18 @@ def refuse_while_running(job: Job) -> None:
     file = job.folder / SUBMITTED
     if not file.is_file():
         return
-    number = file.read_text(encoding="utf-8").strip()
+    number, *cluster = file.read_text(encoding="utf-8").strip().split(";")
+    where = ["-M", *cluster] if cluster else []
     try:
-        running = _slurm("squeue", "-h", "-o", "%t", "-j", number).strip()
+        said = _slurm("squeue", *where, "-h", "-o", "%t", "-j", number).splitlines()
     except JobError as error:
         if "Invalid job id" in str(error):  # Slurm has forgotten it
             return
         raise JobError(f"{error}; if Slurm's job {number} is no more, remove {file}.") from error
-    if running:
+    if any(line and not line.startswith("CLUSTER:") for line in said):
         raise JobError(
-            f"Slurm's job {number} still renders this; wait for it, or end it with: scancel {number}"
+            f"Slurm's job {number} still renders this; wait for it, or end it with:"
+            f" {shlex.join(['scancel', *where, number])}"
         )
 
 
