@@ -10,7 +10,7 @@ import math
 import bpy
 import numpy as np
 
-from .camera import final_view
+from .camera import final_view, render_camera
 from .meshes import object_shape
 from .objects import is_mesh
 from .programs.curves import curve_values
@@ -45,7 +45,7 @@ def motion_of_frame(engine, depsgraph, check_break):
     blurs = shutter_is_open(depsgraph.scene_eval, depsgraph.view_layer_eval)
     frame, subframe = scene.frame_current, scene.frame_subframe
     try:
-        motion = Motion(depsgraph, frame, blurs)
+        motion = Motion(depsgraph, frame, blurs, render_camera(engine))
         for key, time in motion.times(frame + subframe):
             check_break()
             engine.frame_set(math.floor(time), time - math.floor(time))
@@ -59,18 +59,19 @@ def motion_of_frame(engine, depsgraph, check_break):
 class Motion:
     """What moves: camera, instances and meshes, each with its own number of keys at even times."""
 
-    def __init__(self, depsgraph, frame, blurs):
-        """`frame`: the one that is rendered. `blurs`: false if only the pass Vector shows what moves."""
+    def __init__(self, depsgraph, frame, blurs, camera):
+        """`frame`: the one that is rendered. `blurs`: false if only the pass Vector shows what moves.
+        `camera`: that of the frame; None: there is none."""
         self.frame = frame
-        scene, render = depsgraph.scene, depsgraph.scene_eval.render
+        render = depsgraph.scene_eval.render
         self._depsgraph, self._blurs = depsgraph, blurs
         self._frames = (
             render.motion_blur_shutter if blurs else _FRAMES_OF_VECTOR
         )  # from the first key to the last
         self._middle = _MIDDLE[_position(depsgraph.scene_eval)] * self._frames if blurs else 0.0
         self._shutter = _shutter_curve(render) if blurs else None
-        self._camera = scene.camera
-        self._views = [None] * (self._count(self._camera, self._camera) if self._camera else 0)
+        self._camera = camera
+        self._views = [None] * (self._count(camera, camera) if camera else 0)
         self._places = {}  # by key of an instance: rows of its matrix at each key; None where it is missing
         self._particles = set()  # keys of instances
         self._shapes = {}  # by object: its Shape at each key
