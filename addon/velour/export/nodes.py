@@ -141,14 +141,10 @@ def approximation_node(material):
 
 def active_output(tree, idname):
     """The output node that Cycles renders, or None: its own before that of all engines, and the active one of
-    these. That of another engine only if there is no other."""
-    order = {"CYCLES": 0, "ALL": 1}
-    outputs = [node for node in tree.nodes if node.bl_idname == idname]
-    return min(
-        outputs,
-        key=lambda node: (order.get(getattr(node, "target", "ALL"), 2), not node.is_active_output),
-        default=None,
-    )
+    these."""
+    order = ("CYCLES", "ALL")
+    outputs = [node for node in tree.nodes if node.bl_idname == idname and node.target in order]
+    return min(outputs, key=lambda node: (order.index(node.target), not node.is_active_output), default=None)
 
 
 def link_to(socket):
