@@ -239,7 +239,7 @@ class ObjectExport:
         if not self._meshes.has(key, obj):
             arrays = object_arrays(obj, *asked, self._queue.empty, self._shows_uvs)
             if arrays and self._motion:
-                arrays = arrays._replace(**self._motion.shapes(obj))
+                arrays = arrays._replace(**self._motion.shapes(obj, arrays))
             self._meshes[key] = arrays and _Mesh(
                 self._queue.add(arrays, obj.name),
                 arrays.slot_count,
