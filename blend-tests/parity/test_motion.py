@@ -140,6 +140,13 @@ class Motion(ParityTest):
         for element, vertex in zip(attribute.data, obj.data.vertices, strict=True):
             element.vector = flow(vertex.co)
 
+    def test_shown_from_the_middle_on(self):
+        """Hidden at the frame itself, and shown from the middle of the open shutter on."""
+        self._slide(self.box)
+        move(self.box, "hide_render", [True, False, False])
+        blur(self.scene, 2.0, "START", frame=0)
+        self.assert_parity("Motion blur: shown from the middle of the shutter on")
+
     def test_velocities(self):
         """Stored in a mesh that stays as it is, as a liquid's."""
         self._flow(self.box, lambda p: (30 * p.z, -10 * p.z, 8))
@@ -154,7 +161,7 @@ class Motion(ParityTest):
 
     def test_velocities_beside_a_shape_key(self):
         ball = self._ball(smooth=False)
-        self._flow(ball, lambda p: (20 * p.z, 0, 0))
+        self._flow(ball, lambda p: (60 * p.z, 0, 40))
         self._bend(ball, lambda p: (p.x, p.y, 1.8 * p.z))
         blur(self.scene, 0.8)
         self.assert_parity("Motion blur: velocities beside a shape key")

@@ -46,14 +46,21 @@ def motion_of_frame(engine, depsgraph, check_break):
     frame, subframe = scene.frame_current, scene.frame_subframe
     try:
         motion = Motion(depsgraph, frame, blurs, render_camera(engine))
+        if motion.middle != 0.0:
+            _set_time(engine, frame + subframe + motion.middle)
+        motion.expect()
         for key, time in motion.times(frame + subframe):
             check_break()
-            engine.frame_set(math.floor(time), time - math.floor(time))
+            _set_time(engine, time)
             motion.read(key, depsgraph, check_break)
         motion.finish()
         yield motion
     finally:
         engine.frame_set(frame, subframe)
+
+
+def _set_time(engine, time):
+    engine.frame_set(math.floor(time), time - math.floor(time))
 
 
 class Motion:
@@ -69,7 +76,7 @@ class Motion:
             render.motion_blur_shutter if blurs else _FRAMES_OF_VECTOR
         )  # from the first key to the last
         self._seconds = self._frames * render.fps_base / render.fps
-        self._middle = _MIDDLE[_position(depsgraph.scene_eval)] * self._frames if blurs else 0.0
+        self.middle = _MIDDLE[_position(depsgraph.scene_eval)] * self._frames if blurs else 0.0
         self._shutter = _shutter_curve(render) if blurs else None
         self._camera = camera
         self._views = [None] * (self._count(camera, camera) if camera else 0)
@@ -80,13 +87,17 @@ class Motion:
         self._asking = set()  # objects whose deformation shows
         self._has_velocities = False  # whether meshes of these store velocities
         self.sentences = []  # on what is not blurred
+        self._keys = 0
+
+    def expect(self):
+        """Looks for what may move, with the depsgraph in the middle, as what exists only then blurs, too."""
         for instance in self._instances():
             self._expect(instance)
         self._keys = max([len(self._views), *map(len, self._places.values())])
 
     def times(self, frame):
         """Pairs of a key, of those with the most keys, and its time in frames. The middle comes last."""
-        middle = frame + self._middle
+        middle = frame + self.middle
         if self._keys < 2:
             return [(0, middle)]
         keys = list(range(self._keys))
