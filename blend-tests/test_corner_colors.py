@@ -106,6 +106,12 @@ class CornerColors(BlenderTest):
         self._attribute("FLOAT", "EDGE", "value", 1)
         self.assertFalse(self.colors.has_attribute(self.mesh, self._asked()))
 
+    def test_vertex_groups_are_named(self):
+        asked = self._asked(name="Weights")
+        self.assertIn("it has no attribute 'Weights'", self.colors.missing_colors(self.obj, asked, "Paint"))
+        self.obj.vertex_groups.new(name="Weights")
+        self.assertIn("vertex group 'Weights'", self.colors.missing_colors(self.obj, asked, "Paint"))
+
     def test_only_where_it_is_asked_for(self):
         self._attribute("FLOAT_COLOR", "POINT", "color", COLOR)
         self.assertIsNone(self._values())

@@ -1,6 +1,7 @@
 """Settings of lights: of this Blender, and those of newer ones, by stand-ins that have them."""
 
 import types
+from unittest import mock
 
 import bpy
 from mathutils import Matrix
@@ -38,6 +39,22 @@ class NewerLights(BlenderTest):
         place = Matrix.Scale(3.0, 4)
         lamp = _lamp(normalize=False, area=lambda matrix_world: 2.0 * matrix_world.to_scale().x ** 2)
         self.assertAlmostEqual(_lights().power(lamp, place), 3.0 * 18.0, places=4)
+
+    def test_points_with_a_radius_are_spheres_since_4_0(self):
+        """The option of 4.1 makes disks of them again, which older ones always are."""
+        for is_older, settings, sphere in (
+            (True, {}, 0),
+            (False, {}, 1),
+            (False, {"use_soft_falloff": True}, 0),
+            (False, {"use_soft_falloff": False}, 1),
+        ):
+            lamp = _lamp(shadow_soft_size=0.1, spot_size=1.0, spot_blend=0.5, **settings)
+            with (
+                self.subTest(is_older=is_older, **settings),
+                mock.patch.object(_lights(), "_OLDER_LAMPS", is_older),
+            ):
+                self.assertEqual(_lights()._point(lamp, Matrix())[2]["sphere"], sphere)
+                self.assertEqual(_lights()._spot(lamp, Matrix())[2]["sphere"], sphere)
 
     def test_cones_are_scaled_with_objects(self):
         uneven = Matrix.Diagonal((2.0, -3.0, 4.0, 1.0))

@@ -89,6 +89,10 @@ class Materials(NotesTest):
         tree.links.clear()
         self.assert_said("Material 'Bare'", "no surface shader", "black")
 
+    def test_an_output_of_another_engine(self):
+        self._tree().nodes["Material Output"].target = "EEVEE"
+        self.assert_said("Material 'Bare'", "no surface shader", "black")
+
     def test_volume(self):
         tree = self._tree()
         node = tree.nodes.new("ShaderNodeVolumeScatter")

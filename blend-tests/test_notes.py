@@ -265,6 +265,10 @@ class Notes(NotesTest):
         obj.modifiers.new("Fur", "PARTICLE_SYSTEM")
         obj.particle_systems[0].settings.type = "HAIR"
         self.assert_said("Object 'Sphere'", "hair")
+        obj.show_instancer_for_render = obj.show_instancer_for_viewport = False
+        self.assert_said("Object 'Sphere'", "hair")
+        obj.modifiers["Fur"].show_render = False
+        self.assertFalse([note for note in self.notes() if "hair" in note])
 
     def test_adaptive_subdivision(self):
         if not hasattr(bpy.types.Object, "cycles"):
@@ -273,7 +277,16 @@ class Notes(NotesTest):
         modifier = obj.modifiers.new("Subdivision", "SUBSURF")
         newer = hasattr(modifier, "use_adaptive_subdivision")  # 5.0 and newer
         (modifier if newer else obj.cycles).use_adaptive_subdivision = True
+        if not newer:
+            self.assertEqual(self.notes(), [])  # the setting stays after the feature set is no longer chosen
+            bpy.context.scene.cycles.feature_set = "EXPERIMENTAL"
+            bpy.context.scene.update_tag()  # which a property of an add-on does not do by itself
         self.assert_said("Object 'Sphere'", "adaptive subdivision")
+        modifier.show_render = False
+        self.assertEqual(self.notes(), [])
+        modifier.show_render = True
+        obj.modifiers.new("Twist", "SIMPLE_DEFORM")
+        self.assertEqual(self.notes(), [])
 
     def test_volume(self):
         obj = bpy.data.objects.new("Fog", bpy.data.volumes.new("Fog"))

@@ -133,6 +133,45 @@ class Motion(ParityTest):
         blur(self.scene)
         self.assert_parity("Motion blur: modifier")
 
+    def _flow(self, obj, flow, name="velocity"):
+        """Stores velocities per second; `flow`: of a vertex."""
+        self.scene.render.fps, self.scene.render.fps_base = 25, 1.25
+        attribute = obj.data.attributes.new(name, "FLOAT_VECTOR", "POINT")
+        for element, vertex in zip(attribute.data, obj.data.vertices, strict=True):
+            element.vector = flow(vertex.co)
+
+    def test_shown_from_the_middle_on(self):
+        """Hidden at the frame itself, and shown from the middle of the open shutter on."""
+        self._slide(self.box)
+        move(self.box, "hide_render", [True, False, False])
+        blur(self.scene, 2.0, "START", frame=0)
+        self.assert_parity("Motion blur: shown from the middle of the shutter on")
+
+    def test_velocities(self):
+        """Stored in a mesh that stays as it is, as a liquid's."""
+        self._flow(self.box, lambda p: (30 * p.z, -10 * p.z, 8))
+        blur(self.scene, 0.8)
+        self.assert_parity("Motion blur: velocities of a mesh")
+
+    def test_velocities_of_a_smooth_mesh_that_turns(self):
+        ball = self._ball(smooth=True)
+        self._flow(ball, lambda p: (20 - 8 * p.y, 8 * p.x, 0))
+        blur(self.scene, 0.8)
+        self.assert_parity("Motion blur: velocities of a smooth mesh")
+
+    def test_velocities_beside_a_shape_key(self):
+        ball = self._ball(smooth=False)
+        self._flow(ball, lambda p: (60 * p.z, 0, 40))
+        self._bend(ball, lambda p: (p.x, p.y, 1.8 * p.z))
+        blur(self.scene, 0.8)
+        self.assert_parity("Motion blur: velocities beside a shape key")
+
+    def test_velocities_without_deformation(self):
+        self._flow(self.box, lambda p: (30 * p.z, -10 * p.z, 8))
+        self.box.cycles.use_deform_motion = False
+        blur(self.scene, 0.8)
+        self.assert_parity("Motion blur: velocities, Deformation off")
+
     def test_instances(self):
         points = stage.mesh([(-1, 0, 0), (1, 0, 0.3), (0.4, -1.5, 0)], [(0, 1, 2)], stage.gray(0.4), "Points")
         points.location.z = 1
@@ -170,6 +209,7 @@ class Motion(ParityTest):
     def test_vector(self):
         """Pixels to the previous and from the next frame, of camera, object and shape key."""
         self._bend(self._ball(smooth=True), lambda p: (2 * p.x, p.y, p.z))
+        self._flow(self.box, lambda p: (10 * p.z, 0, 0))
         self._slide(self.box)
         move(self.box, "rotation_euler", [(0, 0, -1), (0, 0.2, 0), (0, 0, 1.1)])
         self._slide(self.camera, (0.3, 0, 0.1))

@@ -169,6 +169,23 @@ class Groups(ShaderTest):
         tree.end(tree.diffuse((0.9, 0.1, 0.1)), "EEVEE")
         self.assert_parity("Material Output: of Cycles beside those of others")
 
+    def test_hidden_links(self):
+        """A link from an output that another mode of its node has hidden."""
+        tree = self.tree
+        factor = tree.node("ShaderNodeVectorMath", "Value", {"operation": "DOT_PRODUCT"})
+        factor.node.inputs[0].default_value = factor.node.inputs[1].default_value = (0.7, 0, 0)
+        mixed = tree.mix(0.25, tree.diffuse((0.9, 0.2, 0.1)), tree.diffuse((0.1, 0.9, 0.2)))
+        mixed.node.inputs[0].default_value = 0.25
+        tree.set(mixed.node.inputs[0], factor)
+        tree.end(mixed)
+        factor.node.operation = "SUBTRACT"
+        self.assert_parity("Links of hidden sockets")
+
+    def test_output_of_eevee(self):
+        tree = self.tree
+        tree.end(tree.diffuse((0.9, 0.1, 0.1)), "EEVEE")
+        self.assert_parity("Material Output: only that of EEVEE")
+
     def test_group(self):
         tree = self.tree
         picture = tree.picture(image(9))

@@ -7,7 +7,7 @@ import bpy
 
 def are_of_4_0():
     """Whether lamps emit of their power what they do since 4.0, which made spheres of those with a radius."""
-    return "use_soft_falloff" in bpy.types.PointLight.bl_rna.properties
+    return bpy.app.version >= (4, 0)
 
 
 def area_watts(watts):
@@ -24,8 +24,10 @@ def sun_strength(strength, angle):
 
 
 def as_disk(lamp):
-    """The lamp's object, a point or a spot, whose radius is that of a disk which faces what it lights."""
-    if are_of_4_0():
+    """The lamp's object, a point or a spot, whose radius is that of a disk which faces what it lights.
+
+    Blender 4.0 has only spheres."""
+    if hasattr(lamp.data, "use_soft_falloff"):
         lamp.data.use_soft_falloff = True
     return lamp
 

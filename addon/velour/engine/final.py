@@ -11,7 +11,7 @@ import bpy
 from ..core.memory_estimate import peak
 from ..export import ExportError
 from ..export.black import refuse_dark_inside
-from ..export.camera import final_view
+from ..export.camera import final_view, render_camera
 from ..export.film import film_exposure
 from ..export.layer_passes import COMBINED, as_rendered, layer_passes, note_missing_passes
 from ..export.motion import motion_of_frame, shows_motion
@@ -57,16 +57,19 @@ def render_final(engine, depsgraph):
     shown = [COMBINED] if engine.is_preview else layer_passes(scene, depsgraph.view_layer_eval)
     asked = {each.asks for each in shown if each.asks}
     moves = not engine.is_preview and shows_motion(depsgraph, asked)
+    camera = render_camera(engine)
     with engine.kept_scene.frame(depsgraph, not engine.is_preview, asked, moves) as export:
         notes = export.notes
-        view, taken = _take(engine, depsgraph, export, moves, check_break)
+        view, taken = _take(engine, depsgraph, export, moves, camera, check_break)
         native_scene, materials, surroundings, passes = taken
         engine.update_stats("Velour", _exported(native_scene.info(), time.monotonic() - begin))
         stamps = {}
         if not engine.is_preview:
             note_missing_passes(depsgraph.view_layer_eval, notes)
             note_strokes(scene, depsgraph.view_layer_eval, notes)
-            stamps = choose_models(native_scene, materials.reduced, view, depsgraph, notes, check_break)
+            stamps = choose_models(
+                native_scene, materials.reduced, view, camera, depsgraph, notes, check_break
+            )
             _say(notes)
         options = final_options(depsgraph, view, engine.is_preview)
         if options["denoise"]:
@@ -94,11 +97,12 @@ def render_final(engine, depsgraph):
             stamp_cryptomattes(result, depsgraph.view_layer_eval, passes.names)
 
 
-def _take(engine, depsgraph, export, moves, check_break):
+def _take(engine, depsgraph, export, moves, camera, check_break):
     """The View and the Export of a frame. `moves`: with its motion."""
     read = motion_of_frame(engine, depsgraph, check_break) if moves else contextlib.nullcontext()
     with read as motion:
-        view = motion.on(final_view(depsgraph)) if motion else final_view(depsgraph)
+        view = final_view(depsgraph, camera=camera)
+        view = motion.on(view) if motion else view
         return view, export.take(depsgraph, view, check_break, motion)
 
 

@@ -6,15 +6,15 @@ from ..export.camera import final_view
 from ..export.scene_models import served
 
 
-def choose_models(native_scene, reduced, view, depsgraph, notes, check_break):
-    """Gives each material of `reduced` its scene model if the frame allows it.
+def choose_models(native_scene, reduced, view, camera, depsgraph, notes, check_break):
+    """Gives each material of `reduced` its scene model if the frame allows it. `camera`: that of `view`.
 
     Notes the share of its usage that the scene model was not fitted for. Returns {material name: stamp text}.
     """
     if not reduced:
         return {}
     stamps = {}
-    with _seen_whole(native_scene, view, depsgraph, notes) as whole:
+    with _seen_whole(native_scene, view, camera, depsgraph) as whole:
         found = served(native_scene, reduced, whole, depsgraph, check_break)
     for entry, each in zip(reduced, found, strict=True):
         if each.is_inside:
@@ -29,10 +29,10 @@ def choose_models(native_scene, reduced, view, depsgraph, notes, check_break):
 
 
 @contextlib.contextmanager
-def _seen_whole(native_scene, view, depsgraph, notes):
+def _seen_whole(native_scene, view, camera, depsgraph):
     """Sets the camera to the whole view, without the render border: parts of a picture, which may be rendered
     one by one, must get the same models."""
-    whole = final_view(depsgraph, whole=True)
+    whole = final_view(depsgraph, whole=True, camera=camera)
     if not depsgraph.scene_eval.render.use_border:
         yield whole
         return

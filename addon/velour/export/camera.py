@@ -23,6 +23,7 @@ class View(NamedTuple):
     height: int
     lens: dict  # aperture keywords; empty: no depth of field
     motion: dict = MappingProxyType({})  # keywords of motion and shutter (Motion.on); empty: no motion
+    camera: str = ""  # name of the camera object; empty: a viewport's own view
 
     def add_to(self, scene):
         clips = {"clip_start": self.clip_start, "clip_end": self.clip_end}
@@ -34,10 +35,19 @@ class View(NamedTuple):
         return directions @ np.linalg.pinv(axes).T  # a flattened camera's axes may be coplanar
 
 
-def final_view(depsgraph, whole=False, camera=None):
-    """View of a final render: the scene's camera, film size and, unless `whole`, render border.
+def render_camera(engine):
+    """The camera of a render: that of a Scene strip or of a viewport's Use Local Camera, else the scene's.
 
-    `camera`: instead of the one that the scene has at its current frame.
+    None if there is none. An original object, which stays valid when the frame changes.
+    """
+    camera = engine.camera_override
+    return camera and camera.original
+
+
+def final_view(depsgraph, whole=False, camera=None):
+    """View of a final render: its camera, the film size and, unless `whole`, the render border.
+
+    `camera`: see render_camera(); None: the one that the scene has at its current frame.
     """
     scene = depsgraph.scene_eval
     camera = camera or scene.camera
@@ -64,7 +74,7 @@ def final_view(depsgraph, whole=False, camera=None):
         raise ExportError(f"Camera '{camera.name}': its transform is not finite; place it again.")
     kind = "perspective" if lens.type == "PERSP" else "orthographic"
     matrix, clips = unscaled(camera.matrix_world), (lens.clip_start, lens.clip_end)
-    return View(kind, matrix, window, *clips, *size, aperture(camera, depsgraph))
+    return View(kind, matrix, window, *clips, *size, aperture(camera, depsgraph), camera=camera.name)
 
 
 def _full_size(render):

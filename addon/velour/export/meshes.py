@@ -65,6 +65,18 @@ def object_shape(obj):
         return Shape(positions, vertex_normals, corner_normals)
 
 
+def velocities(obj):
+    """[vertices x 3] Velocities in units per second that the mesh of an evaluated object stores, or None.
+
+    Liquids, caches and geometry nodes store them. Cycles then blurs by them instead of the mesh's shapes.
+    """
+    found = obj.data.attributes.get("velocity")
+    if found is None or found.domain != "POINT" or found.data_type != "FLOAT_VECTOR":
+        return None
+    values = _read(found.data, "vector", (len(found.data), 3))
+    return values if values.any() else None
+
+
 def has_uv_map(obj, name):
     with _mesh_of(obj) as mesh:
         return mesh is not None and name in mesh.uv_layers

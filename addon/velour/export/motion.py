@@ -10,8 +10,8 @@ import math
 import bpy
 import numpy as np
 
-from .camera import final_view
-from .meshes import object_shape
+from .camera import final_view, render_camera
+from .meshes import object_shape, velocities
 from .objects import is_mesh
 from .programs.curves import curve_values
 
@@ -45,10 +45,13 @@ def motion_of_frame(engine, depsgraph, check_break):
     blurs = shutter_is_open(depsgraph.scene_eval, depsgraph.view_layer_eval)
     frame, subframe = scene.frame_current, scene.frame_subframe
     try:
-        motion = Motion(depsgraph, frame, blurs)
+        motion = Motion(depsgraph, frame, blurs, render_camera(engine))
+        if motion.middle != 0.0:
+            _set_time(engine, frame + subframe + motion.middle)
+        motion.expect()
         for key, time in motion.times(frame + subframe):
             check_break()
-            engine.frame_set(math.floor(time), time - math.floor(time))
+            _set_time(engine, time)
             motion.read(key, depsgraph, check_break)
         motion.finish()
         yield motion
@@ -56,33 +59,45 @@ def motion_of_frame(engine, depsgraph, check_break):
         engine.frame_set(frame, subframe)
 
 
+def _set_time(engine, time):
+    engine.frame_set(math.floor(time), time - math.floor(time))
+
+
 class Motion:
     """What moves: camera, instances and meshes, each with its own number of keys at even times."""
 
-    def __init__(self, depsgraph, frame, blurs):
-        """`frame`: the one that is rendered. `blurs`: false if only the pass Vector shows what moves."""
+    def __init__(self, depsgraph, frame, blurs, camera):
+        """`frame`: the one that is rendered. `blurs`: false if only the pass Vector shows what moves.
+        `camera`: that of the frame; None: there is none."""
         self.frame = frame
-        scene, render = depsgraph.scene, depsgraph.scene_eval.render
+        render = depsgraph.scene_eval.render
         self._depsgraph, self._blurs = depsgraph, blurs
         self._frames = (
             render.motion_blur_shutter if blurs else _FRAMES_OF_VECTOR
         )  # from the first key to the last
-        self._middle = _MIDDLE[_position(depsgraph.scene_eval)] * self._frames if blurs else 0.0
+        self._seconds = self._frames * render.fps_base / render.fps
+        self.middle = _MIDDLE[_position(depsgraph.scene_eval)] * self._frames if blurs else 0.0
         self._shutter = _shutter_curve(render) if blurs else None
-        self._camera = scene.camera
-        self._views = [None] * (self._count(self._camera, self._camera) if self._camera else 0)
+        self._camera = camera
+        self._views = [None] * (self._count(camera, camera) if camera else 0)
         self._places = {}  # by key of an instance: rows of its matrix at each key; None where it is missing
         self._particles = set()  # keys of instances
         self._shapes = {}  # by object: its Shape at each key
         self._names = {}  # of these objects
+        self._asking = set()  # objects whose deformation shows
+        self._has_velocities = False  # whether meshes of these store velocities
         self.sentences = []  # on what is not blurred
+        self._keys = 0
+
+    def expect(self):
+        """Looks for what may move, with the depsgraph in the middle, as what exists only then blurs, too."""
         for instance in self._instances():
             self._expect(instance)
         self._keys = max([len(self._views), *map(len, self._places.values())])
 
     def times(self, frame):
         """Pairs of a key, of those with the most keys, and its time in frames. The middle comes last."""
-        middle = frame + self._middle
+        middle = frame + self.middle
         if self._keys < 2:
             return [(0, middle)]
         keys = list(range(self._keys))
@@ -106,7 +121,10 @@ class Motion:
             owner = obj.original.as_pointer()
             shapes = self._shapes.get(owner)
             at = self._place(key, shapes)
-            if at is not None and owner not in seen and self._is_own_data(obj):
+            if key == self._keys // 2 and owner in self._asking and velocities(obj) is not None:
+                self._has_velocities = True
+                self._shapes.pop(owner, None)
+            elif at is not None and owner not in seen and self._is_own_data(obj):
                 seen.add(owner)
                 shapes[at] = object_shape(obj)
 
@@ -133,9 +151,13 @@ class Motion:
         found = self._places.get(_key(instance))
         return found if isinstance(found, np.ndarray) else None
 
-    def shapes(self, obj):
+    def shapes(self, obj, arrays):
         """Fields that the MeshArrays of an object get if it deforms."""
-        found = self._shapes.get(obj.original.as_pointer())
+        owner = obj.original.as_pointer()
+        speeds = velocities(obj) if self._has_velocities and owner in self._asking else None
+        if speeds is not None and len(speeds) == len(arrays.positions):
+            return _moved_by(speeds * self._seconds, arrays)
+        found = self._shapes.get(owner)
         return found if found and self._is_own_data(obj) else {}
 
     def on(self, view):
@@ -147,7 +169,7 @@ class Motion:
             for name, values in (("motion", matrices), ("motion_window", windows))
             if (values != values[:1]).any()
         }
-        if self._blurs and (motion or self._places or self._shapes):
+        if self._blurs and (motion or self._places or self._shapes or self._has_velocities):
             motion["shutter"] = self._shutter
         return view._replace(motion=motion)
 
@@ -168,9 +190,12 @@ class Motion:
         if instance.particle_system:
             self._particles.add(key)
         pointer = owner.as_pointer()
+        if not self._asks(obj, parent, "use_deform_motion"):
+            return
+        self._asking.add(pointer)
         if len(self._shapes.get(pointer, ())) >= count or not self._is_own_data(obj):
             return
-        if self._asks(obj, parent, "use_deform_motion") and self._may_deform(owner):
+        if self._may_deform(owner):
             self._shapes[pointer] = [None] * count
             self._names[pointer] = owner.name
 
@@ -224,6 +249,14 @@ class Motion:
             f"moved_{field}": None if middle[i] is None else np.stack([each[i] for each in shapes])
             for i, field in enumerate(middle._fields)
         }
+
+
+def _moved_by(way, arrays):
+    """Fields of MeshArrays that move by [vertices x 3] from the first key to the last; their normals stay."""
+    normals = {"moved_corner_normals": arrays.corner_normals, "moved_vertex_normals": arrays.vertex_normals}
+    found = {name: None if each is None else np.stack([each] * 3) for name, each in normals.items()}
+    found["moved_positions"] = arrays.positions + np.multiply.outer(np.float32((-0.5, 0.0, 0.5)), way)
+    return found
 
 
 def _position(scene):

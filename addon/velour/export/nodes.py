@@ -141,20 +141,26 @@ def approximation_node(material):
 
 def active_output(tree, idname):
     """The output node that Cycles renders, or None: its own before that of all engines, and the active one of
-    these. That of another engine only if there is no other."""
-    order = {"CYCLES": 0, "ALL": 1}
-    outputs = [node for node in tree.nodes if node.bl_idname == idname]
-    return min(
-        outputs,
-        key=lambda node: (order.get(getattr(node, "target", "ALL"), 2), not node.is_active_output),
-        default=None,
-    )
+    these."""
+    order = ("CYCLES", "ALL")
+    outputs = [node for node in tree.nodes if node.bl_idname == idname and node.target in order]
+    return min(outputs, key=lambda node: (order.index(node.target), not node.is_active_output), default=None)
+
+
+def link_to(socket):
+    """The link whose value an input socket takes, or None.
+
+    Links stay in a tree when they are muted, close a cycle, or a node's settings hide a socket at their ends.
+    """
+    link = socket.links[0] if socket.is_linked and socket.links else None
+    if link is None or link.is_muted or not link.is_valid:
+        return None
+    return link if link.from_socket.enabled and link.to_socket.enabled else None
 
 
 def output(socket):
-    """The output socket that feeds an input socket, through reroutes; None if it is unlinked or muted."""
-    while socket.is_linked and socket.links and not socket.links[0].is_muted:
-        link = socket.links[0]
+    """The output socket that feeds an input socket, through reroutes; None if its own value applies."""
+    while link := link_to(socket):
         if link.from_node.bl_idname != "NodeReroute":
             return link.from_socket
         socket = link.from_node.inputs[0]

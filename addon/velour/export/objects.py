@@ -94,6 +94,7 @@ class ObjectExport:
         self._groups = InstanceGroups(scene, notes)
         self._placements = Placements(materials, notes)
         self._shows_uvs = shows_uvs
+        self._cycles = None  # Cycles' settings of the scene, if it is enabled
         self._drawn = None  # the evaluated view layer, whose image Blender may draw strokes over
         self.owners = []  # Owners of the instances in the scene
         self.shines = False  # whether any light emits
@@ -103,7 +104,7 @@ class ObjectExport:
         self._some_are_wide = False  # whether some lights have a size, besides suns
 
     def add_all(self, depsgraph):
-        self.add_shown(depsgraph, lambda instance: instance.show_self)
+        self.add_shown(depsgraph, lambda _instance: True)
 
     def add_shown(self, depsgraph, is_shown):
         """Adds the instances for which `is_shown` is true."""
@@ -111,13 +112,14 @@ class ObjectExport:
 
     def add_geometry(self, depsgraph, is_wanted):
         """Adds only the geometry, visible to all rays, of instances for which `is_wanted` is true."""
-        self._add(depsgraph, lambda instance: instance.show_self and is_wanted(instance), geometry_alone=True)
+        self._add(depsgraph, is_wanted, geometry_alone=True)
 
     def _add(self, depsgraph, is_wanted, geometry_alone=False):
         metres = metres_per_unit(depsgraph.scene)
         layer = depsgraph.view_layer_eval
         override = layer.material_override
         self._drawn = None if geometry_alone else layer
+        self._cycles = getattr(depsgraph.scene_eval, "cycles", None)
         visibility = None if geometry_alone else Visibility(depsgraph.view_layer, self._notes)
         for instance in depsgraph.object_instances:
             self._check_break()
@@ -125,6 +127,10 @@ class ObjectExport:
             if not is_wanted(instance):
                 continue
             obj = instance.object
+            if not instance.show_self:
+                if instance.show_particles:
+                    self._note_hair(obj)  # which renderers show without the surface that it grows on
+                continue
             kind = obj.type
             if kind == "LIGHT" and not geometry_alone:
                 instancer = instance.parent if instance.is_instance else None
@@ -170,7 +176,9 @@ class ObjectExport:
             self._note_unsupported(obj)
             return None
         if obj.modifiers:
-            self._note_extras(obj)
+            self._note_hair(obj)
+            if _is_diced(obj, self._cycles):
+                self._notes.add(f"Object '{obj.name}': adaptive subdivision is not supported; ignored.")
         data = obj.data
         materials = (override,) if override else tuple(_materials(obj, data))
         mesh = self._mesh(obj, data, materials)
@@ -231,7 +239,7 @@ class ObjectExport:
         if not self._meshes.has(key, obj):
             arrays = object_arrays(obj, *asked, self._queue.empty, self._shows_uvs)
             if arrays and self._motion:
-                arrays = arrays._replace(**self._motion.shapes(obj))
+                arrays = arrays._replace(**self._motion.shapes(obj, arrays))
             self._meshes[key] = arrays and _Mesh(
                 self._queue.add(arrays, obj.name),
                 arrays.slot_count,
@@ -272,15 +280,13 @@ class ObjectExport:
                 if not has_colors(obj, asked):
                     self._notes.add(missing_colors(obj, asked, material.name))
 
-    def _note_extras(self, obj):
-        """Notes hair and adaptive subdivision, which renderers add to the evaluated mesh."""
-        for system in obj.particle_systems:
+    def _note_hair(self, obj):
+        for modifier in obj.modifiers:
+            if modifier.type != "PARTICLE_SYSTEM" or not modifier.show_render:
+                continue
+            system = modifier.particle_system
             if system.settings.type == "HAIR" and system.settings.render_type == "PATH":
                 self._notes.add(f"Object '{obj.name}': hair '{system.name}' is not supported; left out.")
-        # A setting of the object before Blender 5.0, of its modifier since.
-        adaptive = (getattr(obj, "cycles", None), *obj.modifiers)
-        if any(getattr(place, "use_adaptive_subdivision", False) for place in adaptive):
-            self._notes.add(f"Object '{obj.name}': adaptive subdivision is not supported; ignored.")
 
     def _note_unsupported(self, obj):
         kind = _UNSUPPORTED.get(obj.type)
@@ -302,6 +308,17 @@ def _shown_uv_set(obj, arrays, uv_maps):
     if not has_uv_maps(obj):
         return -1
     return len(arrays.more_uvs) if uv_maps else 0
+
+
+def _is_diced(obj, cycles):
+    """Whether Cycles subdivides an object adaptively. `cycles`: its settings of the scene, or None."""
+    last = obj.modifiers[-1]
+    if last.type != "SUBSURF" or not last.show_render:
+        return False
+    if hasattr(last, "use_adaptive_subdivision"):  # 5.0 and newer
+        return last.use_adaptive_subdivision
+    is_experimental = getattr(cycles, "feature_set", "") == "EXPERIMENTAL"
+    return is_experimental and getattr(getattr(obj, "cycles", None), "use_adaptive_subdivision", False)
 
 
 def _asset(obj):

@@ -4,7 +4,7 @@ from typing import Any, NamedTuple
 
 import bpy
 
-from .nodes import first_input, model_texture
+from .nodes import first_input, link_to, model_texture
 
 # Whether Cycles sees a tree without groups, reroutes and muted nodes: 5.0 and newer.
 INLINES = hasattr(bpy.types.Material, "inline_shader_nodes")
@@ -113,10 +113,8 @@ def fed_by(plug):
 
 
 def _step_into(plug):
-    socket, groups = plug
-    if not (socket.is_linked and socket.links) or socket.links[0].is_muted:
-        return plug
-    return Plug(socket.links[0].from_socket, groups)
+    link = link_to(plug.socket)
+    return Plug(link.from_socket, plug.groups) if link else plug
 
 
 def _step_out_of(plug):

@@ -91,7 +91,7 @@ class SceneExport:
         others = [each for each in info["warning_codes"] if each["code"] not in _NAMED_BEFORE]
         for sentence in sentences(others, metres=metres_per_unit(depsgraph.scene)):
             self.notes.add(sentence)
-        surroundings = _surroundings(depsgraph.scene.camera, objects.owner(info["camera_inside"]))
+        surroundings = _surroundings(view.camera, objects.owner(info["camera_inside"]))
         if surroundings:
             self.notes.add(surroundings)
         return Export(self.scene, self.materials, surroundings, self._passes(depsgraph, objects))
@@ -138,6 +138,6 @@ def _surroundings(camera, owner):
     if owner is None:
         return ""
     return (
-        f"Camera '{camera.name}': it is inside object '{owner}' and sees nothing else; move it out, hide"
+        f"Camera '{camera}': it is inside object '{owner}' and sees nothing else; move it out, hide"
         " the object from renders, or raise the camera's Clip Start."
     )
