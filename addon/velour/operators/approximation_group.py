@@ -84,7 +84,8 @@ def _build(tree, material, images, is_seen_through, fed):
     frame.name = frame.label = FRAME
     for added in set(tree.nodes) - others - {frame}:
         added.parent = added.parent or frame
-    for socket in fed if sink.inputs[0].is_linked else {*fed, sink.inputs[0]}:
+    surface = next(socket for socket in sink.inputs if socket.type == "SHADER")
+    for socket in fed if surface.is_linked else {*fed, surface}:
         tree.links.new(shader, socket)
     for user, _node in _users(tree) if is_seen_through else ():
         if hasattr(user, "shadow_method"):  # EEVEE before 4.2 requires it

@@ -51,10 +51,10 @@ def wanted(info):
 
 
 def put(tree, inputs):
-    """Gives the tree these inputs; those that it has keep their links and values."""
-    names = [each.name for each in inputs]
+    """Gives the tree these of Velour's inputs; those that it has keep their links and values."""
+    others = {each.name for each in (*_LOOK, _ROTATION, *_TILES)} - {each.name for each in inputs}
     for socket in list(_sockets(tree)):
-        if socket.name not in names:
+        if socket.name in others:
             _remove(tree, socket)
     existing = {socket.name for socket in _sockets(tree)}
     added = [each for each in inputs if each.name not in existing]

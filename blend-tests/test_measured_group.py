@@ -1,0 +1,72 @@
+"""The node group of a measured material: nodes and inputs of the artist's own, and materials that share it."""
+
+import bpy
+import numpy as np
+
+from support import inputs, scenes
+from support.blender import BlenderTest
+
+_TILES = {"texels": (4, 4)}
+
+
+def _group(material):
+    return scenes.velour_node(material).group
+
+
+def _put_tile(material):
+    """Puts an approximation with all images into the group of a material."""
+    colors = np.random.default_rng(1).random((4, 4, 4), np.float32)
+    colors[..., 3] = 1
+    found = inputs.module("core.approximation").UNFITTED._replace(
+        color_map=colors,
+        normal_map=np.ones((4, 4, 3), np.float32),
+        height_map=np.eye(4, dtype=np.float32),
+    )
+    inputs.module("operators.approximation_group").put(scenes.velour_node(material), material, found, _TILES)
+
+
+def _add_first_output(tree, name):
+    if hasattr(tree, "interface"):  # 4.0 and newer
+        socket = tree.interface.new_socket(name=name, in_out="OUTPUT", socket_type="NodeSocketColor")
+        tree.interface.move(socket, 0)
+    else:
+        tree.outputs.new("NodeSocketColor", name)
+        tree.outputs.move(len(tree.outputs) - 1, 0)
+
+
+def _add_input(tree, name):
+    if hasattr(tree, "interface"):  # 4.0 and newer
+        tree.interface.new_socket(name=name, in_out="INPUT", socket_type="NodeSocketFloat")
+    else:
+        tree.inputs.new("NodeSocketFloat", name)
+
+
+class OwnParts(BlenderTest):
+    """What an artist has added to the group."""
+
+    def setUp(self):
+        super().setUp()
+        self.material = scenes.measured_material(inputs.weave_model())
+        _put_tile(self.material)
+        self.tree = _group(self.material).node_tree
+
+    def test_inputs_stay(self):
+        _add_input(self.tree, "Dirt")
+        _group(self.material).inputs["Dirt"].default_value = 0.25
+        source = next(node for node in self.tree.nodes if node.bl_idname == "NodeGroupInput")
+        own = self.tree.nodes.new("ShaderNodeMath")
+        self.tree.links.new(source.outputs["Dirt"], own.inputs[0])
+        module, node = inputs.module("operators.approximation_group"), scenes.velour_node(self.material)
+        module.put_inputs(node, self.material, {"isotropic": True})
+        self.assertNotIn("Rotation", node.group.inputs)
+        module.put_inputs(node, self.material, _TILES)
+        self.assertIn("Rotation", node.group.inputs)
+        self.assertEqual(node.group.inputs["Dirt"].default_value, 0.25)
+        self.assertEqual(own.inputs[0].links[0].from_socket.name, "Dirt")
+
+    def test_outputs_may_come_first(self):
+        _add_first_output(self.tree, "Mask")
+        _put_tile(self.material)
+        sink = next(node for node in self.tree.nodes if node.bl_idname == "NodeGroupOutput")
+        self.assertFalse(sink.inputs["Mask"].is_linked)
+        self.assertTrue(sink.inputs["BSDF"].is_linked)
