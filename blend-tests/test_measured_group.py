@@ -1,4 +1,4 @@
-"""The node group of a measured material: nodes and inputs of the artist's own, and materials that share it."""
+"""The node group of a measured material: an artist's own nodes and inputs, and materials that share it."""
 
 import bpy
 import numpy as np
@@ -23,6 +23,16 @@ def _put_tile(material):
         height_map=np.eye(4, dtype=np.float32),
     )
     inputs.module("operators.approximation_group").put(scenes.velour_node(material), material, found, _TILES)
+
+
+def _built(tree, idname):
+    """The only node of a type in the frame."""
+    (node,) = inputs.module("operators.approximation_image").built_nodes(tree, idname)
+    return node
+
+
+def _images(material):
+    return inputs.module("operators.approximation_image").images_of(_group(material).node_tree)
 
 
 def _add_first_output(tree, name):
@@ -50,6 +60,11 @@ class OwnParts(BlenderTest):
         _put_tile(self.material)
         self.tree = _group(self.material).node_tree
 
+    def _add_picture(self, name):
+        node = self.tree.nodes.new("ShaderNodeTexImage")
+        node.image = bpy.data.images.new(name, 2, 2, is_data=name == "Scratches")
+        return node
+
     def test_inputs_stay(self):
         _add_input(self.tree, "Dirt")
         _group(self.material).inputs["Dirt"].default_value = 0.25
@@ -70,3 +85,30 @@ class OwnParts(BlenderTest):
         sink = next(node for node in self.tree.nodes if node.bl_idname == "NodeGroupOutput")
         self.assertFalse(sink.inputs["Mask"].is_linked)
         self.assertTrue(sink.inputs["BSDF"].is_linked)
+
+    def test_images_are_not_those_of_the_tile(self):
+        images = _images(self.material)
+        for name in ("Dirt", "Scratches"):
+            self._add_picture(name)
+        self.assertEqual(_images(self.material), images)
+        scenes.add_plane(self.material)
+        bpy.ops.velour.displace()
+        self.assertEqual(_images(self.material), images)
+
+    def test_images_are_not_those_of_a_brdf(self):
+        unfitted = inputs.module("core.approximation").UNFITTED
+        node = scenes.velour_node(self.material)
+        inputs.module("operators.approximation_group").put(node, self.material, unfitted)
+        self._add_picture("Dirt")
+        self.assertIsNone(_images(self.material).colors)
+
+    def test_a_shader_is_not_that_of_the_tile(self):
+        own = self.tree.nodes.new("ShaderNodeBsdfPrincipled")
+        self.tree.links.new(self._add_picture("Dirt").outputs["Alpha"], own.inputs["Alpha"])
+        self.assertFalse(inputs.module("operators.approximation_image").shows_behind(self.tree))
+
+    def test_normal_maps_keep_their_uv_map(self):
+        own = self.tree.nodes.new("ShaderNodeNormalMap")
+        own.uv_map = "Mine"
+        scenes.velour_node(self.material).velour.placement.uv_map = "Other"
+        self.assertEqual(own.uv_map, "Mine")

@@ -10,6 +10,7 @@ from ..properties.approximation_state import VIEW_ANGLES
 from . import approximation_look, closure_network, group_inputs
 from .approximation_image import (
     COLORS,
+    FRAME,
     HEIGHT,
     NORMALS,
     ROUGHNESS,
@@ -18,13 +19,14 @@ from .approximation_image import (
     add_mapping,
     add_texture,
     images_of,
+    is_built,
     is_open,
+    shows_behind,
 )
 from .look_nodes import LookNodes
 
 _NO_IMAGES = TileImages()
 DISPLACEMENT = "Displacement"  # output of the group, if its tile has a relief
-FRAME = "Other Engines"  # contains the nodes that are replaced; an artist's own nodes are outside of it
 
 
 def has_layers():
@@ -91,12 +93,6 @@ def _build(tree, material, images, is_seen_through, fed):
         if hasattr(user, "shadow_method"):  # EEVEE before 4.2 requires it
             user.blend_method = user.shadow_method = "HASHED"
     _follow(tree, material)
-
-
-def shows_behind(tree):
-    """Whether the nodes of a group are transparent in places."""
-    alphas = (node.inputs["Alpha"] for node in tree.nodes if node.bl_idname == "ShaderNodeBsdfPrincipled")
-    return any(alpha.is_linked for alpha in alphas)
 
 
 def put_inputs(node, material, info):
@@ -276,7 +272,7 @@ def _clear(tree, keeps_images=False):
 
     Returns the sockets that its shader fed.
     """
-    found, ours = images_of(tree), {node for node in tree.nodes if _is_built(node)}
+    found, ours = images_of(tree), {node for node in tree.nodes if is_built(node)}
     leaving = (link for link in tree.links if link.from_node in ours and link.to_node not in ours)
     fed = [link.to_socket for link in leaving if link.from_socket.type == "SHADER"]
     for node in ours:
@@ -285,12 +281,6 @@ def _clear(tree, keeps_images=False):
         if image is not None and image.users == 0 and not keeps_images:
             bpy.data.images.remove(image)
     return fed
-
-
-def _is_built(node):
-    while node is not None and not node.name.startswith(FRAME):
-        node = node.parent
-    return node is not None
 
 
 def _remember(state, approximation, model):

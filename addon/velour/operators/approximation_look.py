@@ -19,7 +19,7 @@ from ..export.nodes import (
 )
 from ..export.uv_maps import linked_uv_map, placed_by
 from ..properties import changed
-from .approximation_image import height_range
+from .approximation_image import built_nodes, height_range
 
 # The library's names: names of Blender's sockets across versions.
 _SOCKETS = {
@@ -31,6 +31,7 @@ _SOCKETS = {
     "coat": ("Coat Weight", "Clearcoat"),
     "coat_roughness": ("Coat Roughness", "Clearcoat Roughness"),
 }
+_WITH_UV_MAP = ("ShaderNodeTangent", "ShaderNodeNormalMap")
 HEIGHT = "Height of Relief"  # label of the node with the height for one repeat, in meters
 _NEGLIGIBLE = 1e-6
 
@@ -118,10 +119,10 @@ def _place(node):
         _set(group.inputs["Repeats"], "default_value", (*repeats, 1.0))
         _set(group.inputs["Offset"], "default_value", (*placement.offset, 0.0))
     if group.node_tree.library is None:
-        for part in group.node_tree.nodes:
-            if part.bl_idname in ("ShaderNodeTangent", "ShaderNodeNormalMap"):
-                _set(part, "uv_map", placed_by(node))
-            elif part.label == HEIGHT:
+        for part in built_nodes(group.node_tree, *_WITH_UV_MAP):
+            _set(part, "uv_map", placed_by(node))
+        for part in built_nodes(group.node_tree, "ShaderNodeMath"):
+            if part.label == HEIGHT:
                 height = fitted(group.node_tree)["height"] / placement.density()[0]
                 _set(part.inputs[1], "default_value", height)
 

@@ -9,7 +9,7 @@ from ..export.measured_look import INPUTS, former_look
 from ..export.nodes import active_output, approximation_node, former_node, source
 from ..native import VelourError
 from . import approximation_group, approximation_look, measured_group
-from .approximation_image import TileImages, images_of
+from .approximation_image import TileImages, images_of, shows_behind
 
 # Settings of the former node that are inputs now, or belong to the model.
 _ELSEWHERE = ("enabled", "tint", "exposure", "roughness", "rotation", "neighbors", "job")
@@ -89,12 +89,12 @@ def _copy_settings(given, target):
 
 def _build(node, material, approximation):
     """Gives the group the inputs of its model, and the nodes of the former group."""
-    tree, found, shows_behind = node.group.node_tree, TileImages(), False
+    tree, found, is_seen_through = node.group.node_tree, TileImages(), False
     if approximation is not None and approximation.node_tree.velour.fitted:
         before = approximation.node_tree
         _copy_settings(before.velour, tree.velour)
-        found, shows_behind = images_of(before), approximation_group.shows_behind(before)
-    approximation_group.build(node, material, _info(node, found.colors), found, shows_behind)
+        found, is_seen_through = images_of(before), shows_behind(before)
+    approximation_group.build(node, material, _info(node, found.colors), found, is_seen_through)
 
 
 def _info(node, colors):
