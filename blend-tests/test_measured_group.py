@@ -112,3 +112,62 @@ class OwnParts(BlenderTest):
         own.uv_map = "Mine"
         scenes.velour_node(self.material).velour.placement.uv_map = "Other"
         self.assertEqual(own.uv_map, "Mine")
+
+
+class Shared(BlenderTest):
+    """Materials of one group, whose placements differ."""
+
+    def _follow(self, *materials):
+        for material in materials:
+            inputs.module("operators.approximation_look").follow(material)
+
+    def test_nodes_in_the_group_follow_the_first_alone(self):
+        """If each changed them in turn, the scene would be updated without end."""
+        first = scenes.measured_material(inputs.weave_model())
+        _put_tile(first)
+        second = first.copy()
+        for material, name, density in ((first, "First", 1.0), (second, "Second", 4.0)):
+            placement = scenes.velour_node(material).velour.placement
+            placement.mode, placement.uv_density = "REAL_SIZE", (density,) * 2
+            _group(material).inputs["Vector"].links[0].from_node.uv_map = name
+        look, tree = inputs.module("operators.approximation_look"), _group(first).node_tree
+        maths = (node for node in tree.nodes if node.label == look.HEIGHT)
+        (height,), relief = maths, _built(tree, "ShaderNodeNormalMap")
+        for order in ((first, second), (second, first)):
+            self._follow(*order)
+            self.assertEqual(relief.uv_map, "First")
+            self.assert_close(height.inputs[1].default_value, look.fitted(tree)["height"], 1e-6)
+        repeats = [_group(material).inputs["Repeats"].default_value[0] for material in (first, second)]
+        self.assertNotEqual(*repeats)
+
+    def test_two_nodes_of_one_material_do_not_change_it_in_turn(self):
+        material = scenes.measured_material(inputs.weave_model())
+        _put_tile(material)
+        node = _group(material)
+        other = material.node_tree.nodes.new("ShaderNodeGroup")
+        other.node_tree = node.node_tree
+        other.velour.placement.uv_map = "Other"
+        node.inputs["Vector"].links[0].from_node.uv_map = "First"
+        self._follow(material)
+        self.assertEqual(_built(node.node_tree, "ShaderNodeNormalMap").uv_map, "First")
+
+
+class InCycles(BlenderTest):
+    def setUp(self):
+        super().setUp()
+        scenes.set_world()
+        scenes.add_camera(ortho_scale=1.5)
+
+    def _picture(self, name):
+        scene = scenes.use_engine(size=16)
+        scene.render.engine = "CYCLES"
+        scene.cycles.samples, scene.cycles.max_bounces, scene.cycles.use_denoising = 16, 0, False
+        return scenes.render(self.folder, name)[..., :3]
+
+    def test_meshes_without_the_uv_map_show_anisotropy(self):
+        material = scenes.measured_material(inputs.brushed_model())
+        bpy.ops.velour.approximate(material=material.name)
+        scenes.add_plane(material)
+        shown = self._picture("map").mean()
+        scenes.velour_node(material).velour.placement.uv_map = "Missing"
+        self.assert_close(self._picture("no map").mean(), shown, 0.1 * shown)

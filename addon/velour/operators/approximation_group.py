@@ -116,7 +116,7 @@ def _users(tree):
 
 
 def _follow(tree, material):
-    """Updates the materials that use a group; `material` last, since nodes in the group have its UV map."""
+    """Updates the materials that use a group, and `material`."""
     for user, _node in _users(tree):
         approximation_look.follow(user)
     approximation_look.follow(material)

@@ -14,6 +14,7 @@ from ..export.nodes import (
     approximation_node,
     first_input,
     measured_nodes,
+    nodes_of,
     source,
     velour_node,
 )
@@ -118,13 +119,19 @@ def _place(node):
         repeats = _repeats(placement, fitted(group.node_tree)["tile_metres"])
         _set(group.inputs["Repeats"], "default_value", (*repeats, 1.0))
         _set(group.inputs["Offset"], "default_value", (*placement.offset, 0.0))
-    if group.node_tree.library is None:
+    if group.node_tree.library is None and _leads(group):
         for part in built_nodes(group.node_tree, *_WITH_UV_MAP):
             _set(part, "uv_map", placed_by(node))
         for part in built_nodes(group.node_tree, "ShaderNodeMath"):
             if part.label == HEIGHT:
                 height = fitted(group.node_tree)["height"] / placement.density()[0]
                 _set(part.inputs[1], "default_value", height)
+
+
+def _leads(group):
+    """Whether a node is the first that uses its group. The nodes in the group follow this one alone: each
+    time that others changed them, the scene would be updated again, without end."""
+    return group.node_tree.users == 1 or nodes_of(group.node_tree)[:1] == [group]
 
 
 def socket_of(shader, name):
