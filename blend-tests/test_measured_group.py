@@ -164,6 +164,29 @@ class InCycles(BlenderTest):
         scene.cycles.samples, scene.cycles.max_bounces, scene.cycles.use_denoising = 16, 0, False
         return scenes.render(self.folder, name)[..., :3]
 
+    def test_tiles_without_a_vector_have_the_uv_map(self):
+        """As in a material that the group was added to."""
+        material = scenes.measured_material(inputs.weave_model())
+        _put_tile(material)
+        scenes.add_plane(material)
+        scenes.set_look(material, rotation=0.5, scale=0.8)
+        scenes.velour_node(material).velour.placement.offset = 0.1, 0.2
+        linked, tree = self._picture("linked"), material.node_tree
+        self.assertGreater(np.ptp(linked), 0.1)
+        tree.links.remove(_group(material).inputs["Vector"].links[0])
+        np.testing.assert_allclose(self._picture("unlinked"), linked, atol=1e-3)
+
+    def test_another_material_does_not_show_hidden_inputs(self):
+        material = scenes.measured_material(inputs.weave_model())
+        _put_tile(material)
+        other = scenes.diffuse_material(name="Other")
+        node = other.node_tree.nodes.new("ShaderNodeGroup")
+        node.node_tree = _group(material).node_tree
+        scenes.add_plane(other)
+        bpy.context.view_layer.update()
+        self.assertTrue(node.inputs["Repeats"].hide and node.inputs["Offset"].hide)
+        self.assertFalse(node.inputs["Scale"].hide)
+
     def test_meshes_without_the_uv_map_show_anisotropy(self):
         material = scenes.measured_material(inputs.brushed_model())
         bpy.ops.velour.approximate(material=material.name)

@@ -137,9 +137,14 @@ def add_mapping(tree, source, look):
     turn.location, mapping.location = (-1000, -160), (-800, 0)
     mapping.vector_type = "TEXTURE"  # the inverse: its scale is the size of a tile
     size = look.vector("DIVIDE", (1.0,) * 3, source.outputs["Repeats"])
+    given, offset, uvs = source.outputs["Vector"], source.outputs["Offset"], tree.nodes.new("ShaderNodeUVMap")
+    uvs.location = -1000, -1000
+    missing = look.math("LESS_THAN", look.vector("DOT_PRODUCT", given, given, output="Value"), 1e-12)
+    # Added to the location, since exporters follow the link of the vector to the UV Map node outside.
+    unlinked = look.vector("SCALE", uvs.outputs["UV"], scale=missing)
     links = {
-        "Vector": source.outputs["Vector"],
-        "Location": source.outputs["Offset"],
+        "Vector": given,
+        "Location": look.vector("SUBTRACT", offset, unlinked),
         "Rotation": turn.outputs["Vector"],
         "Scale": look.vector("SCALE", size, scale=source.outputs["Scale"]),
     }

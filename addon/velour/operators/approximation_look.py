@@ -32,7 +32,7 @@ _SOCKETS = {
     "coat": ("Coat Weight", "Clearcoat"),
     "coat_roughness": ("Coat Roughness", "Clearcoat Roughness"),
 }
-_WITH_UV_MAP = ("ShaderNodeTangent", "ShaderNodeNormalMap")
+_WITH_UV_MAP = ("ShaderNodeTangent", "ShaderNodeNormalMap", "ShaderNodeUVMap")
 HEIGHT = "Height of Relief"  # label of the node with the height for one repeat, in meters
 _NEGLIGIBLE = 1e-6
 
@@ -117,8 +117,10 @@ def _place(node):
         return
     if "Repeats" in group.inputs:
         repeats = _repeats(placement, fitted(group.node_tree)["tile_metres"])
-        _set(group.inputs["Repeats"], "default_value", (*repeats, 1.0))
-        _set(group.inputs["Offset"], "default_value", (*placement.offset, 0.0))
+        for name, value in (("Repeats", (*repeats, 1.0)), ("Offset", (*placement.offset, 0.0))):
+            socket = group.inputs[name]
+            _set(socket, "default_value", value)
+            _set(socket, "hide", not socket.is_linked)  # of Velour, not of the artist
     if group.node_tree.library is None and _leads(group):
         for part in built_nodes(group.node_tree, *_WITH_UV_MAP):
             _set(part, "uv_map", placed_by(node))

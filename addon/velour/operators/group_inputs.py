@@ -13,7 +13,6 @@ class Input(NamedTuple):
     bounds: tuple | None = None
     description: str = ""
     hides_value: bool = False  # only a link has an effect
-    is_hidden: bool = False  # of Velour, not of the artist
 
 
 _LOOK = (
@@ -38,8 +37,8 @@ _TILES = (
     Input("Scale", "Float", default=1.0, bounds=(1e-3, 1e6), description="Factor on the size of the tiles"),
     Input("Vector", "Vector", default=(0, 0, 0), hides_value=True),
     # The placement for other engines, which follows the settings of the material.
-    Input("Repeats", "Vector", default=(1, 1, 1), is_hidden=True),
-    Input("Offset", "Vector", default=(0, 0, 0), is_hidden=True),
+    Input("Repeats", "Vector", default=(1, 1, 1)),
+    Input("Offset", "Vector", default=(0, 0, 0)),
 )
 
 
@@ -63,7 +62,6 @@ def put(tree, inputs):
     for node in nodes_of(tree):
         for each in added:  # a new input of an existing node ignores the default of the tree
             node.inputs[each.name].default_value = each.default
-            node.inputs[each.name].hide = each.is_hidden
 
 
 def put_output(tree, name, kind):
