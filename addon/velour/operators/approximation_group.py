@@ -150,7 +150,7 @@ def _principled(tree, source, sink, fitted, images, is_seen_through):
             tree.links.new(texture.outputs["Alpha"], shader.inputs["Alpha"])
         if images.normals is not None:
             bent = _relief(tree, add_texture(tree, images.normals, tiles, NORMALS), source)
-            relief = relief if tree.velour.displaces else bent
+            relief = relief if tree.velour.displaces and images.height is not None else bent
         if images.height is not None:
             _displace(tree, source, sink, add_texture(tree, images.height, tiles, HEIGHT))
     for socket in filter(None, map(_normal, (shader, base))):
