@@ -182,6 +182,12 @@ def place_of(image):
     return absolute_path(image), image.packed_file.size if image.packed_file else None
 
 
+def model_key(node):
+    """Identifies the model of a MeasuredNode or None, also after an undo."""
+    image = node and node.image
+    return image and (image.velour.sha256 or place_of(image))
+
+
 class ReadFile(NamedTuple):
     """The measurement that a job has read."""
 
