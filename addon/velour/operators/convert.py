@@ -121,19 +121,21 @@ def _follow_animation(tree, name, node):
         place = "placement.rotation" if field == "rotation" else field
         number = list(node.group.inputs).index(socket)
         paths[f"{before}velour.{place}"] = f"{after}inputs[{number}].default_value"
-    for curve in (*_curves(animation.action), *animation.drivers):
+    for curve in (*_curves(animation), *animation.drivers):
         path = curve.data_path
         if path.startswith(before):
             curve.data_path = paths.get(path, after + path.removeprefix(before))
 
 
-def _curves(action):
-    if action is None:
+def _curves(animation):
+    """The F-curves of an AnimData; those of other slots of its action animate other datablocks."""
+    if animation.action is None:
         return ()
-    if hasattr(action, "fcurves"):
-        return action.fcurves
-    bags = (bag for layer in action.layers for strip in layer.strips for bag in strip.channelbags)  # 5.0
-    return [curve for bag in bags for curve in bag.fcurves]
+    if not hasattr(animation, "action_slot"):  # before 4.4
+        return animation.action.fcurves
+    strips = (strip for layer in animation.action.layers for strip in layer.strips)
+    bags = (strip.channelbag(animation.action_slot) for strip in strips if animation.action_slot)
+    return [curve for bag in bags if bag for curve in bag.fcurves]
 
 
 def _own_shader(material):
