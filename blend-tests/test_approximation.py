@@ -35,6 +35,7 @@ _NATIVE = {
     "ShaderNodeRGBCurve",
     "ShaderNodeTangent",
     "ShaderNodeTexImage",
+    "ShaderNodeUVMap",
     "ShaderNodeVectorMath",
     "ShaderNodeVectorRotate",
 }
@@ -365,6 +366,21 @@ class Group(Approximation):
         self.assertIn(old, said())
         bpy.ops.velour.approximate()
         self.assertNotIn(old, said())
+
+    def test_it_is_discarded_if_the_model_is_replaced_meanwhile(self):
+        self._import(self._model_file(inputs.quarters_model(), "quarters"))
+        module, measured = group_module(), inputs.module("operators.measured")
+        steps = module.steps
+
+        def replaced(model):
+            image = measured.packed_model(inputs.model_bytes(inputs.lambert_measurement()), "Other")
+            node = scenes.velour_node(self.material)
+            measured.set_model(self.material, node, image, print, info={"isotropic": True})
+            return steps(model)
+
+        with mock.patch.object(module, "steps", replaced):
+            self.assertEqual(bpy.ops.velour.approximate(), {"CANCELLED"})
+        self.assertNotIn("Vector", group_of(self.material).inputs)
 
     def test_it_replaces_the_surface_and_keeps_its_nodes(self):
         self.obj.active_material = material = scenes.diffuse_material()

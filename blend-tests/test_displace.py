@@ -5,6 +5,7 @@ import numpy as np
 
 from support import inputs, scenes
 from support.blender import BlenderTest
+from support.drawn import drawn
 
 
 class _Weave(BlenderTest):
@@ -12,10 +13,13 @@ class _Weave(BlenderTest):
         super().setUp()
         self.material = scenes.measured_material(inputs.weave_model(), "Weave")
         scenes.add_plane(self.material)
+        self._fit(np.eye(4, dtype=np.float32))
+
+    def _fit(self, height):
         found = inputs.module("core.approximation").UNFITTED._replace(
             color_map=np.ones((4, 4, 4), np.float32),
             normal_map=np.ones((4, 4, 3), np.float32),
-            height_map=np.eye(4, dtype=np.float32),
+            height_map=height,
         )
         node = scenes.velour_node(self.material)
         inputs.module("operators.approximation_group").put(node, self.material, found, {"texels": (4, 4)})
@@ -40,6 +44,25 @@ class Displace(_Weave):
         bpy.ops.velour.displace(enable=False)
         self.assertEqual(self._look(self.material), (True, False))
         self.assertEqual(self._look(displaced), (False, True))
+
+    def test_a_fit_without_a_relief_shows_the_normal_map_until_the_next_with_one(self):
+        bpy.ops.velour.displace()
+        self._fit(None)
+        self.assertEqual(self._look(self.material), (True, True))
+        self._fit(np.eye(4, dtype=np.float32))
+        self.assertEqual(self._look(self.material), (False, True))
+
+    def test_it_can_be_disabled_after_a_fit_without_a_relief(self):
+        bpy.ops.velour.displace()
+        self._fit(None)
+        panel = inputs.module("ui.approximation_panel").VELOUR_MATERIAL_PT_approximation
+        self.assertIn("velour.displace", drawn(panel, material=self.material).operators)
+        bpy.ops.velour.displace(enable=False)
+        self.assertEqual(self._look(self.material), (True, False))
+        self.assertNotIn("velour.displace", drawn(panel, material=self.material).operators)
+        for enable in (True, False):
+            with self.assertRaisesRegex(RuntimeError, "has no relief"):
+                bpy.ops.velour.displace(enable=enable)
 
     def test_without_an_output_nothing_changes(self):
         tree = self.material.node_tree

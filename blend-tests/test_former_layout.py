@@ -3,6 +3,8 @@
 They are converted only if asked to be.
 """
 
+import unittest
+
 import bpy
 import numpy as np
 
@@ -95,6 +97,26 @@ class FormerLayout(BlenderTest):
             np.testing.assert_allclose(node.group.inputs["Tint"].default_value[:3], tint, rtol=1e-6)
             self.assertEqual(node.velour.outline_width, frame)
         self.assertEqual(node.group.inputs["Exposure"].default_value, -1)
+
+    @unittest.skipUnless("action_slot" in bpy.types.AnimData.bl_rna.properties, "slots are new in 4.4")
+    def test_an_animation_may_be_in_any_slot(self):
+        material = self._former()
+        tree, name = material.node_tree, scenes.velour_node(material).name
+        action, path = bpy.data.actions.new("Shared"), f'nodes["{name}"].velour.exposure'
+        animation = tree.animation_data_create()
+        animation.action = action
+        action.slots.new("OBJECT", "Ball")
+        animation.action_slot = slot = action.slots.new("NODETREE", "Tree")
+        strip = action.layers.new("Layer").strips.new(type="KEYFRAME")
+        other, own = (strip.channelbag(each, ensure=True) for each in action.slots)
+        other.fcurves.new("location")
+        own.fcurves.new(path).keyframe_points.insert(1, -1)
+        bpy.ops.velour.convert_materials()
+        self.assertEqual(tree.animation_data.action_slot, slot)
+        (curve,) = strip.channelbag(slot).fcurves
+        self.assertIn(".inputs[", curve.data_path)
+        bpy.context.scene.frame_set(2)
+        self.assertEqual(scenes.velour_node(material).group.inputs["Exposure"].default_value, -1)
 
     def test_a_fit_converts(self):
         material = self._former()

@@ -403,6 +403,23 @@ class Shared(NodeTest):
                 call(material=local.name)
         self.assertEqual(scenes.velour_node(local).image, image)
 
+    def test_overridden_groups_are_refused(self):
+        """Blender resets their nodes when it loads the file."""
+        self.first.use_fake_user = True
+        path = str(self.folder / "library.blend")
+        bpy.ops.wm.save_as_mainfile(filepath=path)
+        bpy.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)
+        with bpy.data.libraries.load(path, link=True) as (_source, target):
+            target.materials = target.node_groups = ["Paint"]
+        local = bpy.data.materials["Paint"].make_local() or bpy.data.materials["Paint"]
+        node = scenes.velour_node(local)
+        node.group.node_tree = node.group.node_tree.override_create()
+        image = node.image
+        for call in (bpy.ops.velour.fit, bpy.ops.velour.approximate):
+            with self.assertRaisesRegex(RuntimeError, "its node group 'Paint.*' overrides that of .*make"):
+                call(material=local.name)
+        self.assertEqual(scenes.velour_node(local).image, image)
+
 
 def _wrap(tree, node):
     """Moves a node into a group of its own, which takes its place."""

@@ -42,6 +42,19 @@ class OpenFile(BlenderTest):
         digests = {image.velour.sha256 for image in (self.node.image, self.node.velour.scene_model)}
         self.assertEqual(digests, {files.sha256(data)})
 
+    def test_other_engines_show_the_model(self):
+        """Whatever the kind of the previous one."""
+        group = inputs.module("operators.approximation_image")
+        for name, data in (
+            ("brdf", inputs.model_bytes(inputs.lambert_measurement())),
+            ("btf", inputs.quarters_model()),
+            ("another", inputs.model_bytes(inputs.glossy_measurement())),
+        ):
+            bpy.ops.velour.open_model(filepath=self._path(f"{name}.velour", data))
+            tree = self.node.group.node_tree
+            self.assertEqual(tree.velour.model, files.sha256(data))
+            self.assertEqual(group.images_of(tree).colors is not None, name == "btf")
+
     def test_what_the_browser_shows(self):
         shown = bpy.ops.velour.open_measurement.get_rna_type().properties["filter_glob"].default.split(";")
         self.assertLessEqual({"*.binary", "*.bsdf", "*.brdf", "*.btf", "btf.json", "btf.csv"}, set(shown))

@@ -44,10 +44,7 @@ class MakesModel(AsksUsers, JobsInSteps):
         if self._advance():
             return None
         (material, node), digest = self._user.find(), sha256(self._data)
-        image = node.image if node is not None else None
-        if (
-            image is None or image.velour.sha256 != digest
-        ):  # an undo took it back; a step here would end its redo
+        if measured.model_key(node) != digest:  # an undo took it back; a step here would end its redo
             return {"CANCELLED"}
         approximation_group.put(node, material, self._steps.result, self._info, digest)
         return {"FINISHED"}
@@ -80,6 +77,7 @@ class VELOUR_OT_approximate(measured.OfMaterial, JobsInSteps, bpy.types.Operator
 
     def _take_turn(self):
         self._job = self._reading = ReadJob(measured.stored_model(self._target).model_and_digest)
+        self._model = measured.model_key(self._target.find()[1])
 
     def _finish(self):
         if self._reading is not None:
@@ -91,6 +89,12 @@ class VELOUR_OT_approximate(measured.OfMaterial, JobsInSteps, bpy.types.Operator
         material, node = self._target.find()
         if material is None:
             self.report({"WARNING"}, "The material no longer exists; its approximation was discarded.")
+            return {"CANCELLED"}
+        if measured.model_key(node) != self._model:  # a step here would end the redo of an undo
+            self.report(
+                {"WARNING"},
+                f"Material '{material.name}' has another model now; this approximation was discarded.",
+            )
             return {"CANCELLED"}
         found = self._steps.result
         if node.group is None:

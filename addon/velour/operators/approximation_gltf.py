@@ -13,7 +13,7 @@ from ..core.approximation_gltf import base_and_metallic, extensions
 from ..core.approximation_uv import gltf_transform, nearest_step
 from ..export.color import working_to_rec709
 from ..export.nodes import approximation_node
-from .approximation_image import TileImages, images_to_export
+from .approximation_image import TileImages, built_nodes, images_to_export
 from .approximation_look import is_surface, shown
 
 _TRANSFORM = "KHR_texture_transform"
@@ -66,7 +66,7 @@ def _extend(gltf_material, wanted):
 def _fill_images(gltf_material, tree, pictures, export_settings):
     """Adds the images that the exporter has not found."""
     pbr = gltf_material.pbr_metallic_roughness
-    shader = next(each for each in tree.nodes if each.bl_idname == "ShaderNodeBsdfPrincipled")
+    shader, *_others = built_nodes(tree, "ShaderNodeBsdfPrincipled")
     color, alpha = shader.inputs["Base Color"], shader.inputs["Alpha"]
     if not pbr.base_color_texture:
         pictured = (color, alpha) if alpha.is_linked else (color,)

@@ -12,6 +12,7 @@ from ..properties.approximation_state import VIEW_ANGLES
 from . import approximation_look, closure_network, group_inputs
 from .approximation_image import (
     COLORS,
+    FRAME,
     HEIGHT,
     NORMALS,
     ROUGHNESS,
@@ -20,7 +21,9 @@ from .approximation_image import (
     add_mapping,
     add_texture,
     images_of,
+    is_built,
     is_open,
+    shows_behind,
 )
 from .look_nodes import LookNodes
 
@@ -28,7 +31,6 @@ _NO_IMAGES = TileImages()
 DISPLACEMENT = "Displacement"  # output of the group, if its tile has a relief
 # Masking and shadowing of this Blender's Glossy BSDFs, as for Model.closures.
 MASKING = "separable" if SEPARABLE_SHADOWS else "correlated"
-FRAME = "Other Engines"  # contains the nodes that are replaced; an artist's own nodes are outside of it
 
 
 def has_layers():
@@ -101,18 +103,13 @@ def _build(tree, material, images, is_seen_through, fed):
     frame.name = frame.label = FRAME
     for added in set(tree.nodes) - others - {frame}:
         added.parent = added.parent or frame
-    for socket in fed if sink.inputs[0].is_linked else {*fed, sink.inputs[0]}:
+    surface = next(socket for socket in sink.inputs if socket.type == "SHADER")
+    for socket in fed if surface.is_linked else {*fed, surface}:
         tree.links.new(shader, socket)
     for user, _node in _users(tree) if is_seen_through else ():
         if hasattr(user, "shadow_method"):  # EEVEE before 4.2 requires it
             user.blend_method = user.shadow_method = "HASHED"
     _follow(tree, material)
-
-
-def shows_behind(tree):
-    """Whether the nodes of a group are transparent in places."""
-    alphas = (node.inputs["Alpha"] for node in tree.nodes if node.bl_idname == "ShaderNodeBsdfPrincipled")
-    return any(alpha.is_linked for alpha in alphas)
 
 
 def put_inputs(node, material, info):
@@ -136,7 +133,7 @@ def _users(tree):
 
 
 def _follow(tree, material):
-    """Updates the materials that use a group; `material` last, since nodes in the group have its UV map."""
+    """Updates the materials that use a group, and `material`."""
     for user, _node in _users(tree):
         approximation_look.follow(user)
     approximation_look.follow(material)
@@ -170,7 +167,7 @@ def _principled(tree, source, sink, fitted, images, is_seen_through):
             tree.links.new(texture.outputs["Alpha"], shader.inputs["Alpha"])
         if images.normals is not None:
             bent = _relief(tree, add_texture(tree, images.normals, tiles, NORMALS), source)
-            relief = relief if tree.velour.displaces else bent
+            relief = relief if tree.velour.displaces and images.height is not None else bent
         if images.height is not None:
             height = add_texture(tree, images.height, tiles, HEIGHT)
             _displace(tree, source, sink, height, fitted.get("middle", 0.5))
@@ -295,7 +292,7 @@ def _clear(tree, keeps_images=False):
 
     Returns the sockets that its shader fed.
     """
-    found, ours = images_of(tree), {node for node in tree.nodes if _is_built(node)}
+    found, ours = images_of(tree), {node for node in tree.nodes if is_built(node)}
     leaving = (link for link in tree.links if link.from_node in ours and link.to_node not in ours)
     fed = [link.to_socket for link in leaving if link.from_socket.type == "SHADER"]
     for node in ours:
@@ -304,12 +301,6 @@ def _clear(tree, keeps_images=False):
         if image is not None and image.users == 0 and not keeps_images:
             bpy.data.images.remove(image)
     return fed
-
-
-def _is_built(node):
-    while node is not None and not node.name.startswith(FRAME):
-        node = node.parent
-    return node is not None
 
 
 def _remember(state, approximation, model):

@@ -16,6 +16,7 @@ COLORS, NORMALS, ROUGHNESS, HEIGHT = ROLES = (
     "Roughness",
     "Height",
 )  # labels of their nodes
+FRAME = "Other Engines"  # contains the nodes that are replaced; an artist's own nodes are outside of it
 _KEPT_OPAQUE = 0.999  # mean alpha from which on a map counts as opaque except for noise
 
 
@@ -28,9 +29,27 @@ class TileImages(NamedTuple):
     height: bpy.types.Image | None = None  # 0 to 1; the Displacement node has the scale
 
 
+def is_built(node):
+    """Whether a node is in the frame."""
+    while node is not None and not node.name.startswith(FRAME):
+        node = node.parent
+    return node is not None
+
+
+def built_nodes(tree, *idnames):
+    """The nodes of these types in the frame; all of them in groups of the former layout, without a frame."""
+    found = [node for node in tree.nodes if node.bl_idname in idnames]
+    return [node for node in found if is_built(node)] if any(map(is_built, tree.nodes)) else found
+
+
+def shows_behind(tree):
+    """Whether the nodes of a group are transparent in places."""
+    return any(node.inputs["Alpha"].is_linked for node in built_nodes(tree, "ShaderNodeBsdfPrincipled"))
+
+
 def images_of(tree):
     """The TileImages of a group's nodes."""
-    textures = [node for node in tree.nodes if node.bl_idname == "ShaderNodeTexImage"]
+    textures = built_nodes(tree, "ShaderNodeTexImage")
     found = {_role(node): node.image for node in textures if node.image and not node.velour.enabled}
     return TileImages(*(found.get(role) for role in ROLES))
 
@@ -123,9 +142,14 @@ def add_mapping(tree, source, look):
     turn.location, mapping.location = (-1000, -160), (-800, 0)
     mapping.vector_type = "TEXTURE"  # the inverse: its scale is the size of a tile
     size = look.vector("DIVIDE", (1.0,) * 3, source.outputs["Repeats"])
+    given, offset, uvs = source.outputs["Vector"], source.outputs["Offset"], tree.nodes.new("ShaderNodeUVMap")
+    uvs.location = -1000, -1000
+    missing = look.math("LESS_THAN", look.vector("DOT_PRODUCT", given, given, output="Value"), 1e-12)
+    # Added to the location, since exporters follow the link of the vector to the UV Map node outside.
+    unlinked = look.vector("SCALE", uvs.outputs["UV"], scale=missing)
     links = {
-        "Vector": source.outputs["Vector"],
-        "Location": source.outputs["Offset"],
+        "Vector": given,
+        "Location": look.vector("SUBTRACT", offset, unlinked),
         "Rotation": turn.outputs["Vector"],
         "Scale": look.vector("SCALE", size, scale=source.outputs["Scale"]),
     }

@@ -15,13 +15,14 @@ from ..export.nodes import (
     approximation_node,
     first_input,
     measured_nodes,
+    nodes_of,
     source,
     velour_node,
 )
 from ..export.units import metres_per_unit
 from ..export.uv_maps import linked_uv_map, placed_by
 from ..properties import changed
-from .approximation_image import height_range, middle_of
+from .approximation_image import built_nodes, height_range, middle_of
 
 # The library's names: names of Blender's sockets across versions.
 _SOCKETS = {
@@ -33,6 +34,7 @@ _SOCKETS = {
     "coat": ("Coat Weight", "Clearcoat"),
     "coat_roughness": ("Coat Roughness", "Clearcoat Roughness"),
 }
+_WITH_UV_MAP = ("ShaderNodeTangent", "ShaderNodeNormalMap", "ShaderNodeUVMap")
 HEIGHT = "Height of Relief"  # label of the node with the height for one repeat, in Blender units
 _NEGLIGIBLE = 1e-6
 
@@ -129,15 +131,23 @@ def _place(node):
         return
     if "Repeats" in group.inputs:
         repeats = _repeats(placement, stored(group.node_tree)["tile_metres"])
-        _set(group.inputs["Repeats"], "default_value", (*repeats, 1.0))
-        _set(group.inputs["Offset"], "default_value", (*placement.offset, 0.0))
-    if group.node_tree.library is None:
-        for part in group.node_tree.nodes:
-            if part.bl_idname in ("ShaderNodeTangent", "ShaderNodeNormalMap"):
-                _set(part, "uv_map", placed_by(node))
-            elif part.label == HEIGHT:
+        for name, value in (("Repeats", (*repeats, 1.0)), ("Offset", (*placement.offset, 0.0))):
+            socket = group.inputs[name]
+            _set(socket, "default_value", value)
+            _set(socket, "hide", not socket.is_linked)  # of Velour, not of the artist
+    if group.node_tree.library is None and _leads(group):
+        for part in built_nodes(group.node_tree, *_WITH_UV_MAP):
+            _set(part, "uv_map", placed_by(node))
+        for part in built_nodes(group.node_tree, "ShaderNodeMath"):
+            if part.label == HEIGHT:
                 height = stored(group.node_tree)["height"] / _density_per_unit(placement)
                 _set(part.inputs[1], "default_value", height)
+
+
+def _leads(group):
+    """Whether a node is the first that uses its group. The nodes in the group follow this one alone: each
+    time that others changed them, the scene would be updated again, without end."""
+    return group.node_tree.users == 1 or nodes_of(group.node_tree)[:1] == [group]
 
 
 def socket_of(shader, name):

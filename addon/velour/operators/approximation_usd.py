@@ -8,7 +8,7 @@ import numpy as np
 from ..core.approximation_uv import chain
 from ..export.color import working_to_rec709
 from ..export.nodes import approximation_node
-from .approximation_image import images_to_export
+from .approximation_image import images_to_export, shows_behind
 from .approximation_look import is_surface, shown
 from .materialx_usd import READER as MATERIALX_READER
 from .usd_nodes import add, coordinate_name, exported, value_type
@@ -96,8 +96,7 @@ def _write_images(context, usd_material, shader, tree, values, pictures):
     uvs = _write_uvs(usd_material, values.placed)
     texture, color = texture_of("Velour_Color", pictures.colors, "sRGB", working_to_rec709(values.gain))
     shader.CreateInput("diffuseColor", value_type("Color3f")).ConnectToSource(color)
-    principled = next(node for node in tree.nodes if node.bl_idname == "ShaderNodeBsdfPrincipled")
-    if principled.inputs["Alpha"].is_linked:
+    if shows_behind(tree):
         alpha = texture.CreateOutput("a", value_type("Float"))
         shader.CreateInput("opacity", value_type("Float")).ConnectToSource(alpha)
     if pictures.roughness:

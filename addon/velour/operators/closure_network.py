@@ -102,15 +102,15 @@ class _Network:
         return nodes.vector("NORMALIZE", 2.5, either, label="Normal")
 
     def _add_tangent(self, incoming):
-        nodes = self._nodes
+        # Cycles projects it onto the tangent plane. The offset remains there at normal incidence, and on
+        # meshes without the UV map, where lobes would be black.
+        nodes, offset = self._nodes, (1e-4, 2e-4, 1.5e-4)
         if self._closures.get("frame", "incidence") == "incidence":
-            # Cycles projects it onto the tangent plane. The offset remains there at normal incidence.
-            offset = (1e-4, 2e-4, 1.5e-4)
             self._tangent = nodes.vector("ADD", 3.1, incoming, offset, y=-120, label="Plane of incidence")
             return
-        tangent = nodes.add("ShaderNodeTangent", 3.7, y=-60)
+        tangent = nodes.add("ShaderNodeTangent", 3.1, y=-60)
         tangent.direction_type = "UV_MAP"
-        self._tangent = tangent.outputs[0]
+        self._tangent = nodes.vector("ADD", 3.7, tangent.outputs[0], offset, y=-60, label="Tangent")
         if self._inputs.rotation is not None:
             turn = self._inputs.rotation, 1 / math.tau
             self._turns = nodes.math("MULTIPLY", 3.1, *turn, y=-120, label="Radians to turns")

@@ -9,7 +9,7 @@ from ..export.measured_look import INPUTS, former_look
 from ..export.nodes import active_output, approximation_node, former_node, source
 from ..native import VelourError
 from . import approximation_group, approximation_look, measured_group
-from .approximation_image import TileImages, images_of
+from .approximation_image import TileImages, images_of, shows_behind
 
 # Settings of the former node that are inputs now, or belong to the model.
 _ELSEWHERE = ("enabled", "tint", "exposure", "roughness", "rotation", "neighbors", "job")
@@ -89,12 +89,12 @@ def _copy_settings(given, target):
 
 def _build(node, material, approximation):
     """Gives the group the inputs of its model, and the nodes of the former group."""
-    tree, found, shows_behind = node.group.node_tree, TileImages(), False
+    tree, found, is_seen_through = node.group.node_tree, TileImages(), False
     if approximation is not None and approximation.node_tree.velour.fitted:
         before = approximation.node_tree
         _copy_settings(before.velour, tree.velour)
-        found, shows_behind = images_of(before), approximation_group.shows_behind(before)
-    approximation_group.build(node, material, _info(node, found.colors), found, shows_behind)
+        found, is_seen_through = images_of(before), shows_behind(before)
+    approximation_group.build(node, material, _info(node, found.colors), found, is_seen_through)
 
 
 def _info(node, colors):
@@ -121,19 +121,21 @@ def _follow_animation(tree, name, node):
         place = "placement.rotation" if field == "rotation" else field
         number = list(node.group.inputs).index(socket)
         paths[f"{before}velour.{place}"] = f"{after}inputs[{number}].default_value"
-    for curve in (*_curves(animation.action), *animation.drivers):
+    for curve in (*_curves(animation), *animation.drivers):
         path = curve.data_path
         if path.startswith(before):
             curve.data_path = paths.get(path, after + path.removeprefix(before))
 
 
-def _curves(action):
-    if action is None:
+def _curves(animation):
+    """The F-curves of an AnimData; those of other slots of its action animate other datablocks."""
+    if animation.action is None:
         return ()
-    if hasattr(action, "fcurves"):
-        return action.fcurves
-    bags = (bag for layer in action.layers for strip in layer.strips for bag in strip.channelbags)  # 5.0
-    return [curve for bag in bags for curve in bag.fcurves]
+    if not hasattr(animation, "action_slot"):  # before 4.4
+        return animation.action.fcurves
+    strips = (strip for layer in animation.action.layers for strip in layer.strips)
+    bags = (strip.channelbag(animation.action_slot) for strip in strips if animation.action_slot)
+    return [curve for bag in bags if bag for curve in bag.fcurves]
 
 
 def _own_shader(material):

@@ -26,7 +26,7 @@ class VELOUR_OT_displace(measured.OfMaterial, bpy.types.Operator):
             node = measured.modelled_node(material)
             measured.refuse_linked(material)
             measured.refuse_linked_group(material, node)
-            if node.group is None or images_of(node.group.node_tree).height is None:
+            if not _can_set(node, self.enable):
                 raise ExportError(
                     f"Material '{material.name}' has no relief for other engines; press Refresh under"
                     " Approximation. A flat BTF has none."
@@ -52,6 +52,12 @@ class VELOUR_OT_displace(measured.OfMaterial, bpy.types.Operator):
                 if link.from_socket == ours:
                     material.node_tree.links.remove(link)
             _set_method(material, "BUMP")
+
+
+def _can_set(node, enable):
+    """Whether the group of a MeasuredNode has a relief; one that has lost it in a fit can be disabled."""
+    tree = node.group and node.group.node_tree
+    return tree and (images_of(tree).height is not None or (tree.velour.displaces and not enable))
 
 
 def _displacement_socket(material, node):

@@ -13,7 +13,6 @@ class Input(NamedTuple):
     bounds: tuple | None = None
     description: str = ""
     hides_value: bool = False  # only a link has an effect
-    is_hidden: bool = False  # of Velour, not of the artist
 
 
 _LOOK = (
@@ -39,8 +38,8 @@ _TILES = (
     Input("Scale", "Float", default=1.0, bounds=(1e-3, 1e6), description="Factor on the size of the tiles"),
     Input("Vector", "Vector", default=(0, 0, 0), hides_value=True),
     # The placement for other engines, which follows the settings of the material.
-    Input("Repeats", "Vector", default=(1, 1, 1), is_hidden=True),
-    Input("Offset", "Vector", default=(0, 0, 0), is_hidden=True),
+    Input("Repeats", "Vector", default=(1, 1, 1)),
+    Input("Offset", "Vector", default=(0, 0, 0)),
 )
 
 
@@ -53,10 +52,10 @@ def wanted(info):
 
 
 def put(tree, inputs):
-    """Gives the tree these inputs; those that it has keep their links and values."""
-    names = [each.name for each in inputs]
+    """Gives the tree these of Velour's inputs; those that it has keep their links and values."""
+    others = {each.name for each in (*_LOOK, _ROTATION, *_TILES)} - {each.name for each in inputs}
     for socket in list(_sockets(tree)):
-        if socket.name not in names:
+        if socket.name in others:
             _remove(tree, socket)
     existing = {socket.name for socket in _sockets(tree)}
     added = [each for each in inputs if each.name not in existing]
@@ -65,7 +64,6 @@ def put(tree, inputs):
     for node in nodes_of(tree):
         for each in added:  # a new input of an existing node ignores the default of the tree
             node.inputs[each.name].default_value = each.default
-            node.inputs[each.name].hide = each.is_hidden
 
 
 def put_output(tree, name, kind):

@@ -12,7 +12,7 @@ from ..export.files import read_model
 from ..export.measured_look import constant_look
 from ..export.nodes import approximation_node, velour_node
 from ..properties.approximation_state import VIEW_ANGLES
-from .approximation_image import images_to_export
+from .approximation_image import images_to_export, shows_behind
 from .approximation_look import is_surface, shown, stored
 from .usd_nodes import add, coordinate_name, exported, value_type
 
@@ -107,8 +107,7 @@ def _write_images(context, usd_material, shader, tree, values, pictures):
     _connect(dyed, "in1", "Color3f", color)
     dyed.CreateInput("in2", value_type("Color3f")).Set(tuple(working_to_rec709(values.gain)))
     _connect(shader, "base_color", "Color3f", dyed)
-    principled = next(node for node in tree.nodes if node.bl_idname == "ShaderNodeBsdfPrincipled")
-    if principled.inputs["Alpha"].is_linked:
+    if shows_behind(tree):
         both = _texture(usd_material, "Opacity", "color4", exported(context, pictures.colors), uvs)
         alpha = add(usd_material, "Velour_Alpha", "ND_separate4_color4")
         _connect(alpha, "in", "Color4f", both)

@@ -72,11 +72,14 @@ def refuse_linked(material):
 
 
 def refuse_linked_group(material, node):
-    """Raises ExportError if the node group of a MeasuredNode is linked."""
+    """Raises ExportError if the node group of a MeasuredNode is linked or a library override, whose nodes
+    Blender resets when it loads the file."""
     tree = node.group and node.group.node_tree
-    if tree and tree.library is not None:
+    if tree and (tree.library or tree.override_library):
+        library = tree.library or tree.override_library.reference.library
         raise ExportError(
-            f"Material '{material.name}': its node group '{tree.name}' is linked from {tree.library.filepath}"
+            f"Material '{material.name}': its node group '{tree.name}'"
+            f" {'is linked from' if tree.library else 'overrides that of'} {library.filepath}"
             " and cannot be changed; make it local with the icon beside its name in the Material tab, or"
             " change it in that file."
         )
@@ -180,6 +183,12 @@ def place_of(image):
     if image is None:
         return None
     return absolute_path(image), image.packed_file.size if image.packed_file else None
+
+
+def model_key(node):
+    """Identifies the model of a MeasuredNode or None, also after an undo."""
+    image = node and node.image
+    return image and (image.velour.sha256 or place_of(image))
 
 
 class ReadFile(NamedTuple):

@@ -8,6 +8,7 @@ from ..core.measurement_files import file_filter
 from ..export import ExportError
 from ..export.nodes import velour_node
 from . import measured
+from .approximate import approximate_new
 from .job_target import JobTarget
 from .load_material import found_file
 from .reads_first import ReadsFirst
@@ -23,8 +24,8 @@ _MODELS = ".velour"
 
 
 class _OpensFile(measured.OfMaterial, ReadsFirst, ImportHelper):
-    """Operator mixin. `_kinds`: accepted kinds of files; `_put(material, node, file)` takes the file
-    that was read."""
+    """Operator mixin. `_kinds`: accepted kinds of files; `_put(context, material, node, file)` takes the
+    file that was read."""
 
     filepath: StringProperty(name="File", subtype="FILE_PATH", options={"SKIP_SAVE"})
 
@@ -78,12 +79,12 @@ class _OpensFile(measured.OfMaterial, ReadsFirst, ImportHelper):
             raise ExportError(f"{file.path} is {_NAMES[file.kind]}; choose {wanted}.")
         return file
 
-    def _use(self, _context, file):
+    def _use(self, context, file):
         material, node = self._target.find()
         if node is None:
             self.report({"WARNING"}, "The material no longer exists, so the file was not used.")
             return {"CANCELLED"}
-        self._put(material, node, file)
+        self._put(context, material, node, file)
         return {"FINISHED"}
 
 
@@ -97,7 +98,7 @@ class VELOUR_OT_open_measurement(_OpensFile, bpy.types.Operator):
 
     _kinds = ("measurement", "btf")
 
-    def _put(self, material, node, file):
+    def _put(self, _context, _material, node, file):
         node.velour.measurement = measured.measurement_image(file.path, file.digest)
 
 
@@ -121,8 +122,9 @@ class VELOUR_OT_open_model(ModelUsers, _OpensModel, bpy.types.Operator):
     bl_description = "Choose the file of a fitted model (.velour)"
     bl_options = {"UNDO"}
 
-    def _put(self, material, node, file):
+    def _put(self, context, material, node, file):
         measured.set_model(material, node, self._image(file), self.report, self.users, file.info)
+        approximate_new(context, material, file.info)
 
 
 class VELOUR_OT_open_scene_model(_OpensModel, bpy.types.Operator):
@@ -131,5 +133,5 @@ class VELOUR_OT_open_scene_model(_OpensModel, bpy.types.Operator):
     bl_description = "Choose the file of a model that was fitted for a scene (.velour)"
     bl_options = {"UNDO"}
 
-    def _put(self, material, node, file):
+    def _put(self, _context, _material, node, file):
         node.velour.scene_model = self._image(file)

@@ -43,8 +43,8 @@ class VELOUR_MATERIAL_PT_approximation(MaterialPanel, bpy.types.Panel):
         if wrong:
             draw_sentence(context, layout, f"{wrong} Press Refresh.", icon="ERROR")
         layout.operator(VELOUR_OT_approximate.bl_idname, text="Refresh", icon="FILE_REFRESH")
-        if images_of(group.node_tree).height is not None:
-            is_on = state.displaces
+        is_on = state.displaces
+        if is_on or images_of(group.node_tree).height is not None:
             button = layout.operator(VELOUR_OT_displace.bl_idname, icon="MOD_DISPLACE", depress=is_on)
             button.enable = not is_on
 
