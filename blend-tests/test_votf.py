@@ -196,7 +196,12 @@ class Outline(BlenderTest):
         material = self.material
         panel = inputs.module("ui.outline_panel")
         with unittest.mock.patch.object(panel, "model_summary", return_value=self._info()):
-            return drawn(panel.VELOUR_MATERIAL_PT_outline, material=material, object=bpy.context.object)
+            return drawn(
+                panel.VELOUR_MATERIAL_PT_outline,
+                material=material,
+                object=bpy.context.object,
+                view_layer=bpy.context.view_layer,
+            )
 
     def test_what_is_missing_is_said(self):
         with self.assertRaisesRegex(RuntimeError, "choose the object"):

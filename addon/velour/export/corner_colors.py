@@ -96,7 +96,7 @@ def missing_colors(obj, asked, material_name):
             f" {found.domain.lower()}s, which is not supported; {asked.otherwise:g} is used instead. Convert"
             " it to points, corners or faces."
         )
-    if found is None and asked.name in obj.vertex_groups:
+    if found is None and asked.name and asked.name in obj.vertex_groups:
         return (
             f"Object '{obj.name}': vertex group '{asked.name}' for material '{material_name}' is not read as"
             f" an attribute; {asked.otherwise:g} is used instead. Store its weights in an attribute."
