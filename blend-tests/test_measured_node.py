@@ -385,14 +385,17 @@ class Shared(NodeTest):
         bpy.ops.velour.fit(material="Paint", tolerance=0.2, max_lobes=2)
         self.assertEqual(scenes.velour_node(self.first).group.node_tree, tree)
 
-    def test_linked_groups_are_refused(self):
+    def _local_with_linked_group(self):
         self.first.use_fake_user = True
         path = str(self.folder / "library.blend")
         bpy.ops.wm.save_as_mainfile(filepath=path)
         bpy.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)
         with bpy.data.libraries.load(path, link=True) as (_source, target):
-            target.materials = ["Paint"]
-        local = bpy.data.materials["Paint"].make_local() or bpy.data.materials["Paint"]
+            target.materials = target.node_groups = ["Paint"]
+        return bpy.data.materials["Paint"].make_local() or bpy.data.materials["Paint"]
+
+    def test_linked_groups_are_refused(self):
+        local = self._local_with_linked_group()
         node = scenes.velour_node(local)
         self.assertIsNotNone(node.group.node_tree.library)
         measured = inputs.module("operators.measured")
@@ -405,13 +408,7 @@ class Shared(NodeTest):
 
     def test_overridden_groups_are_refused(self):
         """Blender resets their nodes when it loads the file."""
-        self.first.use_fake_user = True
-        path = str(self.folder / "library.blend")
-        bpy.ops.wm.save_as_mainfile(filepath=path)
-        bpy.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)
-        with bpy.data.libraries.load(path, link=True) as (_source, target):
-            target.materials = target.node_groups = ["Paint"]
-        local = bpy.data.materials["Paint"].make_local() or bpy.data.materials["Paint"]
+        local = self._local_with_linked_group()
         node = scenes.velour_node(local)
         node.group.node_tree = node.group.node_tree.override_create()
         image = node.image
