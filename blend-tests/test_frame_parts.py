@@ -5,12 +5,13 @@ import re
 import resource
 import signal
 import sys
+import unittest
 from unittest import mock
 
 import bpy
 import numpy as np
 
-from support import inputs, scenes
+from support import inputs, level, scenes
 from support.blender import FULL_DISK, BlenderTest, printed, run_blender
 
 OWN_PROCESS = "the largest of its child processes is measured"
@@ -329,6 +330,7 @@ class FrameParts(BlenderTest):
         words = "Noise Threshold needs all samples of the image"
         self._refused(words, blend, "wrong", *folder, "--velour-samples", "0:8")
 
+    @unittest.skipUnless(level.LONG, level.REASON)
     def test_memory_is_stated_and_limited(self):
         blend = self._save(samples=1, size=1024)
         said = self._run(blend, "stated")

@@ -116,6 +116,7 @@ class PageSnippets(SnippetTest):
         self.run_shell(of_data)
         self._has("net_votf.velour")
 
+    @unittest.skipUnless(level.LONG, level.REASON)
     def test_regression(self):
         (self.folder / "shots").mkdir()
         self._shot(self.folder / "shots/paint.blend")

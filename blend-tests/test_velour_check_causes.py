@@ -27,6 +27,7 @@ class Causes(CheckFolderTest):
         self.assertEqual(text.count("<testcase"), 2 + len(_EXPECTED))
         self.assertEqual(text.count("<failure message="), len(_EXPECTED))
 
+    @unittest.skipUnless(level.LONG, level.REASON)
     def test_changes_are_named_through_an_open_lens(self):
         """Every pixel mixes several objects."""
         lens = bpy.context.scene.camera.data.dof

@@ -1,12 +1,14 @@
 """Surfaces that glow, as lights."""
 
 import math
+import unittest
 
 import bpy
 
 from parity import stage
 from parity.case import ALWAYS, NEVER, ParityTest, record
 from parity.shaders import Tree, image
+from support import level
 from support.judge import judge_renders
 
 SQUARE = [(-1, -1, 0), (1, -1, 0), (1, 1, 0), (-1, 1, 0)]
@@ -74,6 +76,7 @@ class Glow(ParityTest):
         self._square(rotation=(math.pi, 0, 0))
         self.assert_parity("Glowing surface: both sides")
 
+    @unittest.skipUnless(level.LONG, level.REASON)
     def test_standing(self):
         """Near the square's plane older Cycles is darker than Lambert's formula, by up to a tenth."""
         self._glow()

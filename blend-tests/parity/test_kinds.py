@@ -2,6 +2,7 @@
 
 import contextlib
 import math
+import unittest
 from pathlib import Path
 
 import bpy
@@ -12,7 +13,7 @@ from velour.export.scene import export_scene
 from parity import stage
 from parity.ground import KindTest
 from parity.shaders import Tree, geometry_nodes
-from support import scenes
+from support import level, scenes
 from support.judge import judge_renders
 
 
@@ -78,6 +79,7 @@ class Emissive(KindTest):
         with contextlib.closing(export.scene) as scene:
             return scene.info()["instances"]
 
+    @unittest.skipUnless(level.LONG, level.REASON)
     def test_text(self):
         bpy.ops.object.text_add(location=(-1.5, 0.3, 0.6), rotation=(1.2, 0, 0))
         self._assert_once("text", 1, body="NEON", extrude=0.1)
@@ -93,6 +95,7 @@ class Emissive(KindTest):
         first.visible_camera = False
         self._assert_once("metaballs", 1, render_resolution=0.15)
 
+    @unittest.skipUnless(level.LONG, level.REASON)
     def test_bevelled_curve(self):
         bpy.ops.curve.primitive_bezier_circle_add(radius=1.2, location=(0, 0, 0.8))
         self._assert_once("curve with a bevel", 1, bevel_depth=0.25)
@@ -110,6 +113,7 @@ class Emissive(KindTest):
         nodes[1].inputs["Material"].default_value = self.glow
         self._assert_once("mesh of a curve by geometry nodes", 1)
 
+    @unittest.skipUnless(level.LONG, level.REASON)
     def test_bare_curve(self):
         """It has no mesh: Cycles does not show it either."""
         stage.sharp_sun()

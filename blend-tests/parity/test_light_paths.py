@@ -1,11 +1,14 @@
 """Clamping, Filter Glossy and Reflective Caustics, as Velour copies them from Cycles."""
 
+import unittest
+
 import bpy
 import numpy as np
 
 from parity import stage
 from parity.case import BoxTest
 from parity.shaders import Tree
+from support import level
 from support.judge import judge_renders
 
 
@@ -86,6 +89,7 @@ class LightPaths(BoxTest):
         self._copy(caustics_reflective=False)
         self._assert_seen("Reflective Caustics: off", samples=4)
 
+    @unittest.skipUnless(level.LONG, level.REASON)
     def test_caustics_of_layers(self):
         """The first surface is diffuse and glossy at once, and so is the second."""
         color = (0.8, 0.3, 0.1, 1)

@@ -8,6 +8,7 @@
 #include "brdf/fit/error/evaluate.h"
 #include "brdf/measure/held_out.h"
 #include "support/analytic_measurement.h"
+#include "support/level.h"
 
 namespace velour::parametric_fit_test {
 namespace {
@@ -106,6 +107,7 @@ TEST(ParametricFit, DoesNotDependOnThreads) {
 }
 
 TEST(ParametricFit, BrushedMetalHasStretchedLobes) {
+  VELOUR_LONG_TEST();  // fits of anisotropic materials are among FailureModes, too
   FitOptions options;
   options.max_lobes = 4;
   const Model model = fitted(AnalyticMeasurement(test::ggx(0.15f, 0.4f), false), options);

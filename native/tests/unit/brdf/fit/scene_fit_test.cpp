@@ -8,6 +8,7 @@
 #include "brdf/fit/parametric/parametric_fit.h"
 #include "support/analytic_measurement.h"
 #include "support/example_shell.h"
+#include "support/level.h"
 #include "support/parametric_models.h"
 #include "support/soft_light.h"
 #include "usage/picture_error.h"
@@ -155,6 +156,7 @@ TEST_F(SceneFit, WhatNoPictureShowsTakesNoBytes) {
 }
 
 TEST_F(SceneFit, MoreViewsTakeMoreBytes) {
+  VELOUR_LONG_TEST();
   const AnalyticMeasurement metal(test::ggx(0.2f, 0.2f));
   full(metal);
   const auto everywhere = std::make_shared<const SceneObservation>(test::softly_lit(256, 64, 0, 89.5f));
