@@ -10,10 +10,6 @@ namespace velour::test {
 /// Whether long tests are asked for too: $VELOUR_LONG_TESTS, which `scripts/test --all` sets.
 inline bool long_tests() { return std::getenv("VELOUR_LONG_TESTS") != nullptr; }
 
-/// Relative bias that comparisons of pictures must be able to see, and the samples for it as a share of those for 0.05.
-inline double seen_bias() { return long_tests() ? 0.05 : 0.08; }
-inline double sample_share() { return long_tests() ? 1 : 0.4; }  // (0.05 / 0.08)^2
-
 }  // namespace velour::test
 
 /// Leaves a test to `scripts/test --all`.

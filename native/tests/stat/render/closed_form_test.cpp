@@ -203,10 +203,9 @@ TEST(ClosedForm, ClosedSphereAddsUpBounces) {
       expected += std::pow(0.5, bounces + 1);
       const bool between = bounces == 1 || bounces == 2;  // the last sum has their terms
       if (between && strategy != Strategy::mis && !test::long_tests()) continue;
-      RenderOptions options = small_options(strategy, test::long_tests() ? 4096 : 1024);
+      RenderOptions options = small_options(strategy, 4096);
       options.bounces = bounces;
-      const double tolerance = test::long_tests() ? 0.015 : 0.03;
-      EXPECT_NEAR(mean_of(rendered(scene, options)), expected, tolerance * expected) << bounces;
+      EXPECT_NEAR(mean_of(rendered(scene, options)), expected, 0.015 * expected) << bounces;
     }
   }
 }
