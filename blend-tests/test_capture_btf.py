@@ -162,10 +162,10 @@ class CaptureBtf(BlenderTest):
         metres = self._capture("metres")
         bpy.context.scene.unit_settings.scale_length = 0.001
         bpy.ops.velour.add_mesostructure(type="GRAVEL", count=3, resolution=8)
-        millimetres = self._capture("millimetres")
+        millimeters = self._capture("millimeters")
         np.testing.assert_allclose(metres["tile_metres"], [0.02, 0.02], rtol=1e-6)
-        np.testing.assert_allclose(millimetres["tile_metres"], metres["tile_metres"], rtol=1e-6)
-        np.testing.assert_allclose(millimetres["shell"]["thickness"], metres["shell"]["thickness"], rtol=1e-5)
+        np.testing.assert_allclose(millimeters["tile_metres"], metres["tile_metres"], rtol=1e-6)
+        np.testing.assert_allclose(millimeters["shell"]["thickness"], metres["shell"]["thickness"], rtol=1e-5)
 
     def test_in_the_tile_s_own_axes(self):
         obj = self._sawtooth()

@@ -6,7 +6,7 @@ from support.farm import FarmTest
 
 _ONE_PASS = 0.001  # seconds: any pass takes longer
 _TURN = "    while not job.wait(timeout=_POLL_SECONDS):\n"
-# As an engine does: the program that runs Blender is told to end, once.
+# What an engine does: the program that runs Blender is told to end, once.
 _END_NODE = """
         if job.poll().fraction > 0.05 and not _Clock.__dict__.get("told"):
             _Clock.told = True

@@ -64,7 +64,7 @@ class AddMesostructure(BlenderTest):
     def test_size_is_true_to_life_in_any_unit(self):
         own = _add(type="GRAVEL")
         self.assert_close(own.velour.period[0], 0.02, 1e-6)
-        bpy.context.scene.unit_settings.scale_length = 0.001  # a unit is a millimetre
+        bpy.context.scene.unit_settings.scale_length = 0.001  # a unit is a millimeter
         large = _add(type="GRAVEL")
         self.assert_close(large.velour.period[0], 20, 1e-3)
         self.assertLess(np.abs(_positions(large) - 1000 * _positions(own)).max(), 1e-3)

@@ -263,7 +263,7 @@ def waiting_given_up(folder):
             break
     assert (state.running, state.subject, state.waiting) == (True, "Paint", 0)
     yield from window.at_rest()
-    assert _model("Paint") != before, "the first one was cancelled"
+    assert _model("Paint") != before, "the first one was canceled"
     assert (_model("Second"), _model("Third")) == (before, before), "one that waited was made"
     assert scenes.velour_node(bpy.data.materials["Paint"]).velour.scene_model is None
 

@@ -25,7 +25,7 @@ def start(folder):
 
 
 def _clear_view():
-    """A 3D viewport without the objects of the start, in a scene of millimetres."""
+    """A 3D viewport without the objects of the start, in a scene of millimeters."""
     for obj in list(bpy.data.objects):
         bpy.data.objects.remove(obj)
     bpy.context.scene.unit_settings.scale_length = 0.001
@@ -147,7 +147,7 @@ def _is_whole(path):
 
 
 def capture_again(folder):
-    """The same button goes on with a capture that was cancelled, and does nothing again."""
+    """The same button goes on with a capture that was canceled, and does nothing again."""
     tile = yield from _tile_in_properties("OBJECT")
     path = _start_capture(folder / "again", texels=32, views=24, lights=24, samples=16)
     for _ in range(_TURNS):

@@ -42,7 +42,7 @@ def _is_there(page: Path, target: str) -> bool:
 
 
 def _anchors(text: str) -> set[str]:
-    """As GitHub makes them of headings: later ones of the same words are numbered."""
+    """The anchors that GitHub makes of headings: later ones of the same words are numbered."""
     found = set()
     for heading in re.findall(r"^#+ (.+)$", re.sub(r"^```.*?^```", "", text, flags=re.M | re.S), flags=re.M):
         words = re.sub(r"[^\w\- ]", "", re.sub(r"\[(.*?)\]\(.*?\)", r"\1", heading).lower()).replace(" ", "-")

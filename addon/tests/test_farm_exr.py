@@ -47,7 +47,7 @@ def test_several_parts(tmp_path):
 
 
 def test_scanlines_that_were_never_written(tmp_path):
-    """As a writer that is killed leaves it: the table of chunks is there, with zeros in it."""
+    """What a writer that is killed leaves: the table of chunks is there, with zeros in it."""
     path = _write(tmp_path / "picture.exr", "--compression", "zip")
     data = bytearray(path.read_bytes())
     with open(path, "rb") as file:

@@ -66,3 +66,19 @@ def test_rules_apply_to_the_files_that_they_name(tree):
 )
 def test_pages_keep_their_measure(tree, text, reported):
     assert bool(tree("docs/guide/page.md", text)) == reported
+
+
+@pytest.mark.parametrize(
+    "line",
+    [
+        "x = StringProperty(description='Of the fit')",
+        "x = StringProperty(\n    description=(\n        'That of the fit'\n    )\n)",
+        "class A:\n    bl_description = 'Of the fit'",
+        "class A:\n    bl_label = 'As in Cycles: '",
+        "items = [('A', 'First', 'Of the fit')]",
+    ],
+)
+def test_strings_of_the_interface_begin_with_a_noun_or_a_verb(tree, line):
+    (found,) = tree("a.py", line + "\n")
+    assert "begin with a noun or a verb" in found
+    assert not tree("a.py", re.sub("Of the|That of the|As in", "Seconds of the", line) + "\n")

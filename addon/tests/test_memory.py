@@ -42,7 +42,7 @@ def large(measurement_file, tmp_path):
         return {"mesh": tmp_path / "grid.obj"}
 
     def ply():
-        """As scanners write them: 13 bytes a triangle."""
+        """What scanners write: 13 bytes a triangle."""
         n = 400
         across, up = np.meshgrid(np.linspace(-1, 1, n + 1), np.linspace(-1, 1, n + 1))
         points = np.stack([across, 0.1 * np.sin(7 * across), up], axis=-1).reshape(-1, 3).astype("<f4")

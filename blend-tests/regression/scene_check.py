@@ -42,7 +42,7 @@ def _sharp(outcome: Outcome) -> Outcome:
 
 
 def _refused(scene: Scene, blender: Installation, blend: Path) -> Outcome:
-    """As a farm renders: the file on Blender's own command line."""
+    """Renders like a farm: the file on Blender's own command line."""
     log, output = blend.parent / "render.log", blend.parent / "picture_####"
     status = blender.execute(log, blend, "-E", "VELOUR", "-o", output, "-F", "OPEN_EXR", "-f", "1")
     said = [line for line in log.read_text(encoding="utf-8", errors="replace").splitlines() if line]

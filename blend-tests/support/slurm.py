@@ -140,7 +140,7 @@ class Slurm:
         return False
 
     def kill_node(self, name):
-        """As if its power failed: the daemon and all that the node runs end at once."""
+        """Fails the power of a node: the daemon and all that the node runs end at once."""
         daemon = self._daemons.pop(name)
         daemon.kill()
         daemon.wait()

@@ -20,7 +20,7 @@ _all = weakref.WeakSet()
 
 
 def is_cancelled() -> bool:
-    """Whether this thread's ReadJob was cancelled; False on other threads."""
+    """Whether this thread's ReadJob was canceled; False on other threads."""
     cancelled = getattr(_of_thread, "cancelled", None)
     if cancelled is None:
         return False
@@ -29,9 +29,9 @@ def is_cancelled() -> bool:
 
 
 def check() -> None:
-    """Raises VelourError if this thread's ReadJob was cancelled. Call it between the steps of long work."""
+    """Raises VelourError if this thread's ReadJob was canceled. Call it between the steps of long work."""
     if is_cancelled():
-        raise VelourError(Status.CANCELLED, "Reading was cancelled.")
+        raise VelourError(Status.CANCELLED, "Reading was canceled.")
 
 
 class ReadJob:
@@ -81,7 +81,7 @@ class ReadJob:
             with reading_gate.opened():
                 self._thread.join(max(0.0, min(_SLICE_SECONDS, end - time.monotonic())))
             if self._cancelled.is_set():
-                raise VelourError(Status.CANCELLED, "Reading was cancelled.")
+                raise VelourError(Status.CANCELLED, "Reading was canceled.")
             if progress:
                 progress(self.poll())
             if not self._thread.is_alive():

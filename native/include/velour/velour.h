@@ -226,7 +226,7 @@ VLR_API vlr_status vlr_job_poll(const vlr_job* job, vlr_job_state* state);
 /* Requests cancellation; the job stops within 0.1 s. */
 VLR_API vlr_status vlr_job_cancel(vlr_job* job);
 /* Waits at most `timeout_seconds` (negative: forever) for the job to end. On a timeout *finished is 0 and the status is
- * VLR_OK. If the job failed or was cancelled, its status and sentence are returned here. `progress` may be NULL. */
+ * VLR_OK. If the job failed or was canceled, its status and sentence are returned here. `progress` may be NULL. */
 VLR_API vlr_status vlr_job_wait(vlr_job* job, double timeout_seconds, vlr_progress_fn progress, void* user,
                                 int32_t* finished);
 /* Report of a finished job as JSON, with the keys of the command line's verb. */

@@ -78,7 +78,7 @@ class EmbreeScene {
   enum class Levels { one, two };
   /// Builds with at most `threads` threads (0: all). A scene whose only instance has the identity transform and is not
   /// hidden always has one level. Otherwise there are two if instances repeat their meshes much: if they have more than
-  /// kMaxRepeated triangles per triangle of their meshes. Throws Error(cancelled) soon after `progress` is cancelled;
+  /// kMaxRepeated triangles per triangle of their meshes. Throws Error(cancelled) soon after `progress` is canceled;
   /// builds of meshes for two levels continue, and another commit() waits for them.
   void commit(int threads, const Progress* progress = nullptr, Levels levels = Levels::two);
   static constexpr double kMaxRepeated = 1.5;

@@ -153,7 +153,7 @@ class ObjReader {
     content_.uvs.push_back({u, has_v ? number("vt") : 0.0f});
   }
 
-  /// As Blender's importer: names that are no number ("on", "null") also turn smoothing off.
+  /// Follows Blender's importer: names that are no number ("on", "null") also turn smoothing off.
   void read_smoothing() {
     const std::string_view group = word();
     if (group.empty()) return;

@@ -196,7 +196,7 @@ class Scene {
   void set_working_space(const Mat3& rec709_to_working);
 
   /// Checks the scene and builds the hierarchy with at most `threads` threads (0: all). Does nothing if the scene is
-  /// committed. Throws Error(cancelled) soon after `progress` is cancelled; another commit() resumes the build.
+  /// committed. Throws Error(cancelled) soon after `progress` is canceled; another commit() resumes the build.
   void commit(int threads = 0, const Progress* progress = nullptr);
   /// Declares, before the first commit(), that the geometry will not change after it, which speeds up rays
   /// (EmbreeScene::Levels). If it does change, it is rebuilt. Hits differ in the last bits from those of a scene that

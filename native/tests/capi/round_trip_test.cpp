@@ -174,7 +174,7 @@ TEST(MeasuredLayer, IsSeenAboveItsHorizonWhereTheNormalsOfAnotherLayerAreCorrect
   EXPECT_EQ(VLR_OK, status_of_read_observation(corrected, material)) << vlr_last_error();
 }
 
-/// As an add-on does whose user cancels: `handle` is freed while `add` reads it.
+/// What an add-on does whose user cancels: `handle` is freed while `add` reads it.
 template <typename Add, typename Free, typename Handle>
 vlr_status status_when_freed_meanwhile(const Add& add, const Free& release, Handle*& handle) {
   vlr_status status = VLR_UNKNOWN;

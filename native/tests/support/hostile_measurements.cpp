@@ -76,7 +76,7 @@ std::shared_ptr<AnalyticMeasurement> with_invalid_thirds(Formula f, uint64_t inv
   return measurement;
 }
 
-/// As MERL's cameras left it: nothing beyond 80 degrees on either side.
+/// What MERL's cameras left: nothing beyond 80 degrees on either side.
 bool away_from_grazing(const DirectionPair& p) { return std::min(p.wl.z, p.wv.z) > std::cos(radians_from(80.0f)); }
 
 bool nowhere(const DirectionPair&) { return false; }

@@ -12,7 +12,7 @@ namespace velour {
 /// True for text whose first numbers are a count and a plausible wavelength (nm). '#' begins a comment.
 bool looks_like_cornell(std::string_view head);
 
-/// `provenance` has path, name, sha256 and size already. Throws Error(cancelled) once `progress` is cancelled:
+/// `provenance` has path, name, sha256 and size already. Throws Error(cancelled) once `progress` is canceled:
 /// interpolating the samples takes seconds.
 std::shared_ptr<const Measurement> read_cornell(std::span<const uint8_t> bytes, Provenance provenance,
                                                 const Progress& progress = Progress());

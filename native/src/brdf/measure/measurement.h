@@ -79,7 +79,7 @@ class Measurement {
 };
 
 /// Reads any supported file; the format is recognized from the content. Throws Error(io, bad_data, unsupported) with a
-/// message that names file, field and value, Error(cancelled) once `progress` is cancelled. Never allocates more than
+/// message that names file, field and value, Error(cancelled) once `progress` is canceled. Never allocates more than
 /// the file's size justifies.
 std::shared_ptr<const Measurement> load_measurement(const std::string& path, const Progress& progress = Progress());
 

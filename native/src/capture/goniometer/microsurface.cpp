@@ -282,7 +282,7 @@ constexpr RefractiveIndex kTitanium[] = {{1.82, 2.87}, {1.9, 2.9},   {1.99, 2.93
 // [Rak95], at wavelengths of its own.
 constexpr double kRakic[] = {326.28, 364.66, 413.28, 442.8,  476.87, 516.6,  563.57, 619.93,
                              652.25, 688.81, 729.32, 774.91, 794.78, 815.69, 837.74};
-constexpr RefractiveIndex kAluminium[] = {{0.31474, 3.9165}, {0.39877, 4.3957}, {0.52135, 5.0008}, {0.6079, 5.3676},
+constexpr RefractiveIndex kAluminum[] = {{0.31474, 3.9165}, {0.39877, 4.3957}, {0.52135, 5.0008}, {0.6079, 5.3676},
                                           {0.7278, 5.7781},  {0.8734, 6.2418},  {1.0728, 6.7839},  {1.366, 7.4052},
                                           {1.5724, 7.7354},  {1.8301, 8.0601},  {2.1606, 8.3565},  {2.6154, 8.4914},
                                           {2.7675, 8.3866},  {2.7668, 8.2573},  {2.6945, 8.1878}};
@@ -295,7 +295,7 @@ constexpr RefractiveIndex kBrass[] = {{1.45, 1.7},  {1.45, 1.85}, {1.0, 1.95},  
 
 constexpr Metal kMetals[] = {
     {"nickel", kJohnsonChristy, kNickel},     {"gold", kJohnsonChristy, kGold},
-    {"copper", kJohnsonChristy, kCopper},     {"aluminium", kRakic, kAluminium},
+    {"copper", kJohnsonChristy, kCopper},     {"aluminium", kRakic, kAluminum},
     {"silver", kJohnsonChristy, kSilver},     {"iron", kJohnsonChristy, kIron},
     {"chromium", kJohnsonChristy, kChromium}, {"titanium", kJohnsonChristy, kTitanium},
     {"brass", kBrassWavelengths, kBrass},

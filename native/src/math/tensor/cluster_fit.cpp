@@ -24,12 +24,11 @@ Index fair_share(Index slices, Index clusters) { return std::max<Index>(1, slice
 
 class ClusterSolver {
  public:
-  ClusterSolver(const TensorView& slices, const ClusterOptions& options, uint64_t seed, const Progress& progress)
+  ClusterSolver(const TensorView& slices, const ClusterOptions& options, const Progress& progress)
       : matrix_(slices.data(), {slices.extent(0), slices.size() / slices.extent(0)}),
         options_(options),
         progress_(progress) {
     tensor_.extent = slices.extents();
-    options_.tensor.seed = seed;
     for (Index i = 0; i < matrix_.extent(0); ++i) {
       const Eigen::Map<const Eigen::VectorXf> slice(matrix_.data() + i * matrix_.extent(1), matrix_.extent(1));
       square_.push_back(static_cast<double>(slice.squaredNorm()));
@@ -45,9 +44,7 @@ class ClusterSolver {
   void start() {
     tensor_.cluster.resize(static_cast<size_t>(options_.clusters));
     basis_.resize(tensor_.cluster.size());
-    const std::vector<uint32_t> of = options_.start == ClusterStart::random
-                                         ? clusters_at_random(matrix_.extent(0), options_.clusters, seed())
-                                         : clusters_by_direction(coordinates(), options_.clusters, seed());
+    const std::vector<uint32_t> of = clusters_by_direction(coordinates(), options_.clusters, options_.tensor.seed);
     for (uint32_t c = 0; c < tensor_.cluster.size(); ++c) {
       std::vector<Index> mine;
       for (size_t i = 0; i < of.size(); ++i) {
@@ -79,8 +76,6 @@ class ClusterSolver {
   ClusteredTensor take() { return std::move(tensor_); }
 
  private:
-  uint64_t seed() const { return options_.tensor.seed; }
-
   RowMatrix coordinates() const {
     const Index rank = std::min<Index>({2 * options_.ranks[0], matrix_.extent(0), matrix_.extent(1)});
     if (options_.coordinates == nullptr) return slice_coordinates(matrix_, rank, options_.tensor, progress_);
@@ -194,20 +189,12 @@ void check(const TensorView& slices, const ClusterOptions& options) {
 
 ClusterFit fit_clusters(const TensorView& slices, const ClusterOptions& options, Progress& progress) {
   check(slices, options);
-  ClusterFit best;
-  for (int i = 0; i < options.restarts; ++i) {
-    ClusterSolver solver(slices, options, options.tensor.seed + static_cast<uint64_t>(i), progress);
-    solver.start();
-    std::vector<double> error;
-    for (Index members = 1; members <= options.members; ++members) solver.alternate(members, error);
-    progress.update(static_cast<double>(i + 1) / options.restarts);
-    best.start_error.push_back(error.back());
-    if (!best.error.empty() && best.error.back() <= error.back()) continue;
-    best.tensor = solver.take();
-    best.square = solver.square();
-    best.error = std::move(error);
-  }
-  return best;
+  ClusterSolver solver(slices, options, progress);
+  solver.start();
+  std::vector<double> error;
+  for (Index members = 1; members <= options.members; ++members) solver.alternate(members, error);
+  progress.update(1);
+  return {solver.take(), solver.square(), std::move(error)};
 }
 
 namespace {
@@ -333,14 +320,6 @@ std::vector<uint32_t> clusters_by_direction(RowMatrix points, Index clusters, ui
     for (Index c = 0; c < sum.rows(); ++c) sum.row(c).normalize();
     if (sum == center) break;
     center = sum;
-  }
-  return member;
-}
-
-std::vector<uint32_t> clusters_at_random(Index slices, Index clusters, uint64_t seed) {
-  std::vector<uint32_t> member(static_cast<size_t>(slices));
-  for (size_t i = 0; i < member.size(); ++i) {
-    member[i] = static_cast<uint32_t>(RandomStream(seed, i, 1).next_bits() % static_cast<uint64_t>(clusters));
   }
   return member;
 }

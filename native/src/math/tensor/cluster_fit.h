@@ -8,24 +8,19 @@
 
 namespace velour {
 
-enum class ClusterStart { directions, random };
-
 struct ClusterOptions {
-  Index clusters = 1, members = 1;  // C, and K <= C
-  std::vector<Index> ranks{};       // of the slice mode, then of the others; limited to the extents
-  int iterations = 30;              // maximum for each number of members
-  double tolerance = 1e-4;          // relative to the squared norm of all slices; stops at smaller gains
-  int restarts = 1;                 // number of seeds; the best fit is returned
-  ClusterStart start = ClusterStart::directions;
+  Index clusters = 1, members = 1;         // C, and K <= C
+  std::vector<Index> ranks{};              // of the slice mode, then of the others; limited to the extents
+  int iterations = 30;                     // maximum for each number of members
+  double tolerance = 1e-4;                 // relative to the squared norm of all slices; stops at smaller gains
   const RowMatrix* coordinates = nullptr;  // slice_coordinates of at least twice the rank of the slices, if known
   TensorOptions tensor{};
 };
 
 struct ClusterFit {
   ClusteredTensor tensor;
-  double square = 0;                // squared norm of all slices
-  std::vector<double> error;        // squared, after every step of the best start; never rises
-  std::vector<double> start_error;  // final squared error of every start
+  double square = 0;          // squared norm of all slices
+  std::vector<double> error;  // squared, after every step; never rises
 };
 
 /// Alternates between clusters and members. A cluster is refitted to the residuals that the other clusters of its
@@ -54,8 +49,5 @@ RowMatrix slice_coordinates(const TensorView& slices, Index rank, const TensorOp
 /// Clusters slices by k-means ([AV07] seeds) on the directions of their coordinates, because a cluster of a Tucker
 /// decomposition is a linear subspace. Returns the cluster of each slice.
 std::vector<uint32_t> clusters_by_direction(RowMatrix coordinates, Index clusters, uint64_t seed);
-
-/// Assigns a random cluster to each slice.
-std::vector<uint32_t> clusters_at_random(Index slices, Index clusters, uint64_t seed);
 
 }  // namespace velour

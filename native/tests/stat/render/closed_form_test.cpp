@@ -79,7 +79,7 @@ TEST(ClosedForm, PlaneUnderRectangleLight) {
                           test::polygon_irradiance({Vec3d(-0.3, -0.3, 1.5), Vec3d(1.7, -0.3, 1.5), Vec3d(1.7, 0.7, 1.5),
                                                     Vec3d(-0.3, 0.7, 1.5)});
   test::ZTests tests, control;
-  // The irradiance changes by a thousandth over the five millimetres to each side that the picture spans.
+  // The irradiance changes by a thousandth over the five millimeters to each side that the picture spans.
   for (Strategy strategy : kAll) expect_mean(scene, small_options(strategy, 1024), expected, tests);
   EXPECT_TRUE(tests.agree());
   expect_mean(scene, small_options(Strategy::mis, 1024), 1.02 * expected, control);

@@ -166,7 +166,7 @@ TEST(AtomicFile, RemovesWhatAKilledProcessHasLeft) {
     EXPECT_TRUE(fs::exists(folder / kept)) << kept;
 }
 
-/// As on a full disk: the reason is told, by commit() as well.
+/// A full disk: the reason is told, by commit() as well.
 TEST(AtomicFile, TellsWhyAWriteFailed) {
   const auto folder = test::scratch_folder();
   struct rlimit before {};

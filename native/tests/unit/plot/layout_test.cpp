@@ -105,7 +105,7 @@ TEST(PlotLayout, PointsLieWhereTheTicksSay) {
   EXPECT_NEAR(pixels[4 * (row * 400 + column)], PlotColors().measured.r, 1e-3);
 }
 
-/// As the caption says: the viewer on the left, what it mirrors on the right.
+/// What the caption says: the viewer on the left, what it mirrors on the right.
 TEST(PlotLayout, PositiveAnglesLieOnTheRightOfAHalfDisc) {
   Plot plot = polar_plot(0.01, 1);
   plot.series = {{"measured", PlotRole::measured, PlotMark::dots, {{-60, 1}, {30, 1}}}};

@@ -152,7 +152,7 @@ TEST(GlassRender, AnEvenSkyShinesThroughFacetsAlone) {
   EXPECT_GT(seen(image, Strategy::mis), expected + 0.02);
 }
 
-/// As in Cycles: without a lobe that has a width, no ray finds a sharp sun, and shadow rays do not pass.
+/// Cycles does the same: without a lobe that has a width, no ray finds a sharp sun, and shadow rays do not pass.
 TEST(GlassRender, IsOpaqueToShadowRays) {
   const auto under_sun = [](std::shared_ptr<const Material> pane) {
     Scene scene = window(std::move(pane), wall(0.5f));

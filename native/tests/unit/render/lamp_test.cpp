@@ -121,7 +121,7 @@ TEST(Lamp, SunGivesItsIrradianceWhateverItsSize) {
   }
 }
 
-/// As in Cycles: a disk by the cosine to its own axis, a rectangle by the area that is seen; both over the product of
+/// Cycles does the same: a disk by the cosine to its own axis, a rectangle by the area that is seen; both over the product of
 /// the sides' lengths.
 TEST(Lamp, ShearedAreasShineAsInCycles) {
   for (const Light::Type type : {Light::Type::rectangle, Light::Type::disk}) {

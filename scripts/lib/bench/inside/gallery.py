@@ -43,7 +43,7 @@ def metals():
     _ground()
     _dress(_monkey((0.0, 0.1, 0.0), 1.25, -14), "Midnight Car Paint")
     _dress(_knot((-2.35, 0.55, 0.0), 0.43), "Polished Gold")
-    _dress(_ball((2.2, 0.5, 0.0), 0.85), "Brushed Aluminium")
+    _dress(_ball((2.2, 0.5, 0.0), 0.85), "Brushed Aluminum")
     _dress(_ball((-1.05, -1.5, 0.0), 0.42), "Red Enamel")
     _dress(_knot((1.25, -1.45, 0.0), 0.34, turn=70), "Satin Copper")
     _dress(_ball((3.35, -0.75, 0.0), 0.5), "Glazed Porcelain")
@@ -67,7 +67,7 @@ def product():
     _dress(_flat_cloth((0.35, -0.35, 0.006), (3.6, 2.3), 14), "Linen")
     flask, cup = (-0.75, 0.1, 0.02), (0.85, -0.35, 0.02)
     body = [(0.0, 0.0), (0.5, 0.0), (0.5, 1.5), (0.3, 1.86), (0.3, 2.0), (0.0, 2.0)]
-    _worn(_turned("Flask", body, flask, 0.07), "Red Enamel", "Brushed Aluminium", "Z", (1.42, 1.9))
+    _worn(_turned("Flask", body, flask, 0.07), "Red Enamel", "Brushed Aluminum", "Z", (1.42, 1.9))
     sleeve = [(0.49, 0.28), (0.535, 0.28), (0.535, 1.02), (0.49, 1.02)]
     _dress(_turned("Sleeve", sleeve, flask, 0.02), "Brown Leather")
     lid = [(0.0, 1.98), (0.35, 1.98), (0.35, 2.26), (0.0, 2.26)]

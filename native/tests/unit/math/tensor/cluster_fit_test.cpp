@@ -19,6 +19,16 @@ ClusterFit fit(const DenseTensor& tensor, const ClusterOptions& options) {
   return fit_clusters(tensor.view(), options, progress);
 }
 
+/// The best of fits with so many seeds.
+ClusterFit best_fit(const DenseTensor& tensor, ClusterOptions options, uint64_t seeds) {
+  ClusterFit best;
+  for (options.tensor.seed = 0; options.tensor.seed < seeds; ++options.tensor.seed) {
+    ClusterFit found = fit(tensor, options);
+    if (best.error.empty() || found.error.back() < best.error.back()) best = std::move(found);
+  }
+  return best;
+}
+
 double explicit_error(const ClusterFit& found, const DenseTensor& tensor) {
   return test::squared_distance(expanded(found.tensor, {}, Progress()), tensor);
 }
@@ -55,11 +65,10 @@ TEST(Clusters, OfOneAreTucker) {
 
 TEST(Clusters, AreRecovered) {
   const DenseTensor tensor = clustered(4, 1, 3);
-  const ClusterFit found = fit(tensor, {.clusters = 4, .ranks = kRanks, .restarts = 3});
+  const ClusterFit found = best_fit(tensor, {.clusters = 4, .ranks = kRanks}, 3);
   EXPECT_LT(found.error.back(), 1e-6 * found.square);
-  EXPECT_EQ(found.start_error.size(), 3u);
   // The control: three do not do.
-  EXPECT_GT(fit(tensor, {.clusters = 3, .ranks = kRanks, .restarts = 3}).error.back(), 1e-2 * found.square);
+  EXPECT_GT(best_fit(tensor, {.clusters = 3, .ranks = kRanks}, 3).error.back(), 1e-2 * found.square);
 }
 
 TEST(Clusters, OfNoiseNeverGetWorse) {
@@ -84,13 +93,12 @@ TEST(Clusters, OfMoreMembersAreCloser) {
 
 TEST(Clusters, OfSparseSumsAreRecovered) {
   const DenseTensor tensor = clustered(4, 2, 7);
-  const ClusterOptions options{
-      .clusters = 4, .members = 2, .ranks = kRanks, .iterations = 200, .tolerance = 1e-9, .restarts = 8};
-  const ClusterFit found = fit(tensor, options);
+  const ClusterOptions options{.clusters = 4, .members = 2, .ranks = kRanks, .iterations = 200, .tolerance = 1e-9};
+  const ClusterFit found = best_fit(tensor, options, 8);
   EXPECT_LT(found.error.back(), 1e-4 * found.square);
   ClusterOptions one = options;
   one.members = 1;
-  EXPECT_GT(fit(tensor, one).error.back(), 1e-2 * found.square) << "the control";
+  EXPECT_GT(best_fit(tensor, one, 8).error.back(), 1e-2 * found.square) << "the control";
 }
 
 TEST(Clusters, OfTheSameSlicesAreFilledAgain) {

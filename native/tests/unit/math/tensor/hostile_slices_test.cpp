@@ -85,7 +85,7 @@ TEST(HostileSlices, OneOutlierDoesNotSpoilTheOthers) {
   const DenseTensor stray = test::random_tensor({1, 6, 5, 3}, 4);
   for (size_t k = 0; k < kSlice; ++k) tensor.data[17 * kSlice + k] = 0.5f * stray.data[k];
   const auto rest = [&](Index clusters) {
-    const ClusterFit found = fit(tensor, {.clusters = clusters, .ranks = {1, 2, 2, 2}, .restarts = 4});
+    const ClusterFit found = fit(tensor, {.clusters = clusters, .ranks = {1, 2, 2, 2}});
     const DenseTensor made = expanded(found.tensor, {}, Progress());
     double sum = 0;
     for (size_t i = 0; i < tensor.data.size(); ++i) {
@@ -136,7 +136,7 @@ TEST(HostileSlices, InAnotherOrderChangeTheirLabelsAlone) {
     std::copy_n(tensor.data.begin() + static_cast<ptrdiff_t>(order[i] * kSlice), kSlice,
                 turned.data.begin() + static_cast<ptrdiff_t>(i * kSlice));
   }
-  const ClusterOptions options{.clusters = 3, .ranks = {1, 2, 2, 2}, .restarts = 4};
+  const ClusterOptions options{.clusters = 3, .ranks = {1, 2, 2, 2}};
   const ClusterFit one = fit(tensor, options), two = fit(turned, options);
   EXPECT_NEAR(one.error.back(), two.error.back(), 1e-5 * one.square);
   std::map<uint32_t, uint32_t> label;
