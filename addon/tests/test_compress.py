@@ -68,13 +68,14 @@ def model(judged):
 def test_report_and_held_out_pairs(judged, held_out):
     method, path, report = judged
     shapes = ["shapes"] if method in TENSORS else []
-    assert list(report) == ["method", *COUNTS[method], *COMPRESS_KEYS, *shapes]
+    assert list(report) == ["method", *COUNTS[method], *COMPRESS_KEYS, *shapes, "psnr_heldout"]
     assert report["method"] == method
     assert report["parameter_bytes"] <= BYTES[method]
     assert report["bytes"] == path.stat().st_size
     assert report["ratio"] == pytest.approx(30 * LIGHTS * 144 * 6 / report["bytes"])
     assert report["psnr"] > (25 if method.startswith("svd") else 19)
     assert report["psnr_held_out"] > 15
+    assert report["psnr_heldout"] == report["psnr_held_out"]
     assert report["evaluations_per_second"] > 1e4
     same = velour("compare", held_out, path, "--json").json
     assert same["psnr"] == pytest.approx(report["psnr_held_out"], abs=1e-9)

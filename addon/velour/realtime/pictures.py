@@ -66,16 +66,17 @@ class Picture:
 
 def _colors(pixels):
     """RGBA of [height x width x channels]; gray is the first channel. Downsampled to at most _MOST."""
-    step = -(-max(pixels.shape[:2]) // _MOST)
-    height, width = (max(size // step, 1) for size in pixels.shape[:2])
-    found = np.ones((height, width, 4), np.float32)
     channels = 3 if pixels.shape[2] >= 3 else 1
-    found[..., :3] = _means(pixels[..., :channels], step, height, width)
+    means = _means(pixels[..., :channels])
+    found = np.ones((*means.shape[:2], 4), np.float32)
+    found[..., :3] = means
     return found
 
 
-def _means(pixels, step, height, width):
-    if step == 1:
+def _means(pixels):
+    rows, columns = (-(-size // _MOST) for size in pixels.shape[:2])  # of each mean
+    if rows == columns == 1:
         return pixels
-    squares = pixels[: height * step, : width * step]
-    return squares.reshape(height, step, width, step, -1).mean(axis=(1, 3))
+    height, width = pixels.shape[0] // rows, pixels.shape[1] // columns
+    cells = pixels[: height * rows, : width * columns]
+    return cells.reshape(height, rows, width, columns, -1).mean(axis=(1, 3))

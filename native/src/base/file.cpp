@@ -196,10 +196,12 @@ std::filesystem::path folder_of(const std::filesystem::path& target) {
 /// same folder. A network file system may report that a new file exists already; then another name is tried.
 int create_beside(const std::filesystem::path& target, const std::string& path, std::string& name) {
   constexpr int kAttempts = 16;
+  constexpr size_t kMaxStem = 160;  // bytes; names have at most 255
   remove_left_over(folder_of(target));
   std::random_device random;
+  const std::string stem = (folder_of(target) / target.filename().string().substr(0, kMaxStem)).string();
   for (int attempt = 1;; ++attempt) {
-    name = target.string() + std::string(kMark) + std::to_string(random()) + "-" + std::to_string(random());
+    name = stem + std::string(kMark) + std::to_string(random()) + "-" + std::to_string(random());
     const int fd = ::open(name.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
     if (fd >= 0) {
       ::flock(fd, LOCK_EX | LOCK_NB);  // may fail without support for locks; then nobody removes the file

@@ -227,12 +227,12 @@ vlr_status vlr_scene_set_world_pixels(vlr_scene* scene, uint32_t width, uint32_t
   return guard([&] {
     require(scene, "scene");
     require(pixels, "pixels");
-    constexpr uint32_t kLargest = 65536;
+    constexpr uint32_t kLargest = 65535;
     if (width > kLargest || height > kLargest || channels > 4) {
       throw Error(Status::invalid_argument,
                   "The environment image has " + std::to_string(width) + " x " + std::to_string(height) +
                       " pixels and " + std::to_string(channels) +
-                      " channels; at most 65536 pixels along each side and 4 channels are supported.");
+                      " channels; at most 65535 pixels along each side and 4 channels are supported.");
     }
     const size_t values = size_t{width} * height * channels;
     scene->scene->set_environment(

@@ -41,10 +41,11 @@ void check_size(const std::string& path, const OpenPicture& input, int pixel_bit
   if (header.width <= 0 || header.height <= 0 || header.depth > 1 || header.channels <= 0)
     throw Error(Status::bad_data, path + ": the header claims " + size + ", which is not a valid flat image.");
   const uint64_t pixels = static_cast<uint64_t>(header.width) * static_cast<uint64_t>(header.height);
+  if (pixels > max_values / static_cast<uint64_t>(header.channels))
+    throw Error(Status::unsupported, path + ": has " + size + ", but only " + std::to_string(max_values) +
+                                         " values are supported. Scale the image down.");
   const auto bits = static_cast<uint64_t>(pixel_bits > 0 ? pixel_bits : header.channels);
-  const uint64_t bound = std::min(max_values / static_cast<uint64_t>(header.channels),
-                                  input.expansion() * 8 * std::filesystem::file_size(path) / bits);
-  if (pixels > bound)
+  if (pixels > input.expansion() * 8 * std::filesystem::file_size(path) / bits)
     throw Error(Status::bad_data,
                 path + ": the header claims " + size + ", more than the file can contain; the file is damaged.");
 }

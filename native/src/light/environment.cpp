@@ -69,10 +69,14 @@ Environment Environment::placed(float strength, const Mat3& world_to_image) cons
 Environment Environment::load(const std::string& path, const PictureOptions& options, float strength,
                               const Mat3& world_to_image) {
   const Picture picture = read_picture(path, options);
-  Environment e =
-      image({picture.width, picture.height, picture.channels, picture.pixels, true}, strength, world_to_image);
-  e.warnings_ = picture.warnings;
-  return e;
+  const EquirectangularPixels pixels{picture.width, picture.height, picture.channels, picture.pixels, true};
+  try {
+    Environment e = image(pixels, strength, world_to_image);
+    e.warnings_ = picture.warnings;
+    return e;
+  } catch (const Error& error) {
+    throw Error(error.status(), path + ": " + error.what());
+  }
 }
 
 std::vector<Warning> Environment::warnings() const {
@@ -160,9 +164,9 @@ EnvironmentIrradiance::EnvironmentIrradiance(const Environment& sky) {
     sky.look_up(world, radiance, pdf);
     for (int i = 0; i < world.count; ++i) {
       if (!(pdf.v[i] > 0.0f)) continue;
-      const float light = luminance(radiance.get(i)) / pdf.v[i];
+      const double light = static_cast<double>(luminance(radiance.get(i))) / static_cast<double>(pdf.v[i]);
       const std::array<float, 9> y = harmonics(world.get(i));
-      for (size_t k = 0; k < 9; ++k) sum[k] += static_cast<double>(light * y[k]);
+      for (size_t k = 0; k < 9; ++k) sum[k] += light * static_cast<double>(y[k]);
     }
   }
   for (size_t k = 0; k < 9; ++k) weight_[k] = kCosine[k] * static_cast<float>(sum[k] / kIrradianceDraws);
@@ -172,7 +176,7 @@ float EnvironmentIrradiance::on(const Vec3& normal) const {
   const std::array<float, 9> y = harmonics(normal);
   float sum = 0;
   for (size_t k = 0; k < 9; ++k) sum += weight_[k] * y[k];
-  return std::max(sum, least_);
+  return sum > least_ ? sum : least_;  // also where the sum is not a number
 }
 
 }  // namespace velour

@@ -38,7 +38,7 @@ class EnvironmentFit {
       : options_(options),
         progress_(progress),
         points_(environment_points(image)),
-        scale_(4 * kPiD * static_cast<double>(image.mean_luminance())),
+        scale_(points_.total),
         tests_(sphere_fibonacci(static_cast<int>(kTestDirections))) {
     smooth_image();
   }
@@ -223,6 +223,7 @@ class Gathering {
       open.push_back(across ? Cell{x, cell.y0, cell.x1, cell.y1} : Cell{cell.x0, y, cell.x1, cell.y1});
       open.push_back(across ? Cell{cell.x0, cell.y0, x, cell.y1} : Cell{cell.x0, cell.y0, cell.x1, y});
     }
+    points_.total = total_;
     return std::move(points_);
   }
 
@@ -257,18 +258,27 @@ class Gathering {
     return energy > kMaxEnergy * total_ || std::max(width(c), height(c)) > kWidest;
   }
 
+  /// Mean direction over the bilinear footprint of a texel of row `y`: horizontal length and z. That of the texel
+  /// itself is exact; the footprint is the texel smeared by another texel.
+  glm::dvec2 texel_mean(int y) const {
+    const auto sinc = [](double x) { return std::sin(x) / x; };
+    const double top = theta(y), bottom = theta(y + 1);
+    const double sine =
+        ((bottom - top) - (std::sin(2 * bottom) - std::sin(2 * top)) / 2) / 2 / (std::cos(top) - std::cos(bottom));
+    const double across = sinc(kPiD / image_.width()), down = sinc(theta(0.5));
+    return down * glm::dvec2(across * across * sine, (std::cos(top) + std::cos(bottom)) / 2);
+  }
+
   void add(const Cell& cell) {
     Vec3d moment(0), plain(0), color(0);
     double energy = 0, area = 0;
     for (int y = cell.y0; y < cell.y1; ++y) {
       const EnvironmentTexel* row = image_.row(y) + 1;
-      const double share = solid_angle(y), t = theta(y + 0.5);
-      const double z = std::cos(t), sine = std::sin(t);
-      // A texel's mean direction is shorter by area / (4 pi); a bilinear footprint has twice the texel's variance.
-      const double shortened = 1 - share / (2 * kPiD);
+      const double share = solid_angle(y);
+      const glm::dvec2 mean = texel_mean(y);
       for (int x = cell.x0; x < cell.x1; ++x) {
         const auto at = static_cast<size_t>(x);
-        const Vec3d w = shortened * Vec3d(sine * cosine_[at], sine * sine_[at], z);
+        const Vec3d w(mean.x * cosine_[at], mean.x * sine_[at], mean.y);
         const double e = share * luminance_of(row[x]);
         moment += e * w;
         plain += share * w;
@@ -282,7 +292,7 @@ class Gathering {
 
   void push(const Vec3d& mean, const Vec3d& color, double energy, double area) {
     const double length = glm::length(mean);
-    const Vec3 unit(mean / length);
+    const Vec3 unit = length > 1e-9 ? Vec3(mean / length) : Vec3(0, 0, 1);  // of the whole sphere: none
     points_.x.push_back(unit.x);
     points_.y.push_back(unit.y);
     points_.z.push_back(unit.z);

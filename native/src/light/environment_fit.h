@@ -20,6 +20,7 @@ struct EnvironmentPoints {
   std::vector<float> energy;       // luminance x solid angle, normalized to a sum of 1
   std::vector<float> solid_angle;  // sr
   std::vector<float> r, g, b;      // radiance x solid angle, with the same normalization
+  double total = 0;                // luminance x solid angle of the whole image
 
   size_t size() const { return x.size(); }
   Vec3 direction(size_t i) const { return {x[i], y[i], z[i]}; }
@@ -58,7 +59,8 @@ inline constexpr size_t kEnvironmentBlock = 64;
 void add_environment_block(const EnvironmentPoints& points, size_t first, const EnvironmentLobes& lobes, float* scratch,
                            EnvironmentMoments* moments);
 
-/// sum_i energy_i exp(-bandwidth |w - w_i|^2 / 2) over the cells.
+/// sum_i energy_i v_i exp(-bandwidth v_i |w - w_i|^2 / 2) over the cells, with v_i = 1 / (1 + spread_i bandwidth): the
+/// kernel widened by the spread of the cell.
 double smoothed_environment(const EnvironmentPoints& points, const Vec3& w, float bandwidth);
 
 }  // namespace velour

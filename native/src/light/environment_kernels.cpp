@@ -124,16 +124,20 @@ void add_block_simd(const EnvironmentPoints& points, size_t first, const Environ
 double smoothed_simd(const EnvironmentPoints& p, const Vec3& w, float bandwidth) {
   const hn::CappedTag<float, 16> d;
   const size_t lanes = hn::Lanes(d);
+  const auto one = hn::Set(d, 1.0f);
   double total = 0;
   size_t i = 0;
   for (; i + lanes <= p.size(); i += lanes) {
     const Offset<decltype(d)> o(d, hn::LoadU(d, &p.x[i]), hn::LoadU(d, &p.y[i]), hn::LoadU(d, &p.z[i]), w.x, w.y, w.z);
-    const auto value = hn::Mul(hn::LoadU(d, &p.energy[i]), o.kernel(d, bandwidth));
+    const auto widened = hn::Div(one, hn::MulAdd(hn::LoadU(d, &p.spread[i]), hn::Set(d, bandwidth), one));
+    const auto kernel = exp_nonpositive(d, hn::Mul(hn::Mul(o.half_sq, hn::Set(d, -bandwidth)), widened));
+    const auto value = hn::Mul(hn::Mul(hn::LoadU(d, &p.energy[i]), widened), kernel);
     total += static_cast<double>(hn::GetLane(hn::SumOfLanes(d, value)));
   }
   for (; i < p.size(); ++i) {
     const Vec3 diff = p.direction(i) - w;
-    total += static_cast<double>(p.energy[i] * std::exp(-0.5f * bandwidth * glm::dot(diff, diff)));
+    const float widened = 1.0f / (1.0f + p.spread[i] * bandwidth);
+    total += static_cast<double>(p.energy[i] * widened * std::exp(-0.5f * bandwidth * widened * glm::dot(diff, diff)));
   }
   return total;
 }

@@ -19,7 +19,7 @@ namespace velour {
 namespace {
 
 constexpr char kKind[] = "sky";
-constexpr char kVersion[] = "1";  // also of the fit: another fitting method must not read this one's mixtures
+constexpr char kVersion[] = "2";  // also of the fit: another fitting method must not read this one's mixtures
 constexpr uint64_t kMaxBytes = uint64_t{1} << 24;
 constexpr size_t kMaxLobes = 4096;
 

@@ -25,6 +25,12 @@ HWY_INLINE V place_between(D d, V u, V low, V high) {
 template <class D, class V = hn::Vec<D>>
 HWY_INLINE V invert_linear(D d, V a, V b, V u) {
   const V one = hn::Set(d, 1.0f);
+  // Squares of what is scaled neither overflow nor vanish. Usual values keep their bits.
+  const V largest = hn::Max(a, b);
+  const auto usual = hn::And(hn::Gt(largest, hn::Set(d, 1e-16f)), hn::Lt(largest, hn::Set(d, 1e16f)));
+  const V scale = hn::IfThenElse(usual, one, hn::Div(one, hn::Max(largest, hn::Set(d, 1e-37f))));
+  a = hn::Mul(a, scale);
+  b = hn::Mul(b, scale);
   // Root of a t + (b - a) t^2 / 2 = u (a + b) / 2 in the form without cancellation.
   const V sum = hn::Add(a, b);
   const V root = hn::Sqrt(hn::MulAdd(hn::Mul(u, b), b, hn::Mul(hn::Mul(hn::Sub(one, u), a), a)));

@@ -64,15 +64,21 @@ TablePixels pixels_of(const LobeRows& rows) {
 }
 
 /// Number of Gaussians of each lobe, for the view that needs most.
-std::vector<size_t> gaussians_of_lobes(const LobesOfViews& material, const LobeRows& rows) {
-  std::vector<size_t> counts;
-  for (size_t place = 0; place < places_of(rows); ++place) {
+std::vector<size_t> gaussians_of_lobes(const LobesOfViews& material, const LobeRows& rows, int threads,
+                                       const Progress& progress) {
+  std::vector<std::vector<size_t>> of_place(places_of(rows));
+  parallel_pieces(of_place.size(), threads, progress, [&](size_t place) {
     const auto lobes = material.lobes(view_at(rows, place));
-    counts.resize(lobes.size(), 1);
+    of_place[place].assign(lobes.size(), 1);
     for (size_t j = 0; j < lobes.size(); ++j) {
       const LobeReach& reach = lobes[j].reach;
-      if (reach.is_seen) counts[j] = std::max(counts[j], gaussians_for(reach.longer / reach.shorter));
+      if (reach.is_seen) of_place[place][j] = gaussians_for(reach.longer / reach.shorter);
     }
+  });
+  std::vector<size_t> counts;
+  for (const std::vector<size_t>& of : of_place) {
+    counts.resize(std::max(counts.size(), of.size()), 1);
+    for (size_t j = 0; j < of.size(); ++j) counts[j] = std::max(counts[j], of[j]);
   }
   return counts;
 }
@@ -136,7 +142,7 @@ void shape_unused_lobes(LobeRows& rows) {
 
 LobeRows blended_rows(bool isotropic, const LobesOfViews& material, int threads, Progress& progress) {
   LobeRows rows{.isotropic = isotropic, .side = isotropic ? kRowAngles : kGrid};
-  const auto counts = gaussians_of_lobes(material, rows);
+  const auto counts = gaussians_of_lobes(material, rows, threads, progress);
   const BroadPart broad;
   rows.lobes = BroadPart::kLobes;
   for (const size_t count : counts) rows.lobes += static_cast<int>(count);

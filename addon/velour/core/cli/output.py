@@ -52,13 +52,18 @@ def warn(warnings: list[dict]) -> None:
         log.warning("%s", sentence)
 
 
+# Other names that JSON gives a number, for scripts that know it by them.
+_SECOND_KEYS = {"psnr_held_out": "psnr_heldout"}
+
+
 def deliver(args: argparse.Namespace, report: dict) -> None:
     """Writes the verb's report in all requested forms."""
     report = _with_sentences(report)
+    known = {second: report[key] for key, second in _SECOND_KEYS.items() if key in report}
     if args.json_file:
-        files.write_json(args.json_file, report)
+        files.write_json(args.json_file, report | known)
     if args.json:
-        print(files.json_text(report))
+        print(files.json_text(report | known))
     elif not args.quiet:
         print(summary(report))
 

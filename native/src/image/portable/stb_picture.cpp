@@ -2,6 +2,7 @@
 #include <zlib.h>
 
 #include <algorithm>
+#include <climits>
 #include <cstring>
 #include <string_view>
 
@@ -174,6 +175,10 @@ std::unique_ptr<OpenPicture> open_by_stb(const std::string& path) { return std::
 std::vector<uint8_t> png_of(const std::string& path, int width, int height, int channels,
                             std::span<const uint8_t> values) {
   std::vector<uint8_t> bytes;
+  // The encoder counts the bytes of an image in an int.
+  if ((uint64_t{static_cast<uint32_t>(width)} * static_cast<uint32_t>(channels) + 1) * static_cast<uint32_t>(height) >
+      static_cast<uint64_t>(INT_MAX))
+    throw Error(Status::unsupported, path + ": a PNG file of 2 GiB of pixels or more cannot be written. Use OpenEXR.");
   if (channels > 4 ||
       stbi_write_png_to_func(append, &bytes, width, height, channels, values.data(), width * channels) == 0)
     throw Error(Status::unsupported, path + ": a PNG file must have 1 to 4 channels.");

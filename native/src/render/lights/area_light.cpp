@@ -67,7 +67,9 @@ Lamp::Lamp(const Light& light)
 }
 
 void Lamp::set_sun(const Light& light) {
-  axis_ = glm::normalize(light.light_to_world.column(2));
+  axis_ = light.light_to_world.column(2);
+  if (!(glm::length(axis_) > 0.0f)) return;  // scaled to nothing: black
+  axis_ = glm::normalize(axis_);
   power_ = luminance(glm::abs(light.color));
   const float sine = std::sin(0.5f * std::clamp(light.angle, 0.0f, kPi));
   sharp_ = !(sine > 1e-5f);  // two arc seconds: below what float32 directions resolve
@@ -84,7 +86,7 @@ void Lamp::set_point(const Light& light) {
   center_ = light.light_to_world.column(3);
   radius_ = std::max(light.size.x, 0.0f);
   power_ = luminance(glm::abs(light.color));
-  sharp_ = radius_ == 0.0f;
+  sharp_ = !(radius_ > 1e-12f);  // whose square is no normal number
   if (sharp_) {
     intensity_ = light.color / (4.0f * kPi);
   } else {

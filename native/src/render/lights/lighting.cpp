@@ -63,13 +63,22 @@ LightView Lighting::sharp_view(const LightPlace& place) const {
   return view_of_all(place, 0, sharp().first(sharp_suns_), sharp_near_);
 }
 
+namespace {
+
+constexpr double kMaxBrought = 1e30;  // keeps shares finite where radiances are near the largest float
+
+}  // namespace
+
 LightView Lighting::view_of_all(const LightPlace& place, double sky, std::span<const Lamp> suns,
                                 const LightTree& near) {
   LightView view;
   view.place = place;
   for (const Lamp& sun : suns) view.suns_total += sun_irradiance(sun, place);
   if (!near.empty()) view.cut = near.cut(place);
-  const double brought[3] = {sky, view.suns_total, near.empty() ? 0 : view.cut.total()};
+  double brought[3] = {sky, view.suns_total, near.empty() ? 0 : view.cut.total()};
+  for (double& b : brought) {
+    if (!(b < kMaxBrought)) b = kMaxBrought;
+  }
   const double total = brought[0] + brought[1] + brought[2];
   const auto kinds = static_cast<double>(std::ranges::count_if(brought, [](double b) { return b > 0; }));
   float share[3] = {}, left = 1.0f;

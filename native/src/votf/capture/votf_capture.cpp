@@ -92,7 +92,10 @@ void ShellColumns::follow(std::span<const Vec2> places, float aside, std::span<L
 
 std::vector<ShellColumns::Line> ShellColumns::followed(TileRays& tracer, std::span<const Vec2> places,
                                                        RayLog* log) const {
-  const float margin = 1e-3f * (tile_.thickness() + tile_.period().x), rounding = 1e-6f * (tile_.thickness() + margin);
+  const float margin = 1e-3f * (tile_.thickness() + tile_.period().x);
+  // Clear of the face just met, also where the tile lies far from the plane z = 0.
+  const float rounding =
+      1e-6f * std::max({tile_.thickness() + margin, std::abs(tile_.bottom()), std::abs(tile_.top())});
   std::vector<Line> lines(places.size());
   std::vector<Ray> rays;
   std::vector<size_t> line_of;
@@ -120,15 +123,15 @@ std::vector<ShellColumns::Line> ShellColumns::followed(TileRays& tracer, std::sp
 
 bool ShellColumns::ends_well(const Line& line) const {
   const int depth = line.empty() ? 0 : line.back().depth;
-  return closed_ ? depth > 0 : depth == 0;
+  return closed_ ? depth != 0 : depth == 0;
 }
 
 bool ShellColumns::inside(size_t line, float height) const {
   const Line& crossings = lines_[line];
   const auto below = std::ranges::find_if(crossings, [&](const Crossing& c) { return c.height < height; });
   const int depth = below == crossings.begin() ? 0 : std::prev(below)->depth;
-  const int never_left = closed_ || crossings.empty() ? 0 : std::max(0, crossings.back().depth);
-  return depth > never_left;
+  const int never_left = closed_ || crossings.empty() ? 0 : std::abs(crossings.back().depth);
+  return std::abs(depth) > never_left;  // below 0 within faces whose normals point inwards
 }
 
 constexpr float kSheet = 0.6f;  // half thickness of sheets in pitches, enough for look-ups between points to find them

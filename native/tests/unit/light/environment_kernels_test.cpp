@@ -112,7 +112,8 @@ TEST(EnvironmentKernels, SmoothingMatchesTheScalarReferenceOnEveryTarget) {
       for (const Vec3& w : {Vec3(0, 0, 1), p.direction(17), direction(2.2f, -1)}) {
         double expected = 0;
         for (size_t i = 0; i < p.size(); ++i) {
-          expected += static_cast<double>(p.energy[i]) * kernel(p, i, Vec3d(w), bandwidth);
+          const float widened = 1 / (1 + p.spread[i] * bandwidth);
+          expected += static_cast<double>(p.energy[i] * widened) * kernel(p, i, Vec3d(w), widened * bandwidth);
         }
         EXPECT_NEAR(smoothed_environment(p, w, bandwidth), expected, 1e-5 * expected + 1e-35) << bandwidth;
       }
