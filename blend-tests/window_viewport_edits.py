@@ -339,7 +339,7 @@ def a_long_drag(folder):
 
 @contextlib.contextmanager
 def _slow_pictures(seconds):
-    """Stands for a scene that takes long to get ready: a job runs on, and shows nothing, for so many seconds."""
+    """A scene that takes long to get ready: a job runs on, and shows nothing, for so many seconds."""
     job = viewport.addon("native.progressive").ProgressiveJob
     start, poll, picture, began = job.start, job.poll, job.picture, {}
 

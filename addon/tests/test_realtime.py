@@ -274,10 +274,18 @@ def test_tables_are_known_by_what_they_are_made_of(model_file):
 
 
 def test_large_pictures_are_drawn_as_means():
-    pixels = np.random.default_rng(1).random((3, 5000, 1), np.float32)
+    pixels = np.random.default_rng(1).random((4500, 5000, 1), np.float32)
     made = GpuTexture.from_pixels(pixels)
-    assert made.colors.shape == (1, 1666, 4)
+    assert made.colors.shape == (1500, 1666, 4)
     np.testing.assert_allclose(made.colors[0, 0, 1], pixels[:3, :3].mean(), rtol=1e-6)
+
+
+@pytest.mark.parametrize("shape", [(1, 4096, 3), (4096, 1, 4), (2, 5000, 1), (1, 2049, 3)])
+def test_strips_keep_their_short_side(shape):
+    made = GpuTexture.from_pixels(np.full(shape, 0.25, np.float32))
+    assert min(made.colors.shape[:2]) == min(shape[:2])
+    assert max(made.colors.shape[:2]) <= 2048
+    np.testing.assert_allclose(made.colors[..., :3], 0.25)
 
 
 def test_jobs_without_a_table_say_so():

@@ -4,6 +4,7 @@ A test is a generator that yields the seconds until its next turn.
 """
 
 import importlib
+import io
 import os
 import sys
 import time
@@ -22,9 +23,24 @@ _TEST_SECONDS = 400  # limit of one test on a busy machine; its process has 600
 def run(folder, tests, left_out=(), reason="", seconds=_TEST_SECONDS, viewport=False):
     """Starts the tests one after the other, each of so many seconds at most, and writes the report. Those
     `left_out` for a `reason` count as skipped. `viewport`: they see Blender's 3D viewport."""
+    sys.stderr = _Watched(sys.stderr)
     runner = _Runner(folder, tests, seconds, viewport)
     runner.found = [report.Test(test.__name__, report.SKIPPED, reason=reason) for test in left_out]
     bpy.app.timers.register(runner.turn, first_interval=0.2, persistent=True)  # over file loads
+
+
+class _Watched(io.TextIOBase):
+    """Where Blender prints the exceptions of panels and handlers that it goes on after: counts them."""
+
+    def __init__(self, stream):
+        self._stream, self.exceptions = stream, 0
+
+    def write(self, text):
+        self.exceptions += text.count("Traceback (most recent call last)")
+        return self._stream.write(text)
+
+    def flush(self):
+        self._stream.flush()
 
 
 class _Runner:
@@ -45,14 +61,14 @@ class _Runner:
                 self.current.throw(TimeoutError(f"it has not ended within {self.seconds} s"))
             return next(self.current)
         except StopIteration:
-            self._end(report.PASSED)
+            self._end(report.FAILED if sys.stderr.exceptions > self.exceptions else report.PASSED)
         except Exception:
             traceback.print_exc(file=sys.stdout)
             self._end(report.FAILED)
         return 0.1
 
     def _begin(self, test):
-        self.name, self.clock = test.__name__, report.Clock()
+        self.name, self.clock, self.exceptions = test.__name__, report.Clock(), sys.stderr.exceptions
         self.end = time.monotonic() + self.seconds
         fresh_file(self.viewport)
         self.current = test(self.folder)

@@ -221,6 +221,11 @@ SENTENCES = {
         "{lines} of {sampled} vertical lines meet a sheet without thickness, which was made about one texel"
         " thick. Add a Solidify modifier, or raise {TEXELS}."
     ),
+    "silhouette_differs": (
+        "{wrong:percent} of what is seen of the silhouette (VOTF) differs from the tile, mostly because some"
+        " faces have normals that point inwards. Recalculate the normals of the tile's meshes (Mesh > Normals"
+        " > Recalculate Outside)."
+    ),
     "rays_lost": "{rays} rays never left the structure of the tile and were counted as misses.",
     "path_values_not_finite": (
         "{values} path values were not finite and were counted as 0. Check the materials of the tile for"

@@ -193,7 +193,9 @@ class OneJob(BackgroundJob):
         return self._enter(context, self._subject)
 
     def cancel(self, context):
-        """Called when Blender closes the window or loads another file."""
+        """Blender closes the window or loads another file, or a dialog before the job is left."""
+        if self._ticket is None:
+            return
         state = context.window_manager.velour
         state.canceled = f"{self._what} was canceled: its window was closed, or another file was opened."
         state.canceled_subject = getattr(self, "_subject", "")

@@ -39,7 +39,7 @@ class VelourPreferences(bpy.types.AddonPreferences):
             return
         text = (
             f"Preset materials: {folder}"
-            if presets.is_built(folder)
+            if presets.has_library(folder)
             else f"No preset materials. {missing(folder)}"
         )
         draw_sentence(context, column, text)

@@ -66,6 +66,7 @@ namespace velour {
   X(tile_emits_light, "")                                                                                             \
   X(tile_is_transparent, "")                                                                                          \
   X(sheets_thickened, "lines sampled")                                                                                \
+  X(silhouette_differs, "wrong")                                                                                      \
   X(rays_lost, "rays")                                                                                                \
   X(path_values_not_finite, "values")                                                                                 \
   /* Scenes */                                                                                                        \

@@ -11,9 +11,11 @@ from .ggx_terms import Geometry, lobe, schlick
 from .least_squares import ROUGHNESS, UNIT, Ranges, fit_material
 from .open_pbr import OpenPbr
 from .parameter_fit import Range
-from .view_samples import ViewSamples
+from .view_samples import ViewSamples, mean_error
 
 _MIN_ALPHA = 1e-3
+_REWEIGHTS = 2
+_LEAST_ERROR = 0.05
 _COAT_F0 = 0.04
 _RANGES: Ranges = {
     "base_color": [UNIT] * 3,
@@ -107,5 +109,26 @@ def fit_gltf(samples: ViewSamples, start: Gltf, is_isotropic: bool) -> Gltf:
         "clearcoat": max(start.clearcoat, 0.3),
         "clearcoat_roughness": max(start.clearcoat_roughness, 0.3),
     }
-    starts = start, *(start._replace(metallic=m, **coat) for m in (0.05, 0.95))
-    return fit_material(samples, starts, ranges, f_cos).material
+    albedo = (samples.solid_angle[..., None] * samples.f_cos).sum(1)
+    color = tuple(map(float, np.clip(albedo[np.argmax(samples.wv[:, 2])], 0, 1)))
+    bare = start._replace(metallic=0.95, base_color=color, clearcoat=0.0)
+    starts = start, *(start._replace(metallic=m, **coat) for m in (0.05, 0.95)), bare
+    geometry = Geometry.of(samples.wv, samples.wl)
+
+    def refitted(material):
+        """The fit from this material, where views weigh less the more it errs: reweighted least squares.
+
+        Grazing views that no metal of glTF resembles, because its reflectance rises to 1 there, would spoil
+        all others.
+        """
+        error = np.nan_to_num(samples.relative_errors(f_cos(material, geometry)), nan=1.0)
+        weight = 1 / np.sqrt(np.maximum(error, _LEAST_ERROR))
+        return fit_material(samples, [material], ranges, f_cos, geometry, weight).material
+
+    def best(materials):
+        return min(materials, key=lambda each: mean_error(samples, f_cos(each, geometry)))
+
+    found = best([*starts, *map(refitted, starts)])
+    for _ in range(_REWEIGHTS):
+        found = best([found, refitted(found)])
+    return found

@@ -27,13 +27,14 @@ def fit_material(
     ranges: Ranges,
     f_cos: Callable[[Any, Geometry], np.ndarray],
     geometry: Geometry | None = None,
+    view_weight: np.ndarray | None = None,
 ) -> Fit:
     """The best of the fits of the fields in `ranges`, from each of `starts`, named tuples.
 
     Residuals: f cos of each channel, its luminance, and albedos, relative to those of the view. Views weigh
-    as much as the picture of a sphere shows of them.
+    as much as the picture of a sphere shows of them, times `view_weight` [views], if given.
     """
-    target = _Target(samples)
+    target = _Target(samples, view_weight)
     geometry = geometry or Geometry.of(samples.wv, samples.wl)
     bounds = [each for part in ranges.values() for each in part]
     black = max(float((target.residuals(np.zeros_like(samples.f_cos)) ** 2).sum()), 1e-30)
@@ -58,10 +59,11 @@ def _with(material, ranges, values):
 
 
 class _Target:
-    def __init__(self, samples):
+    def __init__(self, samples, view_weight):
         self._f_cos = samples.f_cos
         self._solid_angle = samples.solid_angle[..., None]
         share = np.sqrt(np.sin(2 * np.arccos(np.clip(samples.wv[:, 2], 0, 1))))
+        share = share if view_weight is None else share * view_weight
         root = np.sqrt(samples.solid_angle)
         self._weight = (share / _not_black((root * (self._f_cos @ LUMINANCE)) ** 2))[:, None] * root
         self._albedo = (self._solid_angle * self._f_cos).sum(1)

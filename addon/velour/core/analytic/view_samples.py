@@ -50,17 +50,22 @@ def errors(
 ) -> dict:
     """Keys relative_l2 and by_view_angle, of a function f_cos(samples) against the model times `gain`."""
     fitted, reported = fitted_samples(model, gain=gain), _samples(model, REPORTED, lights, gain)
-    weight = np.sin(2 * np.arccos(np.clip(fitted.wv[:, 2], 0, 1)))
-    relative = fitted.relative_errors(f_cos(fitted))
-    covered = np.isfinite(relative)
     by_angle = np.sqrt((reported.relative_errors(f_cos(reported)) ** 2).reshape(len(REPORTED), -1).mean(-1))
     return {
-        "relative_l2": float(weight[covered] @ relative[covered] / max(weight[covered].sum(), 1e-9)),
+        "relative_l2": mean_error(fitted, f_cos(fitted)),
         "by_view_angle": {
             str(angle): float(error) if np.isfinite(error) else None
             for angle, error in zip(REPORTED, by_angle, strict=True)
         },
     }
+
+
+def mean_error(samples: ViewSamples, f_cos: np.ndarray) -> float:
+    """Mean relative L2 error of the views that are not black, as the picture of a sphere shows them."""
+    weight = np.sin(2 * np.arccos(np.clip(samples.wv[:, 2], 0, 1)))
+    relative = samples.relative_errors(f_cos)
+    covered = np.isfinite(relative)
+    return float(weight[covered] @ relative[covered] / max(weight[covered].sum(), 1e-9))
 
 
 def _samples(model, degrees, lights, gain):

@@ -13,6 +13,7 @@ from ...native import Job, Model, Scene, biases, denoise_job, images, library, o
 from ...native.errors import refuse
 from .. import domain
 from ..cache import user_cache_folder
+from ..sizes import percent
 from ..stopping import stopping
 from . import memory, numbers, output, render_part, scene, unfinished
 
@@ -220,9 +221,9 @@ def _choose_model(
         " scene model"
     )
     output.log.warning(
-        "%.2g %% of the scene usage of this image is outside the range that the scene model %s was fitted"
+        "%s of the scene usage of this image is outside the range that the scene model %s was fitted"
         " for; %s.",
-        100 * share, args.material, instead,
+        percent(share), args.material, instead,
     )  # fmt: skip
     if full:
         described.set_model_material(material, full, args.neighbors)

@@ -134,6 +134,7 @@ bool ShellColumns::inside(size_t line, float height) const {
   return std::abs(depth) > never_left;  // below 0 within faces whose normals point inwards
 }
 
+constexpr double kMaxWrong = 0.1;  // beyond it, faces must be turned the wrong way
 constexpr float kSheet = 0.6f;  // half thickness of sheets in pitches, enough for look-ups between points to find them
 
 /// Triangles of the tile in its own coordinates, in widths.
@@ -170,6 +171,9 @@ class VotfCapturer {
     result_.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     progress_.stage("checking the silhouette", 0.6, 1);
     if (options_.check_views > 0) result_.errors = errors();
+    if (result_.errors && result_.errors->wrong > kMaxWrong) {
+      result_.warnings.push_back(warning<WarningCode::silhouette_differs>({{"wrong", result_.errors->wrong}}));
+    }
     result_.ray_share = share_.measure(tile_.rays(), progress_);
     return std::move(result_);
   }

@@ -10,6 +10,7 @@
 #include <thread>
 
 #include "base/job.h"
+#include "capture/tile/tile.h"
 #include "support/captured.h"
 #include "support/warnings.h"
 
@@ -174,6 +175,19 @@ TEST(BtfCapture, ReferencePlaneOfASheetIsTheSheet) {
   const Captured captured(*scene, options, "sheet");
   EXPECT_NEAR(captured.report.reference_height, 0.4, 0.4 / 32 + 1e-6);
   EXPECT_NEAR(captured.report.thickness, 0.4, 1e-6);
+}
+
+/// So that a capture of the front lies on the plane of a silhouette, which is seen from both sides.
+TEST(BtfCapture, ReferencePlaneDoesNotDependOnTheSides) {
+  const Tile tile = make_tile({.kind = "net"});
+  const TileMesh& m = tile.parts.mesh;
+  const auto scene = tile_of(Mesh({.positions = m.positions, .triangles = m.triangles}), lambert(0.5f));
+  BtfCaptureOptions options = small_capture({{0, 0}}, {{0, 0}});
+  options.place.period = tile.period;
+  options.reference_height.reset();
+  const double front = Captured(*scene, options, "front").report.reference_height;
+  options.sides = CaptureSides::two;
+  EXPECT_EQ(Captured(*scene, options, "both").report.reference_height, front);
 }
 
 TEST(BtfCapture, RefusesOrReportsWhatIsWrong) {

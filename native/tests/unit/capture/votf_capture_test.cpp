@@ -10,22 +10,31 @@
 namespace velour::votf_capture_test {
 namespace {
 
-std::unique_ptr<Scene> scene_of(const std::string& kind) {
+enum class Turned { none, half, all };
+
+/// A tile whose lowest level is `level`, with the faces of every second triangle, or of all, turned inwards.
+std::unique_ptr<Scene> scene_of(const std::string& kind, float level = 0, Turned turned = Turned::none) {
   const Tile tile = make_tile({.kind = kind});
   const TileMesh& m = tile.parts.mesh;
-  return test::tile_of(Mesh({.positions = m.positions, .triangles = m.triangles, .corner_normals = m.corner_normals}),
+  std::vector<Vec3> positions = m.positions;
+  for (Vec3& p : positions) p.z += level;
+  std::vector<glm::uvec3> triangles = m.triangles;
+  for (size_t i = 0; i < triangles.size(); ++i) {
+    if (turned == Turned::all || (turned == Turned::half && i % 2 != 0)) std::swap(triangles[i].y, triangles[i].z);
+  }
+  return test::tile_of(Mesh({.positions = std::move(positions), .triangles = std::move(triangles)}),
                        std::make_shared<test::Lambert>(0.5f));
 }
 
-VotfCapture captured(const std::string& kind, uint32_t texels) {
+VotfCapture captured(const std::string& kind, uint32_t texels, float level = 0, Turned turned = Turned::none) {
   const Tile tile = make_tile({.kind = kind});
   Progress progress;
   VotfCaptureOptions options;
   options.place.period = tile.period;
   options.texels = texels;
-  options.reference_height = 0;
+  options.reference_height = options.surface = static_cast<double>(level);
   options.check_views = 16;
-  return capture_votf(*scene_of(kind), options, progress);
+  return capture_votf(*scene_of(kind, level, turned), options, progress);
 }
 
 class OfTiles : public ::testing::TestWithParam<const char*> {};
@@ -55,6 +64,24 @@ TEST(VotfCapture, AClosedTileIsMetFromEverywhere) {
   EXPECT_TRUE(c.volume.closed);
   EXPECT_EQ(c.errors->coverage, 1.0);
   EXPECT_EQ(c.errors->wrong, 0.0);
+}
+
+TEST(VotfCapture, NormalsThatPointInwardsChangeNothing) {
+  for (const char* const kind : {"net", "corduroy"}) {
+    EXPECT_EQ(captured(kind, 32, 0, Turned::all).volume.distance, captured(kind, 32).volume.distance) << kind;
+  }
+}
+
+TEST(VotfCapture, NormalsThatPointAnyWayAreWarnedOf) {
+  const VotfCapture c = captured("net", 32, 0, Turned::half);
+  EXPECT_GT(c.errors->wrong, 0.1);
+  ASSERT_FALSE(c.warnings.empty());
+  EXPECT_EQ(c.warnings.back().code, WarningCode::silhouette_differs);
+}
+
+/// A millimeter of thread ten meters above the plane z = 0, where floats are a micrometer apart.
+TEST(VotfCapture, ATileFarFromTheOriginIsSeenAsNearIt) {
+  EXPECT_LT(captured("net", 64, 10).errors->wrong, 0.03);
 }
 
 TEST(VotfCapture, ASheetWithAHoleBecomesThinWithAWarning) {
