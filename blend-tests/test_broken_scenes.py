@@ -48,6 +48,48 @@ class MissingFiles(BadInputTest):
         path.unlink()
         self._refused("Material 'Diffuse'", "paints.blend")
 
+    def test_library_of_a_library(self):
+        """Its path is relative to the file that is open, not to the library that uses it."""
+        shot, first, second = (
+            self.folder / name for name in ("shot.blend", "lib/a.blend", "lib/sub/b.blend")
+        )
+        second.parent.mkdir(parents=True)
+        bpy.data.libraries.write(str(second), {self.ball})
+        bpy.data.objects.remove(self.ball)
+        bpy.ops.wm.save_as_mainfile(filepath=str(self.folder / "lib/work.blend"))
+        prop = self._linked(second, "objects")
+        group = bpy.data.collections.new("Props")
+        group.objects.link(prop)
+        bpy.data.libraries.write(str(first), {group}, path_remap="RELATIVE_ALL")
+        bpy.data.batch_remove([group, prop, *bpy.data.libraries])
+        bpy.ops.wm.save_as_mainfile(filepath=str(shot))
+        self.scene.collection.children.link(self._linked(first, "collections"))
+        self.assertGreater(self._middle().min(), 0.2)
+        (self.folder / "out_0001.exr").unlink()
+        second.unlink()
+        self._refused("Object 'Sphere'", "lib/sub/b.blend", "Find Missing Files")
+
+    def _linked(self, path, kind):
+        with bpy.data.libraries.load(str(path), link=True, relative=True) as (there, here):
+            setattr(here, kind, getattr(there, kind))
+        return getattr(here, kind)[0]
+
+    def test_library_of_a_modifier(self):
+        path = self.folder / "groups.blend"
+        group = bpy.data.node_groups.new("Nothing", "GeometryNodeTree")
+        bpy.data.libraries.write(str(path), {group})
+        bpy.data.node_groups.remove(group)
+        modifier = self.ball.modifiers.new("Nodes", "NODES")
+        modifier.node_group = self._linked_absolute(path)
+        bpy.ops.wm.save_as_mainfile(filepath=str(self.folder / "scene.blend"))
+        path.unlink()
+        self._refused("'Nothing'", "groups.blend")
+
+    def _linked_absolute(self, path):
+        with bpy.data.libraries.load(str(path), link=True) as (there, here):
+            here.node_groups = there.node_groups
+        return here.node_groups[0]
+
     def test_library_of_another_scene(self):
         """What this picture does not show may be gone."""
         path, prop = self._linked_prop()

@@ -83,6 +83,12 @@ class CheckScene(BlenderTest):
         self.assertTrue(is_refusal)
         self.assertIn("camera", text)
 
+    def test_settings_that_no_render_takes(self):
+        self.scene.render.use_multiview = True
+        ((is_refusal, text),) = self._found()
+        self.assertTrue(is_refusal)
+        self.assertIn("Stereoscopy is not supported", text)
+
     def test_scene_and_picture_stay(self):
         picture = scenes.render(self.folder)
         names = [scene.name for scene in bpy.data.scenes]

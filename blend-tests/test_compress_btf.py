@@ -229,6 +229,14 @@ class CompressBtf(BlenderTest):
             bpy.ops.velour.compress_btf()
         self.assertNotIn("nowhere", bpy.data.materials)
 
+    def test_it_stays_beside_what_is_packed(self):
+        """Blender packs the index of a BTF alone; its images stay where they are."""
+        self._captured(**_SMALLEST)
+        bpy.ops.velour.compress_btf(assign=True, megabytes=0.005)
+        bpy.ops.wm.save_as_mainfile(filepath=str(self.folder / "packed.blend"))
+        bpy.ops.file.pack_all()
+        self.assertEqual(bpy.ops.velour.compress_btf(material="ribs", megabytes=0.005), {"FINISHED"})
+
     def test_importing_a_btf_makes_a_material_of_it(self):
         path = self._captured(**_SMALLEST)
         bpy.ops.mesh.primitive_cube_add()

@@ -102,6 +102,25 @@ class ExitCodes(BlenderTest):
         scene.camera = None
         self._all_fail(["amera"], **_FEW)
 
+    def test_refused_scene_behind_the_compositor(self):
+        """Blender itself would go on, and save black pictures."""
+        scene = self._scene()
+        other = scene.copy()
+        other.camera = scene.camera.copy()
+        other.camera.data = scene.camera.data.copy()
+        other.camera.data.type = "PANO"
+        other.collection.objects.link(other.camera)
+        scene.use_nodes = True
+        if hasattr(scene, "compositing_node_group"):  # 5.0 and newer
+            tree = scene.compositing_node_group = bpy.data.node_groups.new("Compositor", "CompositorNodeTree")
+            tree.interface.new_socket("Image", in_out="OUTPUT", socket_type="NodeSocketColor")
+            layers, end = tree.nodes.new("CompositorNodeRLayers"), tree.nodes.new("NodeGroupOutput")
+            tree.links.new(layers.outputs[0], end.inputs[0])
+        else:
+            layers = scene.node_tree.nodes["Render Layers"]
+        layers.scene = other
+        self._all_fail(["pano cameras are not supported"], **_FEW)
+
     def test_missing_world_image(self):
         self._scene()
         tree = bpy.context.scene.world.node_tree

@@ -78,6 +78,23 @@ class MeshArrays(BlenderTest):
         self.ball.data.polygons.foreach_set("use_smooth", smooth)
         self.ball.data.update()
 
+    def test_a_duplicate_of_a_mesh_in_edit_mode(self):
+        """It is in object mode itself, and its mesh is in edit mode."""
+        before = self._export_arrays(self.ball)
+        twin = self.ball.copy()
+        bpy.context.scene.collection.objects.link(twin)
+        bpy.context.view_layer.objects.active = self.ball
+        bpy.ops.object.mode_set(mode="EDIT")
+        try:
+            for obj in (self.ball, twin):
+                np.testing.assert_allclose(self._export_arrays(obj), before, atol=1e-6)
+        finally:
+            bpy.ops.object.mode_set(mode="OBJECT")
+
+    def _export_arrays(self, obj):
+        depsgraph = bpy.context.evaluated_depsgraph_get()
+        return _export("meshes").object_arrays(obj.evaluated_get(depsgraph)).positions
+
     def test_smooth(self):
         self._assert_normals("vertex_normals")
 

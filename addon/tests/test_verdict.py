@@ -40,6 +40,7 @@ def test_every_reason_has_its_words():
     assert codes_of(HEADER.read_text(encoding="utf-8")) == {
         *REASONS,
         *("brightness", "measurement_noise", "unresolved_highlights"),
+        *("anisotropic_samples", "held_out_samples"),
     }
 
 
@@ -61,6 +62,14 @@ def test_every_reason_has_its_words():
         (
             info("poor", "unresolved_highlights", 4.2),
             "Poor: samples 4° apart do not resolve the highlights. More lobes do not help; measure more",
+        ),
+        (
+            info("poor", "anisotropic_samples"),
+            "Poor: the surface is brushed, and the model is not. Use a measurement with azimuths",
+        ),
+        (
+            info("fair", "held_out_samples", 1.2),
+            "Fair: misses samples that were held out. More lobes do not help; measure more directions",
         ),
         (
             info("poor", "highlights", warning_codes=[{"code": "few_samples", "values": {}}]),

@@ -77,6 +77,10 @@ def _cause(info: dict) -> str | None:
         return (
             f"samples {apart:.0f}° apart do not resolve the highlights. More lobes do not help; measure more"
         )
+    if info["verdict"]["reason"] == "anisotropic_samples":
+        return "the surface is brushed, and the model is not. Use a measurement with azimuths"
+    if info["verdict"]["reason"] == "held_out_samples":
+        return "misses samples that were held out. More lobes do not help; measure more directions"
     if any(warning["code"] == "few_samples" for warning in info.get("warning_codes", ())):
         return "the measurement has too few samples. More lobes do not help; use a denser measurement"
     return None

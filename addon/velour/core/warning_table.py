@@ -50,6 +50,10 @@ SENTENCES = {
         "{invalid} of {entries} values of the measurement are invalid and were left out: the model is a guess"
         " there, and errors are measured on the others. If it looks wrong, use a more complete measurement."
     ),
+    "spikes_left_out": (
+        "{spikes} of {samples} samples are far brighter than those about them and were left out: stray light,"
+        " or faults of the detector."
+    ),
     "few_samples": (
         "The measurement has only {samples} samples: between them, the model is a guess. Errors are measured"
         " on {judged} {held_out:fitted|held-out} samples. Check the model with {MEASUREMENT_RENDER}, or use a"

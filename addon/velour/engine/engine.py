@@ -54,12 +54,12 @@ class VelourRenderEngine(bpy.types.RenderEngine):
         except RenderCancelledError:
             pass  # requested by Blender
         except (ExportError, UnfinishedError, VelourError) as error:
-            self._fail(str(error))
+            self._fail(str(error), depsgraph)
         except KeyboardInterrupt:  # Blender as a module crashes on writing the file if this propagates
-            self._fail("The render was interrupted.")
+            self._fail("The render was interrupted.", depsgraph)
         except Exception as error:  # an exception alone would leave a black picture and exit status 0
             log.exception("render failed")
-            self._fail(f"Velour failed unexpectedly: {type(error).__name__}: {error}")
+            self._fail(f"Velour failed unexpectedly: {type(error).__name__}: {error}", depsgraph)
 
     def view_update(self, context, depsgraph):
         if self._viewport is None:
@@ -74,9 +74,9 @@ class VelourRenderEngine(bpy.types.RenderEngine):
     def update_render_passes(self, scene=None, renderlayer=None):
         register_passes(self, scene, renderlayer)
 
-    def _fail(self, sentence):
+    def _fail(self, sentence, depsgraph):
         if self.is_preview:
             self.error_set(sentence)  # nobody reads reports of a preview: show it in its corner
         else:
-            self.failed_frame.note()
             self.report({"ERROR"}, sentence)
+            self.failed_frame.note(depsgraph.scene)

@@ -2,7 +2,10 @@
 
 import bpy
 
+from .written_file import end_render
+
 _frames = 0  # that Blender has begun to render
+_scene = ""  # name of the one that it renders; its compositor and sequencer may need others
 
 
 class FailedFrame:
@@ -11,8 +14,11 @@ class FailedFrame:
     def __init__(self):
         self._number = None
 
-    def note(self):
+    def note(self, scene):
+        """Blender discards the frame of a scene that fails, but not what composites or cuts it: that ends."""
         self._number = _frames
+        if _scene and scene.name_full != _scene:
+            end_render()
 
     @property
     def is_current(self):
@@ -20,9 +26,10 @@ class FailedFrame:
 
 
 @bpy.app.handlers.persistent
-def _begin(*_args):
-    global _frames
+def _begin(scene, *_args):
+    global _frames, _scene
     _frames += 1
+    _scene = scene.name_full
 
 
 def attach():

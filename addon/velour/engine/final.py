@@ -36,10 +36,18 @@ class RenderCancelledError(Exception):
     """Esc or Ctrl-C."""
 
 
-def render_final(engine, depsgraph):
-    scene = depsgraph.scene_eval
+def refuse_settings(scene):
+    """Raises ExportError or VelourError for settings with which no final render begins."""
     if scene.render.use_multiview:
         raise ExportError("Stereoscopy is not supported; disable it in Output > Stereoscopy.")
+    if scene.velour.use_denoising:
+        denoising.prepare(scene)
+
+
+def render_final(engine, depsgraph):
+    scene = depsgraph.scene_eval
+    if not engine.is_preview:
+        refuse_settings(scene)
     engine.update_stats("Velour", "Exporting scene")
     given = None if engine.is_preview else arguments()
     limit = memory.MemoryLimit(given and given.memory)
@@ -72,8 +80,6 @@ def render_final(engine, depsgraph):
             )
             _say(notes)
         options = final_options(depsgraph, view, engine.is_preview)
-        if options["denoise"]:
-            denoising.prepare(scene)
         parts = None
         if not engine.is_preview:
             parts = frame_parts(given, depsgraph, view, options, materials.models, shown)

@@ -38,11 +38,11 @@ def was_written_whole(scene):
             flush=True,
         )
     if damage:
-        _end_render()
+        end_render()
     return not damage
 
 
-def _end_render():
+def end_render():
     """Like Ctrl-C: the only way in which a handler can make Blender stop an animation and exit with 1."""
     if bpy.app.background and signal.getsignal(signal.SIGINT) is None:  # the module bpy leaves it to Python
         signal.raise_signal(signal.SIGINT)

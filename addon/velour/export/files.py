@@ -12,6 +12,7 @@ import bpy
 
 from ..core.files import read_bytes
 from ..core.files import sha256_of as sha256
+from ..core.measurement_files import INDICES
 from ..native import Btf, Measurement, Model, VelourError, library, measurement_job
 from .notes import ExportError
 
@@ -25,9 +26,14 @@ def absolute_path(image):
 
 
 def packed_bytes(image):
-    """The bytes packed into the .blend, or None."""
+    """The bytes packed into the .blend, or None: also of the index of a BTF, which is a folder.
+
+    File > External Data > Pack Resources packs such an index alone.
+    """
     packed = image.packed_file
-    return packed.data if packed is not None else None
+    if packed is None or os.path.basename(absolute_path(image)) in INDICES:
+        return None
+    return packed.data
 
 
 class ChangedFileError(ExportError):

@@ -125,6 +125,8 @@ def uv_map_of(vector):
 
 def _coordinates(plug):
     node = plug.node
+    if getattr(node, "from_instancer", False):
+        raise UnsupportedError(f"'{node.name}' reads the coordinates of the instancer")
     if node.bl_idname == "ShaderNodeUVMap":
         return node.uv_map
     if node.bl_idname != "ShaderNodeTexCoord" or plug.socket.name != "UV":

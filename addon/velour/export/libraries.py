@@ -34,13 +34,15 @@ def _is_there(library):
 
 
 def _path(library):
-    return os.path.normpath(bpy.path.abspath(library.filepath, library=library.parent))
+    # Relative to the open file, also of libraries of libraries.
+    return os.path.normpath(bpy.path.abspath(library.filepath))
 
 
 def _shown_by(scene):
     """Datablocks that a render of the scene uses, each once; Blender keeps placeholders for missing ones."""
     worlds = [layer_world(scene, layer) for layer in scene.view_layers]
-    waiting, seen = [scene.collection, *worlds], set()
+    materials = [layer.material_override for layer in scene.view_layers]
+    waiting, seen = [scene.collection, *worlds, *materials, *_background_collections(scene)], set()
     while waiting:
         block = waiting.pop()
         if block is None or block.as_pointer() in seen:
@@ -50,14 +52,22 @@ def _shown_by(scene):
         waiting += _parts(block)
 
 
+def _background_collections(scene):
+    found = set()
+    while (scene := scene.background_set) is not None and scene.name_full not in found:
+        found.add(scene.name_full)
+        yield scene.collection
+
+
 def _parts(block):
     if isinstance(block, bpy.types.Collection):
         return [*block.objects, *block.children]
     if isinstance(block, bpy.types.Object):
         slots = [slot.material for slot in block.material_slots]
         override = block.override_library
-        return [block.data, block.instance_collection, *slots, override.reference if override else None]
-    trees = [block.node_tree] if getattr(block, "node_tree", None) else []
+        groups = [getattr(modifier, "node_group", None) for modifier in block.modifiers]
+        reference = override.reference if override else None
+        return [block.data, block.instance_collection, *slots, *groups, reference]
     if isinstance(block, bpy.types.NodeTree):
-        trees = [node.node_tree for node in block.nodes if getattr(node, "node_tree", None)]
-    return trees
+        return [getattr(node, name, None) for node in block.nodes for name in ("node_tree", "image")]
+    return [getattr(block, "node_tree", None)]

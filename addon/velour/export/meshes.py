@@ -100,8 +100,11 @@ def triangle_faces(obj):
 
 
 def _must_convert(obj):
-    """Only objects of other types, and meshes in edit mode, need a converted copy."""
-    return obj.type != "MESH" or obj.mode == "EDIT"
+    """Only objects of other types, and meshes in edit mode, need a converted copy.
+
+    A mesh is in edit mode in all its objects if it is in one.
+    """
+    return obj.type != "MESH" or obj.mode == "EDIT" or obj.data.is_editmode
 
 
 @contextlib.contextmanager

@@ -2,6 +2,7 @@
 
 import bpy
 
+from ..engine.final import refuse_settings
 from ..export import ExportError, Notes, export_scene, visitor
 from ..export.camera import final_view
 from ..export.layer_passes import note_missing_passes
@@ -38,6 +39,10 @@ class _Check:
     def __init__(self, scene):
         self._scene, self._copies = scene, set()
         self.notes, self.refused, self.served = Notes(), Notes(), []
+        try:
+            refuse_settings(scene)
+        except (ExportError, VelourError) as error:
+            self.refused.add(str(error))
         try:
             visitor.visit_frame(scene, scene.frame_current, self._visit, ENGINE)
         except ExportError as error:

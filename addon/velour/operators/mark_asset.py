@@ -5,6 +5,7 @@ from bpy.props import StringProperty
 
 from ..core.ball import ball_job, ball_scene, shown
 from ..core.read_job import ReadJob
+from ..export import ExportError
 from . import measured
 from .background_job import JobsInSteps
 from .job_target import JobTarget
@@ -31,6 +32,11 @@ class VELOUR_OT_mark_asset(measured.OfMaterial, JobsInSteps, bpy.types.Operator)
     def _begin(self, context):
         material = measured.wanted_material(context, self.material)
         measured.refuse_linked(material)
+        if material.override_library:
+            raise ExportError(
+                f"Material '{material.name}' is an override of a linked one, and cannot be an asset; mark the"
+                " material in its library."
+            )
         node = measured.modelled_node(material)
         self._target, self._subject = JobTarget(material, node), material.name
         self._threads = context.scene.render.threads

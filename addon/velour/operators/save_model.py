@@ -39,6 +39,9 @@ class VELOUR_OT_save_model(measured.OfMaterial, bpy.types.Operator, ExportHelper
         if image is None:
             self.report({"ERROR"}, "There is no model to save; fit or import one first.")
             return {"CANCELLED"}
+        if not self.filepath:
+            self.report({"ERROR"}, "There is no path to save to; set filepath.")
+            return {"CANCELLED"}
         path = bpy.path.abspath(self.filepath)
         try:
             data = content(image, f"Material '{material.name}'")

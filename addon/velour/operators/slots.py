@@ -102,7 +102,10 @@ class SlotTarget:
         """Uses the properties of a PutsInSlot; None: no slot is wanted."""
         if not operator.assign:
             return None
-        return cls(context, Slot(operator.object, operator.slot) if operator.object else None)
+        name = operator.object
+        if not name and operator.properties.is_property_set("slot") and context.object:
+            name = context.object.name
+        return cls(context, Slot(name, operator.slot) if name else None)
 
     def take(self):
         """The object and the slot's number; None if there is none, or it is gone. Call once."""

@@ -22,6 +22,7 @@ namespace velour {
 #define VELOUR_WARNINGS(X)                                                                                            \
   /* Measurements */                                                                                                  \
   X(invalid_entries, "invalid entries")                                                                               \
+  X(spikes_left_out, "spikes samples")                                                                                \
   X(few_samples, "samples judged held_out") /* held_out 1: errors are measured on held-out samples; 0: on fitted */   \
   X(anisotropic_samples, "pairs factor same_azimuth_factor")                                                          \
   X(noise_exceeds_tolerance, "count worst difference") /* worst: the view with the largest noise */                   \

@@ -99,6 +99,7 @@ Model fit_and_judge(ModelKind kind, const Measurement& measurement, FitOptions o
   progress.stage("comparing pictures", kFitShare, 1);
   const std::optional<Verdict>& verdict = model.fit.verdict;
   if (!verdict || verdict->quality != LookQuality::good) model.fit.verdict = judged(model, true, progress);
+  if (model.fit.verdict && !measurement.samples().empty()) lower_for_samples(model.fit, *model.fit.verdict);
   progress.update(1);
   return model;
 }

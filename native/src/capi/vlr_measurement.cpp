@@ -22,6 +22,7 @@ std::string measurement_json(const Measurement& measurement) {
                      {"negative", n.negative},
                      {"not_finite", n.not_finite},
                      {"below_horizon", n.below_horizon},
+                     {"spikes", n.spikes},
                      {"out_of_gamut", n.out_of_gamut}}},
                    {"details", details_json(measurement)}});
   return text(json);

@@ -13,9 +13,16 @@ namespace velour {
 namespace {
 
 constexpr std::array<std::string_view, 3> kQualities{"good", "fair", "poor"};
-constexpr std::array<std::string_view, 8> kReasons{
-    "",      "grazing_views", "highlights",        "brightness",
-    "color", "everywhere",    "measurement_noise", "unresolved_highlights"};
+constexpr std::array<std::string_view, 10> kReasons{"",
+                                                    "grazing_views",
+                                                    "highlights",
+                                                    "brightness",
+                                                    "color",
+                                                    "everywhere",
+                                                    "measurement_noise",
+                                                    "unresolved_highlights",
+                                                    "anisotropic_samples",
+                                                    "held_out_samples"};
 
 }  // namespace
 

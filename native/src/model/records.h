@@ -62,6 +62,8 @@ enum class LookReason : uint8_t {
   everywhere,         // value 0
   measurement_noise,  // value: mean FLIP against the mean of the measurement and itself with light and view exchanged
   unresolved_highlights,  // by irregular samples; value: the angle between those, degrees
+  anisotropic_samples,    // of an isotropic fit; value 0
+  held_out_samples,       // value: the relative L2 error at the view where they are missed most
 };
 
 struct Verdict {

@@ -33,6 +33,11 @@ void warn_of_entries(const Measurement& measurement, std::vector<Warning>& warni
   }
 }
 
+void warn_of_spikes(const EntryCounts& n, std::vector<Warning>& warnings) {
+  if (n.spikes == 0) return;
+  warnings.push_back(warning<WarningCode::spikes_left_out>({{"spikes", n.spikes}, {"samples", n.valid + n.spikes}}));
+}
+
 void warn_of_few_samples(size_t samples, bool all_data, std::vector<Warning>& warnings) {
   if (samples == 0 || samples >= kFewSamples) return;
   uint64_t judges = 0;
@@ -122,6 +127,7 @@ void warn_of_reciprocity(const FitRecord& record, std::vector<Warning>& warnings
 
 void warn_of_measurement(const Measurement& measurement, const Comparison& errors, FitRecord& record) {
   warn_of_entries(measurement, record.warnings);
+  warn_of_spikes(measurement.counts(), record.warnings);
   warn_of_few_samples(measurement.samples().size(), record.all_data, record.warnings);
   warn_of_azimuth(measurement.samples(), record.warnings);
   // Reciprocal pairs of a non-reciprocal measurement say nothing about its noise.

@@ -246,7 +246,9 @@ std::shared_ptr<const Measurement> read_cornell(std::span<const uint8_t> bytes, 
   const auto numbers = read_numbers(bytes, path, progress);
   const CornellText text = split(numbers, path);
   EntryCounts counts;
-  auto samples = read_samples(text, path, counts);
+  auto samples = without_spikes(read_samples(text, path, counts));
+  counts.spikes = counts.valid - samples.size();
+  counts.valid = samples.size();
   provenance.format = "cornell";
   provenance.description = opening_comment(bytes);
   return std::make_shared<IrregularMeasurement>(std::move(samples), std::move(provenance), counts, describe(text),

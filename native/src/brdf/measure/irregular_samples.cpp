@@ -190,6 +190,67 @@ std::array<double, 3> IrregularInterpolant::Index::regress(const Point& here, co
   return found;
 }
 
+namespace {
+
+constexpr float kSpike = 8.0f;     // times as bright as its neighbors
+constexpr size_t kMaxBright = 2;   // neighbors that may be as bright: other spikes
+constexpr int kSurrounding = 3;    // dimmer neighbors on a side
+constexpr float kDimShare = 0.1f;  // of the median: what is dimmer is no measure of a spike
+constexpr double kMaxSpikes = 1 / 30.0;
+
+/// Places of samples as a nanoflann data set.
+struct PlaceCloud {
+  std::vector<Place> places;
+  size_t kdtree_get_point_count() const { return places.size(); }
+  double kdtree_get_pt(size_t i, size_t axis) const { return places[i].regression[axis]; }
+  template <class Box>
+  bool kdtree_get_bbox(Box&) const {
+    return false;
+  }
+};
+
+}  // namespace
+
+std::vector<IrregularSample> without_spikes(std::vector<IrregularSample> samples) {
+  if (samples.size() < 2 * kCount) return samples;
+  PlaceCloud cloud;
+  std::vector<float> bright;
+  for (const IrregularSample& sample : samples) {
+    cloud.places.push_back(place_of(sample.wl, sample.wv));
+    bright.push_back(luminance(sample.f));
+  }
+  nanoflann::KDTreeSingleIndexAdaptor<nanoflann::L2_Simple_Adaptor<double, PlaceCloud>, PlaceCloud, 3> tree(3, cloud);
+  tree.buildIndex();
+  std::vector<float> sorted = bright;
+  std::ranges::nth_element(sorted, sorted.begin() + static_cast<ptrdiff_t>(sorted.size() / 2));
+  const float dimmest = kDimShare * std::max(sorted[sorted.size() / 2], 0.0f);
+  const auto is_spike = [&](size_t i) {
+    std::array<uint32_t, kCount + 1> near{};
+    std::array<double, kCount + 1> distance{};
+    const size_t found = tree.knnSearch(cloud.places[i].regression.data(), kCount + 1, near.data(), distance.data());
+    size_t as_bright = 0;
+    int inside = 0, below = 0, above = 0;
+    for (size_t k = 0; k < found; ++k) {
+      if (near[k] == i) continue;
+      if (!(bright[i] > kSpike * std::max(bright[near[k]], dimmest))) {
+        if (++as_bright > kMaxBright) return false;
+        continue;
+      }
+      const Point &here = cloud.places[i].reach, &there = cloud.places[near[k]].reach;
+      inside += there[0] < here[0];
+      below += there[1] < here[1];
+      above += there[1] > here[1];
+    }
+    return std::min({inside, below, above}) >= kSurrounding;
+  };
+  std::vector<IrregularSample> kept;
+  for (size_t i = 0; i < samples.size(); ++i) {
+    if (!is_spike(i)) kept.push_back(samples[i]);
+  }
+  const auto spikes = static_cast<double>(samples.size() - kept.size());
+  return spikes > kMaxSpikes * static_cast<double>(samples.size()) ? std::move(samples) : std::move(kept);
+}
+
 std::vector<TableNode> resample_irregular(const IrregularInterpolant& interpolant, const BrdfTableLayout& layout,
                                           const Progress& progress) {
   const HorizonTest horizon(layout);

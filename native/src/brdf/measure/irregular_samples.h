@@ -45,6 +45,12 @@ class IrregularInterpolant {
   std::unique_ptr<const Index> index_;
 };
 
+/// The samples without spikes: those more than eight times as bright as all but two of their 16 neighbors, if the
+/// neighbors surround them. A highlight between samples is no spike, because it has no dark samples at smaller theta_h,
+/// nor is a peak at one end of theta_d. All samples if more than one in thirty were one, as of brushed metals, which
+/// differ with azimuth.
+std::vector<IrregularSample> without_spikes(std::vector<IrregularSample> samples);
+
 /// Whether the samples leave the width of the highlights open: for most difference angles theta_d at which f is much
 /// larger near theta_h = 0 than elsewhere, f is below a tenth of that at every other theta_h. Returns the mean angle
 /// from the brightest sample to the next theta_h, radians; 0 if highlights are resolved, or there are none.

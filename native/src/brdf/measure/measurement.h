@@ -30,6 +30,7 @@ struct EntryCounts {
   uint64_t negative = 0;       // MERL: any channel negative; elsewhere: negative luminance
   uint64_t not_finite = 0;     // NaN or infinite
   uint64_t below_horizon = 0;  // directions that cannot be measured
+  uint64_t spikes = 0;         // irregular samples left out (without_spikes)
   uint64_t out_of_gamut = 0;   // of the valid ones: a negative channel with positive luminance; kept as it is
   uint64_t invalid() const { return negative + not_finite; }
 };

@@ -274,6 +274,7 @@ constexpr double kGrazing = 60;     // degrees
 constexpr float kBright = 0.5f;     // exposed luminance of highlights
 constexpr double kTwice = 2;        // FLIP of a part of the pixels that stands out, relative to the others
 constexpr double kLeast = 1e-9;     // FLIP of pixels that do not differ
+constexpr double kMissed = 1.0;     // relative L2 error of held-out samples: no better than black
 constexpr double kExplained = 0.5;  // of FLIP remains, at most, if its reason is taken away
 
 /// A mean over some of the pixels.
@@ -382,6 +383,19 @@ std::optional<Verdict> judge_look(const Measurement& measurement, const Material
   verdict.quality = good ? LookQuality::good : verdict.flip_mean <= kFairMean ? LookQuality::fair : LookQuality::poor;
   if (!good && explained) explain(measurement, material, pairs, found, threads, progress, verdict);
   return verdict;
+}
+
+void lower_for_samples(const FitRecord& record, Verdict& verdict) {
+  const auto lower = [&](LookQuality quality, LookReason reason, double value) {
+    if (verdict.quality < quality) verdict.quality = quality, verdict.reason = reason, verdict.value = value;
+  };
+  const auto is_anisotropic = [](const Warning& w) { return w.code == WarningCode::anisotropic_samples; };
+  if (std::ranges::any_of(record.warnings, is_anisotropic)) {
+    lower(LookQuality::poor, LookReason::anisotropic_samples, 0);
+  }
+  double worst = 0;
+  for (const auto& [angle, error] : record.by_view_angle) worst = std::max(worst, error.value_or(0));
+  if (!record.all_data && worst > kMissed) lower(LookQuality::fair, LookReason::held_out_samples, worst);
 }
 
 }  // namespace velour

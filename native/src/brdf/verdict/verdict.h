@@ -8,6 +8,7 @@
 #include "brdf/measure/measurement.h"
 #include "image/flip.h"
 #include "material/material.h"
+#include "model/model.h"
 #include "model/records.h"
 
 namespace velour {
@@ -44,5 +45,9 @@ inline constexpr double kGoodMean = 0.04, kGoodPercentile = 0.15, kFairMean = 0.
 /// depend on `threads` (0: all).
 std::optional<Verdict> judge_look(const Measurement& measurement, const Material& material, bool explained, int threads,
                                   Progress& progress);
+
+/// Lowers the verdict on a fit of irregular samples by what pictures of their interpolation cannot show: to poor if
+/// they are of an anisotropic surface, to fair if the model misses held-out samples at some view as black would.
+void lower_for_samples(const FitRecord& record, Verdict& verdict);
 
 }  // namespace velour

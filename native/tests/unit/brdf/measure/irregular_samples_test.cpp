@@ -44,5 +44,37 @@ TEST(UnresolvedHighlights, MatteSurfacesHaveNone) {
   EXPECT_EQ(gap_of_unresolved_highlights({}), 0.0);
 }
 
+/// Samples at random directions of a diffuse material with a highlight of `width` radians.
+std::vector<IrregularSample> scattered(size_t count, double width) {
+  const auto directions = hemisphere_fibonacci(static_cast<int>(2 * count));
+  std::vector<IrregularSample> samples;
+  for (size_t i = 0; i < count; ++i) {
+    const Vec3 wl = directions[i], wv = directions[(i * 7919 + 1) % directions.size()];
+    const double theta_h = half_diff(wl, wv).theta_h;
+    samples.push_back({wl, wv, Rgb(static_cast<float>(0.1 + 20 * std::exp(-theta_h * theta_h / (width * width))))});
+  }
+  return samples;
+}
+
+TEST(Spikes, AreLeftOut) {
+  auto samples = scattered(800, 0.3);
+  const auto clean = samples;
+  for (const size_t i : {50u, 300u, 555u}) samples[i].f *= 300.0f;
+  const auto kept = without_spikes(samples);
+  EXPECT_GE(samples.size() - kept.size(), 2u);
+  EXPECT_LE(samples.size() - kept.size(), 3u);
+  for (const IrregularSample& s : kept) EXPECT_LE(s.f.r, 300 * 0.11f);
+  EXPECT_EQ(without_spikes(clean).size(), clean.size());
+}
+
+TEST(Spikes, HighlightsAreNone) {
+  for (const double width : {0.01, 0.03, 0.1, 0.3}) {
+    const auto samples = scattered(600, width);
+    EXPECT_EQ(without_spikes(samples).size(), samples.size()) << width;
+  }
+  EXPECT_EQ(without_spikes(in_plane(radians_from(0.8f), radians_from(1.5f))).size(),
+            in_plane(radians_from(0.8f), radians_from(1.5f)).size());
+}
+
 }  // namespace
 }  // namespace velour::irregular_samples_test

@@ -137,6 +137,27 @@ TEST(Verdict, NothingIsSaidOfWhatIsNotMeasured) {
   EXPECT_LT(judged(part, *matte).flip_mean, 1e-5) << "what is not covered is black in neither picture";
 }
 
+TEST(Verdict, IsLoweredForSamplesThatItsPicturesDoNotShow) {
+  FitRecord record;
+  record.by_view_angle = {{"5", 0.9}, {"85", std::nullopt}};
+  Verdict verdict;
+  lower_for_samples(record, verdict);
+  EXPECT_EQ(verdict.quality, LookQuality::good);
+  record.by_view_angle["5"] = 1.2;
+  record.all_data = true;  // the errors are those of fitted samples
+  lower_for_samples(record, verdict);
+  EXPECT_EQ(verdict.quality, LookQuality::good);
+  record.all_data = false;
+  lower_for_samples(record, verdict);
+  EXPECT_EQ(verdict.quality, LookQuality::fair);
+  EXPECT_EQ(verdict.reason, LookReason::held_out_samples);
+  record.warnings.push_back(warning<WarningCode::anisotropic_samples>(
+      {{"pairs", size_t{200}}, {"factor", 5.0}, {"same_azimuth_factor", 1.1}}));
+  lower_for_samples(record, verdict);
+  EXPECT_EQ(verdict.quality, LookQuality::poor);
+  EXPECT_EQ(verdict.reason, LookReason::anisotropic_samples);
+}
+
 TEST(Verdict, ACancelStopsIt) {
   Progress progress;
   progress.cancel();
