@@ -15,7 +15,7 @@ denoising = inputs.module("engine.denoising")
 class Denoising(BlenderTest):
     def setUp(self):
         super().setUp()
-        if reason := denoising.missing():
+        if reason := inputs.module("export.denoiser").missing():
             self.skipTest(reason)
         self.scene = scenes.use_engine(samples=16)
         self.scene.velour.split = 1
@@ -75,7 +75,8 @@ class Missing(BlenderTest):
         scenes.add_camera()
         scenes.set_world()
         scene.velour.use_denoising = True
-        missing = mock.patch.object(denoising, "missing", return_value="it is not there.")
+        settings = inputs.module("export.unused_settings")
+        missing = mock.patch.object(settings, "missing", return_value="it is not there.")
         with missing, self.assertRaisesRegex(RuntimeError, "cannot be denoised: it is not there"):
             bpy.ops.render.render()
         scene.velour.use_denoising = False

@@ -144,8 +144,7 @@ class FrameParts(BlenderTest):
 
     def test_parts_are_denoised_once_they_are_together(self):
         """A part shows its noise; the frame is denoised as one that was rendered at once."""
-        denoising = inputs.module("engine.denoising")
-        if reason := denoising.missing():
+        if reason := inputs.module("export.denoiser").missing():
             self.skipTest(reason)
         blend = self._save()
         bpy.context.scene.velour.use_denoising = True

@@ -130,7 +130,7 @@ def exposure(folder):
 
 def denoised(folder):
     """A denoised viewport with few samples is closer to one with many than a noisy one is."""
-    if viewport.addon("engine.denoising").missing():
+    if viewport.addon("export.denoiser").missing():
         return
     viewport.colored_scene()
     pictures = {}

@@ -3,19 +3,9 @@
 import bpy
 
 from ..core.sizes import percent
-from ..export.denoiser import missing
 from ..native import denoise_job
-from ..native.errors import refuse
 
 last_errors = {}  # {name of scene: sentence on the error of its last denoised picture}
-
-
-def prepare(scene):
-    """Raises VelourError if there is no Open Image Denoise."""
-    if reason := missing():
-        raise refuse(
-            f"Scene '{scene.name}' cannot be denoised: {reason} Or disable Render > Denoise > Render."
-        )
 
 
 def denoise(job, scene, threads, wait):

@@ -9,13 +9,12 @@ import time
 import bpy
 
 from ..core.memory_estimate import peak
-from ..export import ExportError
 from ..export.black import refuse_dark_inside
 from ..export.camera import final_view, render_camera
 from ..export.film import film_exposure
 from ..export.layer_passes import COMBINED, as_rendered, layer_passes, note_missing_passes
 from ..export.motion import motion_of_frame, shows_motion
-from ..export.unused_settings import note_strokes
+from ..export.unused_settings import note_strokes, refuse_settings
 from ..native import biases, render_job
 from . import denoising, memory
 from .arguments import arguments
@@ -34,14 +33,6 @@ _PICTURE_GROWTH = 1.5  # intermediate pictures become rarer, as each copies the 
 
 class RenderCancelledError(Exception):
     """Esc or Ctrl-C."""
-
-
-def refuse_settings(scene):
-    """Raises ExportError or VelourError for settings with which no final render begins."""
-    if scene.render.use_multiview:
-        raise ExportError("Stereoscopy is not supported; disable it in Output > Stereoscopy.")
-    if scene.velour.use_denoising:
-        denoising.prepare(scene)
 
 
 def render_final(engine, depsgraph):

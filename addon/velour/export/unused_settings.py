@@ -6,7 +6,8 @@ choose them.
 
 import bpy
 
-from .notes import listed
+from .denoiser import missing
+from .notes import ExportError, listed
 
 _BOUNCES = 1024  # default for the light of a light or a world: no limit
 _TRANSPARENT = 8  # default of the scene; Velour has no limit
@@ -96,4 +97,14 @@ def note_pencil(obj, layer, notes):
         notes.add(
             f"Object '{obj.name}': Blender itself draws Grease Pencil over the image, without shadows and"
             " reflections. Hide it on machines without OpenGL, where Blender exits."
+        )
+
+
+def refuse_settings(scene):
+    """Raises ExportError for settings with which no final render begins."""
+    if scene.render.use_multiview:
+        raise ExportError("Stereoscopy is not supported; disable it in Output > Stereoscopy.")
+    if scene.velour.use_denoising and (reason := missing()):
+        raise ExportError(
+            f"Scene '{scene.name}' cannot be denoised: {reason} Or disable Render > Denoise > Render."
         )

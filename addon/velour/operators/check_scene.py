@@ -2,12 +2,11 @@
 
 import bpy
 
-from ..engine.final import refuse_settings
 from ..export import ExportError, Notes, export_scene, visitor
 from ..export.camera import final_view
 from ..export.layer_passes import note_missing_passes
 from ..export.scene_models import served
-from ..export.unused_settings import note_strokes
+from ..export.unused_settings import note_strokes, refuse_settings
 from ..native import VelourError
 from .scene_fit import ENGINE
 

@@ -80,9 +80,7 @@ TEST(VotfCapture, NormalsThatPointAnyWayAreWarnedOf) {
 }
 
 /// A millimeter of thread ten meters above the plane z = 0, where floats are a micrometer apart.
-TEST(VotfCapture, ATileFarFromTheOriginIsSeenAsNearIt) {
-  EXPECT_LT(captured("net", 64, 10).errors->wrong, 0.03);
-}
+TEST(VotfCapture, ATileFarFromTheOriginIsSeenAsNearIt) { EXPECT_LT(captured("net", 64, 10).errors->wrong, 0.03); }
 
 TEST(VotfCapture, ASheetWithAHoleBecomesThinWithAWarning) {
   const auto scene = test::tile_of(test::Corners().rectangle(0, 0, 1, 0.5f, 0.3f).rectangle(0, 0.9f, 0.1f, 1).mesh(),

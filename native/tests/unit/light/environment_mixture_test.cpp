@@ -236,5 +236,13 @@ TEST(EnvironmentCache, AFolderThatCannotBeIsNoError) {
   EXPECT_GT(fitted(image_of(two_lobes), folder / "file").size(), 0u);
 }
 
+TEST(EnvironmentMixture, UniformImagesOfAnySizeAreUniform) {
+  for (const auto& [width, height] : {std::pair{1, 1}, {2, 1}, {1, 2}, {1, 3}, {1, 64}, {4, 2}, {16, 8}}) {
+    const EnvironmentMixture sky = fitted(image_of([](const Vec3&) { return Rgb(2.0f); }, Mat3(1.0f), width, height));
+    EXPECT_LT(sky.relative_l2, 0.1f) << width << " x " << height;  // false for NaN
+    EXPECT_NEAR(energy(sky).g, 8 * kPi, 0.02f * 8 * kPi) << width << " x " << height;
+  }
+}
+
 }  // namespace
 }  // namespace velour::environment_mixture_test

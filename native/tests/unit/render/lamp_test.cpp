@@ -121,8 +121,8 @@ TEST(Lamp, SunGivesItsIrradianceWhateverItsSize) {
   }
 }
 
-/// Cycles does the same: a disk by the cosine to its own axis, a rectangle by the area that is seen; both over the product of
-/// the sides' lengths.
+/// Cycles does the same: a disk by the cosine to its own axis, a rectangle by the area that is seen; both over the
+/// product of the sides' lengths.
 TEST(Lamp, ShearedAreasShineAsInCycles) {
   for (const Light::Type type : {Light::Type::rectangle, Light::Type::disk}) {
     Light light;
@@ -359,6 +359,36 @@ TEST(Lighting, SkyAndLampAreChosenByWhatTheyBringToThePlane) {
   EXPECT_NEAR(share(Vec3(0), {0, 0, 1}), 0.15f + 0.7f * 0.25f, 0.01f);
   EXPECT_NEAR(share({100, 0, 0}, {0, 0, 1}), 0.85f, 0.01f);
   EXPECT_NEAR(share(Vec3(0), {0, 0, -1}), 0.85f, 0.01f);
+}
+
+/// Estimates of such light exceed floats.
+TEST(Lighting, HugeRadiancesBesideASunAreSampled) {
+  Light sun;
+  sun.angle = 0.01f;
+  for (const float radiance : {1e30f, 1e38f}) {
+    Scene scene;
+    scene.set_environment(Environment::constant(Rgb(radiance)));
+    scene.add_light(sun);
+    scene.commit(1);
+    const Lighting lighting(scene, Progress());
+    const LightView view = lighting.view({Vec3(0.0f), kUp});
+    const uint8_t only = 0;
+    for (const float x : {0.0f, 0.5f, 1 - 0x1p-24f}) {
+      const Vec2 u(x, 0.5f);
+      DirectionBatch world;
+      lighting.sample({&view, 1}, {&only, 1}, {&u, 1}, world);
+      EXPECT_NEAR(glm::length(world.get(0)), 1, 1e-5f) << radiance << " at " << x;
+    }
+  }
+}
+
+TEST(Lamp, ASunScaledToNothingIsBlack) {
+  Light sun;
+  std::fill(std::begin(sun.light_to_world.m), std::end(sun.light_to_world.m), 0.0f);
+  Scene scene;
+  scene.add_light(sun);
+  scene.commit(1);
+  EXPECT_EQ(Lighting(scene, Progress()).view({Vec3(0.0f), kUp}).suns, 0.0f);
 }
 
 }  // namespace
