@@ -175,9 +175,43 @@ class EnvironmentFit {
 
 }  // namespace
 
+namespace {
+
+/// Texels of fewer are too wide to stand for a direction each.
+constexpr int kMinWidth = 64, kMinHeight = 32;
+
+/// The bilinear interpolation of a small image at more texels.
+EquirectangularImage upsampled(const EquirectangularImage& image) {
+  const int width = std::max(image.width(), kMinWidth), height = std::max(image.height(), kMinHeight);
+  std::vector<float> rgb;
+  for (int y = 0; y < height; ++y) {
+    for (int first = 0; first < width; first += DirectionBatch::kCapacity) {
+      DirectionBatch world;
+      for (int x = first; x < std::min(width, first + DirectionBatch::kCapacity); ++x) {
+        const double phi = 2 * kPiD * (0.5 - (x + 0.5) / width);
+        world.push(direction(static_cast<float>(kPiD * (y + 0.5) / height), static_cast<float>(phi)));
+      }
+      world.pad();
+      RgbBatch radiance;
+      ScalarBatch pdf;
+      image.look_up({1, Mat3(1.0f)}, world, radiance, pdf);
+      for (int i = 0; i < world.count; ++i) {
+        const Rgb c = radiance.get(i);
+        rgb.insert(rgb.end(), {c.r, c.g, c.b});
+      }
+    }
+  }
+  return EquirectangularImage({width, height, 3, rgb});
+}
+
+}  // namespace
+
 EnvironmentMixture fit_environment(const EquirectangularImage& image, const EnvironmentFitOptions& options,
                                    const Progress& progress) {
   if (!(image.mean_luminance() > 0.0f)) return {};
+  if (image.width() < kMinWidth || image.height() < kMinHeight) {
+    return fit_environment(upsampled(image), options, progress);
+  }
   const auto start = std::chrono::steady_clock::now();
   EnvironmentMixture sky = EnvironmentFit(image, options, progress).run();
   sky.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
