@@ -70,6 +70,28 @@ class UnknownEnumerations(BlenderTest):
         with self.assertRaisesRegex(_module("image_nodes").UnsupportedError, "unknown to this version"):
             _module("corner_colors").corner_colors_of(plug, False)
 
+    def test_settings_of_shaders_have_a_name(self):
+        node, _plug = self._plug("ShaderNodeBsdfGlossy", "BSDF")
+        label = inputs.module("export.shaders.readers")._label
+        self.assertEqual(label(node, "distribution"), "GGX")
+        self.assertIn("unknown to this version", label(_Newer(node), "distribution"))
+
+    def test_a_wave_is_not_supported(self):
+        node, _plug = self._plug("ShaderNodeTexWave", "Color")
+        known, axes = (
+            inputs.module("export.programs.math_nodes").known,
+            inputs.module("export.programs.texture_nodes")._WAVE_AXES,
+        )
+        self.assertEqual(known(node, "bands_direction", axes), "x")
+        with self.assertRaisesRegex(_module("image_nodes").UnsupportedError, "unknown to this version"):
+            known(_Newer(node), "bands_direction", axes)
+
+    def test_a_lamp_without_a_size_is_a_point(self):
+        """What Blender makes of a type that it does not know has no properties of any type."""
+        lamp = types.SimpleNamespace()
+        _kind, _factor, values = _module("lights")._point(lamp, None)
+        self.assertEqual(values["size"], (0.0, 0.0))
+
     def test_a_lamp_is_a_point(self):
         lamp = bpy.data.objects.new("Lamp", bpy.data.lights.new("Lamp", "SPOT"))
         lights = _Lights()

@@ -105,7 +105,8 @@ def _sun_factor(angle):
 def _point(lamp, _matrix):
     # Those with soft falloff are disks facing the shading point. It is an option from 4.1 on.
     sphere = not getattr(lamp, "use_soft_falloff", _OLDER_LAMPS)
-    return "point", 1.0, {"size": (lamp.shadow_soft_size, 0.0), "sphere": int(sphere)}
+    # Lights of a type unknown to this Blender have no size.
+    return "point", 1.0, {"size": (getattr(lamp, "shadow_soft_size", 0.0), 0.0), "sphere": int(sphere)}
 
 
 def _spot(lamp, matrix):

@@ -96,14 +96,14 @@ def _voronoi(c, plug):
     return found[_VORONOI[plug.socket.name]]
 
 
-_WAVE_AXES = {"X": "x", "Y": "y", "Z": "z", "DIAGONAL": "whole", "SPHERICAL": "whole"}
+_WAVE_AXES = {"x": "x", "y": "y", "z": "z", "diagonal": "whole", "spherical": "whole"}
 _WAVE = ("Scale", "Distortion", "Detail", "Detail Scale", "Detail Roughness", "Phase Offset")
 
 
 def _wave(c, plug):
     node = plug.node
     is_rings = known(node, "wave_type", ("bands", "rings")) == "rings"
-    axis = _WAVE_AXES[node.rings_direction if is_rings else node.bands_direction]
+    axis = _WAVE_AXES[known(node, "rings_direction" if is_rings else "bands_direction", _WAVE_AXES)]
     profile = known(node, "wave_profile", table.WAVE_PROFILES)
     inputs = place(c, plug), *(c.input(plug.input(name)) for name in _WAVE)
     factor = c.draft.one("wave", inputs, 1, (is_rings, axis, profile))

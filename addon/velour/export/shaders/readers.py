@@ -5,6 +5,7 @@ import math
 import bpy
 
 from ..color import luminance_weights
+from ..newer import UNKNOWN
 from ..plugs import fed_by
 from .layer import BLACK, Factor, Layer, diffuse
 from .relief import read_coat_relief, read_relief
@@ -264,7 +265,8 @@ def _read_translucent(plug, reader):
 
 def _label(node, name):
     """Name of an enum property's value in Blender's UI."""
-    return node.bl_rna.properties[name].enum_items[getattr(node, name)].name
+    item = node.bl_rna.properties[name].enum_items.get(getattr(node, name))
+    return item.name if item else UNKNOWN
 
 
 def _note_anisotropy(plug, reader):
