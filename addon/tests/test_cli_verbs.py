@@ -93,8 +93,8 @@ def test_info_of_a_measurement(measurement_file):
     assert report["format"] == "merl"
     assert report["isotropic"] is True
     entries = report["entries"]
-    assert set(entries) == {"total", "valid", "negative", "not_finite", "below_horizon", "out_of_gamut"}
-    assert entries["total"] == sum(entries[k] for k in ("valid", "negative", "not_finite", "below_horizon"))
+    assert set(entries) == {"total", "valid", "negative", "not_finite", "below_horizon", "spikes", "out_of_gamut"}
+    assert entries["total"] == sum(entries[k] for k in ("valid", "negative", "not_finite", "below_horizon", "spikes"))
 
 
 def test_info_of_a_model(model_file):

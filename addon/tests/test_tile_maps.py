@@ -88,7 +88,7 @@ def test_its_progress_is_told(steps):
 def test_it_ends_when_it_is_cancelled(wires, steps):
     job = _job(wires, steps[0])
     job.start().cancel()
-    with pytest.raises(VelourError, match="cancelled"):
+    with pytest.raises(VelourError, match="canceled"):
         job.wait()
     job._thread.join(timeout=60)
     assert not job._thread.is_alive()
