@@ -116,6 +116,10 @@ class OnePreset(BlenderTest):
         self.assertEqual(material.name, "Polished Gold")
         self.assertTrue(scenes.velour_node(material).image.packed_file)
 
+    def test_a_former_name_is_known(self):
+        bpy.ops.velour.add_preset(preset="Brushed Aluminium", assign=False)
+        self.assertIn("Brushed Aluminum", bpy.data.materials)
+
     def test_cloths_repeat(self):
         bpy.ops.velour.add_preset(preset="Denim", assign=False)
         material = bpy.data.materials["Denim"]

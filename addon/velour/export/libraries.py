@@ -39,7 +39,7 @@ def _path(library):
 
 
 def _shown_by(scene):
-    """Datablocks that a render of the scene uses, each once; Blender keeps placeholders for missing ones."""
+    """Datablocks that a render of the scene uses, each once; for missing ones Blender keeps empty ones."""
     worlds = [layer_world(scene, layer) for layer in scene.view_layers]
     materials = [layer.material_override for layer in scene.view_layers]
     waiting, seen = [scene.collection, *worlds, *materials, *_background_collections(scene)], set()

@@ -10,6 +10,9 @@ from . import measured
 from .approximate import approximate_new
 from .slots import PutsInSlot, SlotTarget
 
+# Scripts may still use them.
+_FORMER_NAMES = {"Brushed Aluminium": "Brushed Aluminum"}
+
 
 class VELOUR_OT_add_preset(PutsInSlot, bpy.types.Operator):
     bl_idname = "velour.add_preset"
@@ -52,6 +55,8 @@ def find(name, directory=""):
     for preset in listed:
         if preset.name == name:
             return preset
+    if name in _FORMER_NAMES:
+        return find(_FORMER_NAMES[name], directory)
     raise ValueError(f"There is no preset {name!r}; there are {', '.join(p.name for p in listed)}.")
 
 
