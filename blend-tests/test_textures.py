@@ -1,6 +1,7 @@
 """Image textures of ordinary materials: pixels of a plane, and what is said of nodes that are not read."""
 
 import math
+import os
 
 import bpy
 import numpy as np
@@ -134,6 +135,28 @@ class Textures(BlenderTest):
         self.assertTrue("flipped vertically" in found[0] and "exposure" in found[1], found)
         np.testing.assert_allclose(self._rendered()[-1, 0], (0.5, 0.25, 0.125), atol=3e-3)
         np.testing.assert_allclose(self._rendered()[0, 0], (0.125, 0.25, 0.5), atol=3e-3)
+
+    def test_values_that_are_not_finite_are_counted(self):
+        pixels = _colors()[..., :3].copy()
+        pixels[0, 0], pixels[1, 1, 0] = np.inf, np.nan
+        path = self.folder / "faults.exr"
+        inputs.native().images.write(path, pixels)
+        self._plane(bpy.data.images.load(str(path)))
+        found = export_notes()
+        self.assertEqual(len(found), 2, found)
+        self.assertIn("3 values are infinite", found[0])
+        self.assertIn("1 values are not numbers", found[1])
+
+    def test_a_pipe_is_refused(self):
+        """Blender itself would wait for a writer."""
+        path = self.folder / "pipe.png"
+        os.mkfifo(path)
+        image = _image("pipe", _colors())
+        image.source, image.filepath = "FILE", str(path)
+        self._plane(image)
+        found = export_notes()
+        self.assertEqual(len(found), 1, found)
+        self.assertIn("is not a regular file; choose a file", found[0])
 
     def test_mapping(self):
         self._plane(_image("mapped", _colors()))

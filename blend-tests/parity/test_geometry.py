@@ -45,6 +45,17 @@ class Geometry(ParityTest):
         sheet.data.normals_split_custom_set([(math.sin(0.5), -math.cos(0.5), 0)] * 4)
         self.assert_parity("Normals: facing away from the viewer")
 
+    def test_along_the_face(self):
+        """Leaves are lit as the ground below them, whichever side of the face the normal lies on."""
+        for side, winding in (("front", (0, 1, 2, 3)), ("back", (3, 2, 1, 0))):
+            for y in (-0.2, 0.2):
+                with self.subTest(side=side, y=y):
+                    leaf = stage.mesh(_SQUARE, [winding], stage.gray(0.7), "Leaf", smooth=True)
+                    auto_smooth(leaf.data, math.pi)
+                    leaf.data.normals_split_custom_set([(0, y, math.sqrt(1 - y * y))] * 4)
+                    self.assert_parity(f"Normals: along the face, {side}, {y}")
+                    bpy.data.objects.remove(leaf)
+
     def test_auto_smooth(self):
         obj = stage.sphere(segments=16, rings=6)
         auto_smooth(obj.data, math.radians(28))

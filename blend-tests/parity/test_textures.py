@@ -1,6 +1,9 @@
 """UV maps and pictures on surfaces."""
 
+import functools
 import math
+import struct
+import zlib
 
 import bpy
 import numpy as np
@@ -194,6 +197,42 @@ class Alpha(WallTest):
                 self.assert_parity(f"Image Texture: alpha, cut out, linear, {mode.lower()}")
 
 
+def gray_alpha_png(values):
+    """A PNG file of gray and alpha, 8 bits each, of [height x width x 2] values."""
+    height, width, _ = values.shape
+    rows = b"".join(b"\0" + row.tobytes() for row in np.rint(255 * values).astype(np.uint8))
+
+    def chunk(name, content):
+        return (
+            struct.pack(">I", len(content)) + name + content + struct.pack(">I", zlib.crc32(name + content))
+        )
+
+    header = chunk(b"IHDR", struct.pack(">IIBBBBB", width, height, 8, 4, 0, 0, 0))
+    return b"\x89PNG\r\n\x1a\n" + header + chunk(b"IDAT", zlib.compress(rows)) + chunk(b"IEND", b"")
+
+
+def tiff(values, alpha):
+    """A TIFF file of one strip. `values`: [height x width x channels]; `alpha`: 0 none, 2 straight."""
+    height, width, channels = values.shape
+    bits, kind = 8 * values.dtype.itemsize, 3 if values.dtype.kind == "f" else 1
+    tags = [(256, 3, width), (257, 3, height), (259, 3, 1), (262, 3, 2 if channels > 2 else 1)]
+    tags += [(277, 3, channels), (278, 3, height), (279, 4, values.nbytes)] + (
+        [(338, 3, alpha)] if alpha else []
+    )
+    arrays = {258: bits, 339: kind}
+    start = 8 + 2 + 12 * (len(tags) + 3) + 4
+    tags.append((273, 4, start + 4 * channels))
+    entries, tail = [(tag, kind, 1, value) for tag, kind, value in tags], b""
+    for tag, value in arrays.items():
+        packed = struct.pack(f"<{channels}H", *[value] * channels)
+        place = start + len(tail) if channels > 2 else int.from_bytes(packed, "little")
+        entries.append((tag, 3, channels, place))
+        tail += packed if channels > 2 else bytes(2 * channels)
+    directory = b"".join(struct.pack("<HHII", *entry) for entry in sorted(entries))
+    head = struct.pack("<2sHIH", b"II", 42, 8, len(entries))
+    return head + directory + bytes(4) + tail + values.tobytes()
+
+
 class AlphaModes(BoardTest):
     """Images with alpha in .blend files and in files of their own, of each number format."""
 
@@ -252,6 +291,32 @@ class AlphaModes(BoardTest):
 
     def test_deep_png(self):
         self._assert_all("PNG of 16 bits", lambda: self._file(".png", "16"))
+
+    def _stored(self, name, content):
+        path = self.folder / name
+        path.write_bytes(content)
+        return bpy.data.images.load(str(path))
+
+    def test_gray_png(self):
+        """Cycles does not multiply gray by alpha."""
+        values = np.random.default_rng(9).uniform(0.3, 0.9, (4, 4, 2))
+        self._assert_all("PNG of gray and alpha", lambda: self._stored("gray.png", gray_alpha_png(values)))
+
+    def test_tiff(self):
+        """Blender 3.4 itself shows most of them wrongly."""
+        values = np.random.default_rng(9).uniform(0.3, 0.9, (4, 4, 4))
+        deep = np.rint(65535 * values).astype(np.uint16)
+        for name, stored, alpha in (
+            ("8 bits, straight", np.rint(255 * values).astype(np.uint8), 2),
+            ("16 bits, gray", deep[..., :1], 0),
+            ("16 bits", deep[..., :3], 0),
+            ("16 bits, straight", deep, 2),
+            ("floats", values[..., :3].astype(np.float32), 0),
+        ):
+            with self.subTest(name):
+                content = tiff(stored, alpha)
+                make = functools.partial(self._stored, "stored.tif", content)
+                self._assert_all(f"TIFF, {name}", make)
 
     def test_exr(self):
         self._assert_all("OpenEXR", lambda: self._file(".exr", "32"))

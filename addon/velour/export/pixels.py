@@ -6,7 +6,7 @@ import bpy
 import numpy as np
 
 from .color import bytes_to_working, is_data, is_linear_rec709, is_srgb
-from .picture_files import float_pixels, has_own_file, note_header, png_pixels, with_alpha
+from .picture_files import float_pixels, has_own_file, note_header, png_or_tiff_pixels, size_of, with_alpha
 
 # Cycles multiplies colors by alpha where the alpha mode says so; before, where the kind of values does.
 _MODE_COUNTS = bpy.app.version >= (5, 2)
@@ -46,10 +46,11 @@ def interpolated_pixels(image, notes, beside_alpha=False):
 
     `beside_alpha`: the image's alpha is used too, so Cycles divides colors by it.
     """
+    size_of(image)  # refuses what Blender would wait for
     note_header(image, notes)
     space = image.colorspace_settings.name
     has_alpha = image.alpha_mode in ("STRAIGHT", "PREMUL") and not is_data(space)
-    stored = _stored(image, has_alpha)
+    stored = _stored(image, has_alpha, notes)
     if stored is None:
         return None
     values = stored.values
@@ -75,18 +76,23 @@ def multiplies_floats(image):
     return _MODE_COUNTS and image.alpha_mode == "STRAIGHT"
 
 
-def _stored(image, has_alpha):
+def _stored(image, has_alpha, notes):
     """Blender returns float colors multiplied by alpha and byte colors divided by it, whatever is stored."""
     space = image.colorspace_settings.name
-    of_file = float_pixels(image)
+    of_file = float_pixels(image, notes)
     if of_file is not None:
         return _Stored(of_file, 0, is_srgb(space), multiplies_floats(image))
     multiplies_integers = image.alpha_mode == "STRAIGHT" or not _MODE_COUNTS
-    needs_file = has_alpha and (image.is_float or image.alpha_mode == "PREMUL")
-    if needs_file and (is_srgb(space) or is_linear_rec709(space)):
-        of_file = png_pixels(image)
-        if of_file is not None:
-            return _Stored(of_file, 65535 if image.is_float else 255, True, multiplies_integers)
+    # A depth of 16 without floats: gray and alpha of 8 bits each.
+    needs_file = image.is_float or (has_alpha and (image.alpha_mode == "PREMUL" or image.depth == 16))
+    knows_space = is_srgb(space) or is_linear_rec709(space) or is_data(space)
+    of_file = png_or_tiff_pixels(image, notes) if needs_file and knows_space else None
+    if of_file is not None:
+        is_straight = of_file.is_straight
+        if of_file.is_float:
+            return _Stored(of_file.values, 0, is_srgb(space), multiplies_floats(image) or is_straight)
+        largest = 65535 if image.is_float else 255
+        return _Stored(of_file.values, largest, True, is_straight and multiplies_integers)
     values = _blender_pixels(image)
     if values is None:
         return None
@@ -96,7 +102,7 @@ def _stored(image, has_alpha):
 
 
 def _blender_pixels(image):
-    width, height = image.size
+    width, height = size_of(image)
     if width == 0 or height == 0:
         return None
     values = np.empty(width * height * image.channels, np.float32)

@@ -92,6 +92,11 @@ def picture_warnings(path: str | os.PathLike, layer: str = "", as_stored: bool =
     return library.json_of(library.load().vlr_picture_notes_json, path_bytes(path), byref(options))
 
 
+def read_warnings() -> list[dict]:
+    """Warnings of this thread's last read_picture(), also about replaced values: each {code, values}."""
+    return library.json_of(library.load().vlr_picture_notes_json, None, None)
+
+
 def picture_options(layer: str, as_stored: bool) -> structs.PictureOptions:
     return structs.PictureOptions(as_stored=int(as_stored), layer=text_bytes(layer))
 

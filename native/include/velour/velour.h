@@ -1499,7 +1499,8 @@ VLR_API vlr_status vlr_image_read(const char* path, uint32_t* width, uint32_t* h
 VLR_API vlr_status vlr_picture_read(const char* path, const vlr_picture_options* options, uint32_t* width,
                                     uint32_t* height, uint32_t* channels, float* pixels, uint64_t count);
 /* JSON list of warnings, {code, values}: the parts of the file that are left out, and the statements of its header that
- * are not followed. The text belongs to the thread until its next call. */
+ * are not followed. `path` NULL: those of the thread's last vlr_picture_read with pixels, and about values that it
+ * replaced. The text belongs to the thread until its next call. */
 VLR_API vlr_status vlr_picture_notes_json(const char* path, const vlr_picture_options* options, const char** json);
 /* Position of the pixels of an OpenEXR file in a larger image (its data window in its display window). */
 typedef struct vlr_image_frame {

@@ -37,6 +37,12 @@ PictureFrame converted(const vlr_image_frame& given, const Picture& part) {
   return {static_cast<int>(frame.width), static_cast<int>(frame.height), frame.x, frame.y};
 }
 
+/// Warnings of this thread's last vlr_picture_read.
+std::vector<Warning>& last_read_warnings() {
+  thread_local std::vector<Warning> warnings;
+  return warnings;
+}
+
 struct PictureOutput {
   uint32_t *width, *height, *channels;
   float* pixels;  // null: only the size is requested
@@ -92,17 +98,17 @@ vlr_status vlr_picture_read(const char* path, const vlr_picture_options* options
     require(height, "height");
     require(channels, "channels");
     const PictureOptions given = converted(options);
-    hand_out(pixels ? read_picture(path, given) : read_picture_header(path, given),
-             {width, height, channels, pixels, count});
+    Picture picture = pixels ? read_picture(path, given) : read_picture_header(path, given);
+    hand_out(picture, {width, height, channels, pixels, count});
+    if (pixels) last_read_warnings() = std::move(picture.warnings);
   });
 }
 
 vlr_status vlr_picture_notes_json(const char* path, const vlr_picture_options* options, const char** json) {
   return guard([&] {
-    require(path, "path");
     require(json, "json");
     thread_local std::string said;
-    said = text(warnings_json(read_picture_header(path, converted(options)).warnings));
+    said = text(warnings_json(path ? read_picture_header(path, converted(options)).warnings : last_read_warnings()));
     *json = said.c_str();
   });
 }

@@ -41,10 +41,11 @@ class PolygonTriangles {
   double turn(uint32_t a, uint32_t b, uint32_t c) const;
   bool is_spike(uint32_t corner) const;
   int winding(const glm::dvec2& point, uint32_t start) const;
-  bool is_ear(uint32_t corner) const;
+  bool is_ear(uint32_t corner);
   uint32_t flattest(uint32_t start) const;
 
   std::vector<glm::dvec2> points_;  // counterclockwise
+  uint64_t examined_ = 0;           // corners, in the search for ears
   std::vector<uint32_t> next_, previous_;
   std::vector<glm::uvec3> triangles_;
 };

@@ -90,13 +90,14 @@ int PolygonTriangles::winding(const glm::dvec2& point, uint32_t start) const {
 /// Whether the triangle of `corner` and its neighbors can be cut off: no part of the outline lies within it. Corners on
 /// its border do not block it unless the outline enters from there. Zero-width parts of the outline may lie along the
 /// border; the winding number then tells inside from outside.
-bool PolygonTriangles::is_ear(uint32_t corner) const {
+bool PolygonTriangles::is_ear(uint32_t corner) {
   if (is_spike(corner)) return true;
   const uint32_t a = previous_[corner], b = corner, c = next_[corner];
   if (turn(a, b, c) <= 0) return false;
   const auto is_at = [&](uint32_t v, uint32_t end) { return points_[v] == points_[end]; };
   bool touches = false;
   for (uint32_t v = next_[c]; v != a; v = next_[v]) {
+    ++examined_;
     const double ab = turn(a, b, v), bc = turn(b, c, v), ca = turn(c, a, v);
     if (ab < 0 || bc < 0 || ca < 0) continue;
     if (ca == 0 && !is_at(v, c) && !is_at(v, a)) return false;  // the diagonal would pass through this corner
@@ -127,15 +128,20 @@ void PolygonTriangles::clip_ears() {
     next_[i] = (i + 1) % count;
     previous_[i] = (i + count - 1) % count;
   }
+  // Where an outline passes through the same corners many times, the search for ears would grow with its cube. Others
+  // examine each corner about once for each ear.
+  const uint64_t most = 4 * static_cast<uint64_t>(count) * count + 1'000'000;
+  examined_ = 0;
   uint32_t corner = 0;
   for (uint32_t remaining = count, tried = 0; remaining > 2;) {
-    if (tried < remaining && !is_ear(corner)) {
+    const bool searches = tried < remaining && examined_ < most;
+    if (searches && !is_ear(corner)) {
       corner = next_[corner];
       ++tried;
       continue;
     }
     // A polygon that is degenerate or intersects itself may have no ear.
-    if (tried == remaining) corner = flattest(corner);
+    if (!searches) corner = flattest(corner);
     const uint32_t a = previous_[corner], c = next_[corner];
     triangles_.push_back({a, corner, c});
     next_[a] = c;

@@ -7,6 +7,7 @@ import numpy as np
 from mathutils import Vector
 
 from ..files import absolute_path, file_stamp
+from ..picture_files import size_of
 from ..programs import finished
 from ..textures import TextureTable
 from .nodes import sky_texture
@@ -120,5 +121,5 @@ def _image_key(image, path):
         (image.generated_type, tuple(image.generated_color)),
         image.colorspace_settings.name,
         image.alpha_mode,
-        tuple(image.size),
+        size_of(image),
     )

@@ -7,6 +7,7 @@ import numpy as np
 
 from ..color import rec709_to_working
 from ..image_nodes import UnsupportedError, maps_coordinates
+from ..picture_files import size_of
 from ..programs import Draft, ImageNumber
 from ..programs.coordinate_nodes import mapped, position
 from ..programs.image_nodes import place_on_sphere
@@ -35,7 +36,7 @@ class Emitted(NamedTuple):
         """Width and height in texels: those of the largest picture."""
         choices = [choice for step in self.draft.steps for choice in step.choices]
         images = [choice.picture.image for choice in choices if isinstance(choice, ImageNumber)]
-        widths = [image.size[0] for image in images if image]
+        widths = [size_of(image)[0] for image in images if image]
         width = int(np.clip(max(widths, default=0), _LEAST_WIDTH, _MOST_WIDTH))
         return width, width // 2
 

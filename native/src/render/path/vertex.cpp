@@ -184,6 +184,13 @@ namespace {
 
 Vec3 facing(const Vec3& v, const Vec3& towards) { return glm::dot(v, towards) < 0.0f ? -v : v; }
 
+/// The shading normal, turned with its face only: it may point behind the face, as normals that light foliage from
+/// above do. Beyond 120 degrees the file's normals oppose its winding and are turned, too.
+Vec3 turned_with_face(const SurfacePoint& point, const Vec3& ground) {
+  const Vec3 normal = glm::dot(point.geometric_normal, ground) < 0.0f ? -point.shading_normal : point.shading_normal;
+  return glm::dot(normal, ground) < -0.5f ? -normal : normal;
+}
+
 /// Frame about unit `z` with +x along `tangent` unless that is degenerate.
 Frame frame_along(const Vec3& z, const Vec3& tangent) {
   const Vec3 x = tangent - glm::dot(tangent, z) * z;
@@ -196,7 +203,7 @@ Frame frame_along(const Vec3& z, const Vec3& tangent) {
 /// Whether a material with corrected normals takes the place of `surface`'s: its view is mirrored below the face.
 bool turns(const SurfaceMaterial& surface, const SurfacePoint& point, const Vec3& wv) {
   if (!surface.turned) return false;
-  const Vec3 ground = facing(point.geometric_normal, wv), normal = facing(point.shading_normal, ground);
+  const Vec3 ground = facing(point.geometric_normal, wv), normal = turned_with_face(point, ground);
   return with_mirror_above(normal, ground, wv) != normal;
 }
 
@@ -213,7 +220,7 @@ Vertex::Vertex(const SurfacePoint& point, const Vec3& wv_world, bool bends)
       surface(nullptr),
       material(nullptr),
       table(nullptr) {
-  Vec3 normal = facing(point.shading_normal, geometric_normal);
+  Vec3 normal = turned_with_face(point, geometric_normal);
   const float cosine = glm::dot(normal, wv_world);
   if (bends && cosine < kMinCosine) normal = glm::normalize(normal + (kMinCosine - cosine) * wv_world);
   frame = frame_along(normal, point.tangent);

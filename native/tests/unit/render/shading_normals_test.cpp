@@ -96,6 +96,21 @@ TEST(ShadingNormals, LetInLightFromAboveACoarseSphere) {
   }
 }
 
+/// Normals of leaves may point behind their faces; only those of a file whose normals oppose its winding are turned.
+TEST(ShadingNormals, TurnWithTheirFaces) {
+  const Vec3 up(0, 0, 1), wv = glm::normalize(Vec3(1, 0, 0.3f));
+  for (const float cosine : {0.2f, -0.2f, -0.49f, -0.51f, -1.0f}) {
+    const Vec3 normal(std::sqrt(1 - cosine * cosine), 0, cosine);
+    const Vec3 expected = cosine < -0.5f ? -normal : normal;
+    const Vertex front({Vec3(0), up, normal, Vec3(0), 0, 0}, wv);
+    const Vertex back({Vec3(0), -up, -normal, Vec3(0), 0, 0}, wv);
+    EXPECT_EQ(front.frame.z, back.frame.z) << cosine;
+    if (glm::dot(expected, wv) > 0.1f) {
+      EXPECT_LT(glm::length(front.frame.z - expected), 1e-6f) << cosine;
+    }
+  }
+}
+
 /// By interpolated normals alone the places that would leak do.
 TEST(ShadingNormals, AreNotWhatKeepsLightOut) {
   for (const Vec3& sun : kSuns) {

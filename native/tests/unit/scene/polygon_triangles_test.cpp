@@ -177,5 +177,16 @@ TEST(PolygonTriangles, CornersThatAreNotFiniteTakeNoTime) {
   }
 }
 
+/// The outline passes through the same three corners a thousand times.
+TEST(PolygonTriangles, RepeatedCornersTakeNoTime) {
+  PolygonTriangles cutter;
+  const Vec3 corners[] = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}};
+  std::vector<Vec3> polygon;
+  for (int i = 0; i < 3000; ++i) polygon.push_back(corners[i % 3]);
+  const double start = thread_seconds();
+  EXPECT_EQ(cutter.cut(polygon).size(), polygon.size() - 2);
+  EXPECT_LT(thread_seconds() - start, 1.0);
+}
+
 }  // namespace
 }  // namespace velour::polygon_triangles_test
