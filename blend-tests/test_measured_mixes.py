@@ -85,6 +85,41 @@ class VariedInputs(MixTest):
         scale.inputs["Scale"].default_value = 0.5
         self._link(scale)
 
+    def _assert_stops(self):
+        """Half of the surface reflects all, the other half a fourth."""
+        picture = self.picture()
+        dark = picture[..., 0] < ALBEDO[0] / 2
+        self.assertTrue(0.3 < dark.mean() < 0.7)
+        np.testing.assert_allclose(np.median(picture[~dark], axis=0), ALBEDO, rtol=0.05)
+        np.testing.assert_allclose(np.median(picture[dark], axis=0), np.divide(ALBEDO, 4), rtol=0.05)
+
+    def test_exposure_over_the_surface(self):
+        """From an image, an attribute and a calculation: 0 or -2 stops."""
+        image = bpy.data.images.new("Stops", 2, 1, float_buffer=True)
+        image.pixels.foreach_set(np.float32([0, 0, 0, 1, -2, -2, -2, 1]))
+        texture = self.add("TexImage")
+        texture.image, texture.interpolation = image, "Closest"
+        corners = self.plane.data.attributes.new("Stops", "FLOAT", "CORNER")
+        left = [self.plane.data.vertices[loop.vertex_index].co.x < 0 for loop in self.plane.data.loops]
+        for corner, is_left in zip(corners.data, left, strict=True):
+            corner.value = 0.0 if is_left else -2.0
+        attribute, step = self.add("Attribute"), self.add("Math")
+        attribute.attribute_name, step.operation = "Stops", "LESS_THAN"
+        self.tree.links.new(attribute.outputs["Fac"], step.inputs[0])
+        step.inputs[1].default_value = -1.0
+        stops = self.add("Math")
+        stops.operation = "MULTIPLY"
+        self.tree.links.new(step.outputs[0], stops.inputs[0])
+        stops.inputs[1].default_value = -2.0
+        for node in (texture, stops):
+            with self.subTest(node.bl_idname):
+                self.tree.links.new(node.outputs[0], self.node.inputs["Exposure"])
+                self._assert_stops()
+        self.tree.links.new(attribute.outputs["Fac"], self.node.inputs["Exposure"])
+        picture = self.picture().mean(axis=0)  # 2^stops between the corners
+        slope = np.log2(picture[-1, 0] / picture[0, 0]) / (len(picture) - 1)
+        self.assertAlmostEqual(slope * len(picture) / 0.75, -2, delta=0.1)
+
     def test_a_mask_over_the_surface(self):
         """A checker of black and white: half of the surface has no reflection."""
         checker = self.add("TexChecker", Scale=8.0, Color1=(1.0, 1.0, 1.0), Color2=(0.0, 0.0, 0.0))

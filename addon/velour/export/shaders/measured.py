@@ -9,6 +9,7 @@ from ..measured_look import INPUTS, MeasuredLook, former_look
 from ..nodes import MeasuredNode, model_texture
 from .layer import Factor, Layer
 from .relief import read_relief
+from .values import is_constant, own_value
 
 
 class Measured(NamedTuple):
@@ -26,15 +27,33 @@ def read_measured(plug, reader):
     tint, picture = reader.number(plug.input(INPUTS["tint"])) if plug.input("Tint") else ((1.0,) * 3, None)
     values = {
         name: reader.value(plug.input(INPUTS[name]))
-        for name in ("exposure", "roughness", "rotation", "scale")
+        for name in ("roughness", "rotation", "scale")
         if plug.input(INPUTS[name])
     }
+    values["exposure"], gains = _exposure(plug.input(INPUTS["exposure"]), reader)
     values |= _read_vector(plug.input("Vector"), reader)
     # A picture replaces the color of its factor; the look keeps the rest.
-    factors = (Factor("tint", tint, picture),) if picture else ()
+    factors = (*((Factor("tint", tint, picture),) if picture else ()), *gains)
     look = MeasuredLook((1.0,) * 3 if picture else tint, **values)
     relief = read_relief(plug, reader) if plug.input("Normal") else None
     return [Layer("measured", {}, {}, factors, relief, measured=Measured(node, look))]
+
+
+def _exposure(plug, reader):
+    """The exposure in stops, and the factors of one that varies."""
+    if plug is None:
+        return 0.0, ()
+    if is_constant(plug):
+        return reader.value(plug), ()
+    draft = reader.compiler.draft
+    stops = reader.compiler.input(plug)
+    if stops.first < 0:  # with a note: the link cannot be evaluated
+        return draft.constants_of(stops)[0], ()
+    gain = draft.output(draft.math("POWER", 2.0, stops), "number")
+    if gain is None:
+        reader.note_link(plug, " (the material has too many computed inputs)")
+        return own_value(plug), ()
+    return 0.0, (Factor("gain", 1.0, gain),)
 
 
 def _read_vector(vector, reader):

@@ -26,9 +26,9 @@ class Reader:
         """Value or color of an input that may vary, and its Picture, CornerColors, Computed or None."""
         if plug is None:
             return 0.0, None
-        fed = fed_by(plug)
-        if fed is None or fed.node.bl_idname in ("ShaderNodeValue", "ShaderNodeRGB"):
+        if is_constant(plug):
             return own_value(plug), None
+        fed = fed_by(plug)
         value = _single(numbers_of(plug.socket))
         try:
             return value, self._source_of(fed, plug)
@@ -70,6 +70,12 @@ class Reader:
 
     def note_link(self, plug, reason="", used="the value of the input"):
         self.note(plug, f"the link to '{plug.socket.name}' is not supported{reason}; {used} is used.")
+
+
+def is_constant(plug):
+    """Whether nothing but a Value or RGB node feeds the input."""
+    fed = fed_by(plug)
+    return fed is None or fed.node.bl_idname in ("ShaderNodeValue", "ShaderNodeRGB")
 
 
 def own_value(plug):
