@@ -19,7 +19,7 @@ STOCK = {
         *("DATA_PT_camera_dof", "DATA_PT_camera_dof_aperture"),
     },
     "mesh": {"DATA_PT_context_mesh", "DATA_PT_uv_texture", "DATA_PT_vertex_colors"},
-    "material": {"EEVEE_MATERIAL_PT_context_material"},
+    "material": {"EEVEE_MATERIAL_PT_context_material", "MATERIAL_PT_preview"},
 }
 # And Velour's own, in place of what Blender shows with other engines alone.
 OURS = {

@@ -27,6 +27,7 @@ _EXCLUDED_WORDS = ("freestyle", "stereoscopy")
 _BORROWED = {
     "EEVEE_MATERIAL_PT_context_material",
     "EEVEE_WORLD_PT_surface",
+    "MATERIAL_PT_preview",
     "DATA_PT_camera_dof",
     "DATA_PT_camera_dof_aperture",
     "WORLD_PT_context_world",
