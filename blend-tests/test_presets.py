@@ -13,19 +13,21 @@ from support import inputs, scenes
 from support.blender import BlenderTest, run_blender
 
 CATALOG = "6f3f5b36-31cf-4d4e-9a8b-6a1c0f5ad101"
+GROUP_CATALOG = "5d0e7c1a-8f42-4b0b-a1d3-6f2b9c4e7d01"
 _ASSET = """
 import bpy
 material = bpy.data.materials["Paint"]
-asset = material.asset_data
-assert asset.catalog_id == {catalog!r}, asset.catalog_id
-assert asset.author == "The Velour authors", asset.author
-assert "CC0-1.0" in asset.description and asset.description.startswith("Glossy"), asset.description
-assert getattr(asset, "license", "CC0-1.0") == "CC0-1.0", asset.license
-assert sorted(tag.name for tag in asset.tags) == ["gloss", "velour"]
-assert tuple(material.preview.image_size) == (128, 128)
-pixels = material.preview.image_pixels_float
-assert abs(pixels[0] - 0.248) < 0.01 and abs(pixels[1] - 0.485) < 0.01, pixels[:4]
 group = next(n for n in material.node_tree.nodes if n.bl_idname == "ShaderNodeGroup")
+for datablock, catalog in ((material, {catalog!r}), (group.node_tree, {group_catalog!r})):
+    asset = datablock.asset_data
+    assert asset.catalog_id == catalog, asset.catalog_id
+    assert asset.author == "The Velour authors", asset.author
+    assert "CC0-1.0" in asset.description and asset.description.startswith("Glossy"), asset.description
+    assert getattr(asset, "license", "CC0-1.0") == "CC0-1.0", asset.license
+    assert sorted(tag.name for tag in asset.tags) == ["gloss", "velour"]
+    assert tuple(datablock.preview.image_size) == (128, 128)
+    pixels = datablock.preview.image_pixels_float
+    assert abs(pixels[0] - 0.248) < 0.01 and abs(pixels[1] - 0.485) < 0.01, pixels[:4]
 node = next(n for n in group.node_tree.nodes if n.bl_idname == "ShaderNodeTexImage" and n.velour.enabled)
 assert '"masking": "correlated"' in group.node_tree.velour.fitted, "fitted for Blender 3.4"
 assert node.image.packed_file and node.image.packed_file.size > 1000
@@ -63,15 +65,20 @@ class Presets(BlenderTest):
         )
         (folder / presets.INDEX_FILE).write_text(presets.index_text([preset]))
         path = folder / presets.LIBRARY_FILE
-        inputs.script("bench.inside.presets").write(
-            {"path": str(path), "folder": str(folder), "catalogs": {"Paints": CATALOG}}
-        )
+        catalogs = {"catalogs": {"Paints": CATALOG}, "group_catalogs": {"Paints": GROUP_CATALOG}}
+        inputs.script("bench.inside.presets").write({"path": str(path), "folder": str(folder)} | catalogs)
         return path
 
     def test_assets_say_what_they_are_and_hold_their_models(self):
         path = self._built(self.folder / "library")
         (path.parent / "paint.velour").unlink()
-        done = run_blender(path, "--python-exit-code", 1, "--python-expr", _ASSET.format(catalog=CATALOG))
+        done = run_blender(
+            path,
+            "--python-exit-code",
+            1,
+            "--python-expr",
+            _ASSET.format(catalog=CATALOG, group_catalog=GROUP_CATALOG),
+        )
         self.assertIn("ASSET READ", done.stdout, done.stdout)
 
     def test_a_click_adds_the_library_once(self):

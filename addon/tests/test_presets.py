@@ -14,7 +14,7 @@ import presets
 import pytest
 from command_line import environment
 from conftest import ADDONS, ROOT
-from presets import CATALOGS, PRESETS, Weave
+from presets import CATALOGS, GROUP_CATALOGS, PRESETS, Weave
 from velour.core import presets as library
 from velour.native import Model, Tile, images
 
@@ -38,7 +38,9 @@ def test_has_what_it_is_to_have():
 
 def test_names_and_catalogs_are_told_apart():
     assert len({preset.name.lower() for preset in PRESETS}) == len(PRESETS)
-    assert len({str(uuid.UUID(number)) for number in CATALOGS.values()}) == len(CATALOGS)
+    numbers = [*CATALOGS.values(), *GROUP_CATALOGS.values()]
+    assert len({str(uuid.UUID(number)) for number in numbers}) == len(numbers) == 2 * len(CATALOGS)
+    assert CATALOGS.keys() == GROUP_CATALOGS.keys()
     assert not [preset.name for preset in PRESETS if "," in preset.name]  # of --only
 
 

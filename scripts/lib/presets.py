@@ -95,7 +95,7 @@ def _preset(name: str, catalog: str, description: str, tags: list, **made: dict)
 
 
 _READ = tomllib.loads(Path(__file__).with_name("presets.toml").read_text(encoding="utf-8"))
-CATALOGS = _READ["catalogs"]
+CATALOGS, GROUP_CATALOGS = _READ["catalogs"], _READ["group_catalogs"]
 PRESETS = tuple(_preset(**values) for values in _READ["preset"])
 
 
@@ -306,8 +306,11 @@ def write_library(models: Path, folder: Path) -> None:
     if (folder / LIBRARY_FILE).is_file() and kept.is_file() and kept.read_text() == key:
         return
     task = {"path": str((folder / LIBRARY_FILE).resolve()), "folder": str(models.resolve())}
-    blender.run("presets", task | {"catalogs": CATALOGS}, folder / "blender.log")
-    lines = [f"{number}:Velour/{name}:Velour-{name.replace(' ', '-')}" for name, number in CATALOGS.items()]
+    task |= {"catalogs": CATALOGS, "group_catalogs": GROUP_CATALOGS}
+    blender.run("presets", task, folder / "blender.log")
+    paths = {number: f"Velour/{name}" for name, number in CATALOGS.items()}
+    paths |= {number: f"Velour/Node Groups/{name}" for name, number in GROUP_CATALOGS.items()}
+    lines = [f"{number}:{path}:{path.replace('/', '-').replace(' ', '-')}" for number, path in paths.items()]
     files.write_text(folder / CATALOG_FILE, "\n".join(("VERSION 1", "", *lines, "")))
     files.write_text(folder / LICENCE_FILE, _LICENCE)
     files.write_text(kept, key)
@@ -317,6 +320,7 @@ def _library_key(models: Path) -> str:
     """Hash of the models and of the code that turns them into materials."""
     digest = hashlib.sha256()
     code = [*(ROOT / "addon/velour").rglob("*.py"), Path(__file__).with_name("bench") / "inside/presets.py"]
+    code.append(Path(__file__).with_name("presets.toml"))
     # The folder may also hold the .blend, its key and Blender's log.
     made_of = [path for kind in (INDEX_FILE, "*.velour", "*.png") for path in models.glob(kind)]
     for path in (*sorted(made_of), *sorted(code)):

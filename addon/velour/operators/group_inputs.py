@@ -66,6 +66,11 @@ def put(tree, inputs):
             node.inputs[each.name].default_value = each.default
 
 
+def set_default(tree, name, value):
+    """Sets the value that an input has in new nodes of the tree."""
+    next(socket for socket in _sockets(tree) if socket.name == name).default_value = value
+
+
 def put_output(tree, name, kind):
     """Gives the tree an output with this name, unless it has one."""
     if hasattr(tree, "interface"):  # 4.0 and newer

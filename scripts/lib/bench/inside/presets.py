@@ -1,4 +1,4 @@
-"""Writes a .blend of the preset materials with packed models, marked as assets."""
+"""Writes a .blend of the preset materials with packed models: assets, as are their node groups."""
 
 from unittest import mock
 
@@ -8,8 +8,9 @@ import numpy as np
 from velour.core import presets
 from velour.core.presets import AUTHOR, LICENCE
 from velour.core.srgb import encoded
+from velour.export.nodes import velour_node
 from velour.native import images
-from velour.operators import approximation_group
+from velour.operators import approximation_group, group_inputs
 
 from . import scene as build
 
@@ -23,19 +24,25 @@ def main(task):
 
 
 def write(task):
-    """`task`: path of the .blend, folder of the presets, and the id of each catalog by name."""
+    """`task`: path of the .blend, folder of the presets, ids of the catalogs of materials and of groups by
+    name."""
     for preset in presets.listed(task["folder"]):
         # Assets are not refitted where they are used: they are right in Blender 3.5 and newer.
         with mock.patch.object(approximation_group, "MASKING", "correlated"):
             bpy.ops.velour.add_preset(preset=preset.name, directory=task["folder"], assign=False)
-        _describe(bpy.data.materials[preset.name], preset, task["catalogs"][preset.catalog])
+        material = bpy.data.materials[preset.name]
+        _describe(material, preset, task["catalogs"][preset.catalog])
+        group = velour_node(material).group.node_tree
+        _describe(group, preset, task["group_catalogs"][preset.catalog])
+        if preset.repeats:  # which belong to the material
+            group_inputs.set_default(group, "Scale", 1 / preset.repeats)
     bpy.context.preferences.filepaths.save_version = 0
     bpy.ops.wm.save_as_mainfile(filepath=task["path"], compress=True)
 
 
-def _describe(material, preset, catalog):
-    material.asset_mark()
-    asset = material.asset_data
+def _describe(datablock, preset, catalog):
+    datablock.asset_mark()
+    asset = datablock.asset_data
     asset.catalog_id = catalog
     asset.author = AUTHOR
     asset.description = f"{preset.description} ({_PLAIN_TEXT})"
@@ -45,7 +52,7 @@ def _describe(material, preset, catalog):
         asset.tags.new(tag, skip_if_exists=True)
     pixels = encoded(_halved(images.read_picture(preset.picture)))
     opaque = np.concatenate([pixels, np.ones((*pixels.shape[:2], 1))], axis=-1)
-    preview = material.preview_ensure()
+    preview = datablock.preview_ensure()
     preview.image_size = pixels.shape[1], pixels.shape[0]
     preview.image_pixels_float.foreach_set(opaque.astype(np.float32).ravel())
 
