@@ -1178,7 +1178,7 @@ typedef struct vlr_votf_options {
   double period[2];        /* both 0: the bounding box of the geometry, including its origin */
   double metres_per_unit;  /* 0: unknown */
   double surface;          /* scene's z that will lie on the carrying surfaces */
-  double reference_height; /* scene's z of the plane of a BTF's texels; NaN: chosen as in vlr_capture_options */
+  double reference_height; /* scene's z of the plane of a BTF's texels; NaN: that of a capture of the model's sides */
   const char* source;      /* name of the captured tile */
 } vlr_votf_options;
 VLR_API void vlr_votf_options_init(vlr_votf_options* options);

@@ -232,6 +232,14 @@ DataVotfOptions of_data(const vlr_votf_options& given) {
           .threads = static_cast<int>(given.threads)};
 }
 
+/// Whether a BTF's model has views from below; nothing for a BRDF.
+std::optional<bool> seen_from_below(const Model& model) {
+  if (!is_btf(model)) return std::nullopt;
+  return with_btf(model.body, [](const auto& btf) {
+    return std::ranges::any_of(btf.layout.views(), [](const PolarAngles& view) { return view.theta > 90; });
+  });
+}
+
 /// Creates a job that adds the VOTF found by `find(progress)` to a copy of `model`.
 template <typename Find>
 vlr_job* shell_job(const vlr_model* model, const char* source, Find find) {
@@ -267,7 +275,9 @@ vlr_status vlr_votf_create_job(const vlr_scene* tile, const vlr_model* model, co
     require(model, "model");
     require(out, "out");
     const auto given = read_options(options, vlr_votf_options_init, "vlr_votf_options");
-    *out = shell_job(model, given.source, [scene = tile->scene, capture = converted(given)](Progress& progress) {
+    VotfCaptureOptions capture = converted(given);
+    capture.two_sided = seen_from_below(*model->model);
+    *out = shell_job(model, given.source, [scene = tile->scene, capture](Progress& progress) {
       return capture_votf(*scene, capture, progress);
     });
   });

@@ -99,7 +99,7 @@ class BtfCapturer {
   void find_reference_plane() {
     progress_.stage("finding the reference plane", 0, 0.03);
     height_ = options_.reference_height ? static_cast<float>(*options_.reference_height)
-                                        : least_variance_height(tile_, report_.open, progress_);
+                                        : least_variance_height(tile_, any_below(layout_->views()), progress_);
     if (height_ < tile_.bottom()) {
       throw Error(Status::invalid_argument,
                   "The reference plane at z = " + std::to_string(height_) +

@@ -199,10 +199,10 @@ class VotfCapturer {
     v.closed = closed;
     v.tile_width = static_cast<float>(options_.metres_per_unit) * tile_.period().x;
     progress_.stage("finding the reference plane", 0, 0.1);
-    const double reference = options_.reference_height
-                                 ? *options_.reference_height
-                                 : static_cast<double>(least_variance_height(tile_, !v.closed, progress_));
-    v.reference = in_widths(reference);
+    const bool two_sided = options_.two_sided.value_or(!v.closed);
+    v.reference =
+        in_widths(options_.reference_height ? *options_.reference_height
+                                            : static_cast<double>(least_variance_height(tile_, two_sided, progress_)));
   }
 
   TileTexels texels() const { return {result_.volume.width, result_.volume.height, result_.volume.aspect}; }

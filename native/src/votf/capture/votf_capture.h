@@ -17,9 +17,11 @@ struct VotfCaptureOptions {
   uint32_t texels = 128;                     // along x, at the same resolution along y and z
   double surface = 0;                        // the scene's z that will lie on the carrying surface
   std::optional<double> reference_height{};  // in the scene's z; none: least_variance_height()
-  uint32_t check_views = 64;                 // random views in which the volume is compared with rays; 0: none
-  uint64_t seed = 0;                         // of the check views
-  int threads = 0;                           // 0: all
+  /// Whether the BTF whose texels lie on the reference plane has views from below; none: if the tile is open.
+  std::optional<bool> two_sided{};
+  uint32_t check_views = 64;  // random views in which the volume is compared with rays; 0: none
+  uint64_t seed = 0;          // of the check views
+  int threads = 0;            // 0: all
   bool measure_ray_share = false;
 };
 
