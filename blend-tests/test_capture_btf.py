@@ -275,6 +275,8 @@ class Refusals(BlenderTest):
         node = tree.nodes["Principled BSDF"]
         socket = next(node.inputs[name] for name in sockets if name in node.inputs)
         tree.links.new(texture.outputs[0], socket)
+        if "Emission Strength" in node.inputs:  # 0 in 4.0 and newer
+            node.inputs["Emission Strength"].default_value = 1.0
         return scenes.add_plane(material), socket.name
 
     def test_textures_of_what_is_not_textured_are_named(self):

@@ -284,7 +284,6 @@ class FrameParts(BlenderTest):
         sky = tree.nodes.new("ShaderNodeTexEnvironment")
         sky.image = bpy.data.images.load(str(files["sky.0001.exr"]))
         sky.image.source, sky.image_user.frame_duration = "SEQUENCE", 1
-        sky.image.colorspace_settings.name = "Linear"
         tree.links.new(sky.outputs["Color"], tree.nodes["Background"].inputs["Color"])
         tiles = bpy.data.images.load(str(files["map.1001.exr"]))
         tiles.source, tiles.filepath, tiles.use_fake_user = "TILED", str(self.folder / "map.<UDIM>.exr"), True
