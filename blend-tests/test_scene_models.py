@@ -3,6 +3,7 @@
 import contextlib
 import io
 import math
+import sys
 import unittest.mock
 
 import bpy
@@ -261,6 +262,15 @@ class Frames(PaintedPlane):
     def test_moved_camera(self):
         place_camera(self.camera, 0.05)
         self._takes_the_full_model()
+
+    def test_strict(self):
+        """A frame is refused if its script asks for that and the scene model does not cover it."""
+        strict = unittest.mock.patch.object(sys, "argv", ["blender", "--", "--velour-strict-usage"])
+        with strict:
+            self.assertIn("rendered with the scene model", self.render()[1])
+        place_camera(self.camera, 0.05)
+        with strict, self.assertRaisesRegex(RuntimeError, "outside its scene model's range.*strict-usage"):
+            self.render()
 
     def test_point_light(self):
         self._add_lamp()

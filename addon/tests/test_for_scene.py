@@ -81,6 +81,16 @@ def test_a_moved_camera_takes_the_full_model_and_says_so(folder, reduced):
     assert np.array_equal(pixels, full)
 
 
+def test_strict_usage_refuses_a_moved_camera(folder, reduced):
+    strict = "--full-model", folder / "full.velour", "--strict-usage"
+    picture(folder, "small.velour", *strict)
+    arguments = [*scene(folder, MOVED, "sky.exr"), "--material", folder / "small.velour", *strict]
+    refused = velour("render", *arguments, "--spp", "16", "-o", folder / "refused.exr")
+    assert refused.status == 1
+    assert "small.velour was fitted for" in refused.err
+    assert not (folder / "refused.exr").exists()
+
+
 def test_without_the_full_model_there_is_a_warning(folder, reduced):
     done, _ = picture(folder, "small.velour", camera=MOVED)
     assert "--full-model" in done.err

@@ -11,6 +11,7 @@ from ..core.cli import numbers
 from ..native.errors import refuse
 
 _PREFIX = "--velour-"
+_NAMES = "--velour-parts, --velour-keep-parts, --velour-samples, --velour-memory and --velour-strict-usage"
 
 
 class _Parser(argparse.ArgumentParser):
@@ -53,19 +54,20 @@ def _folder(text):
 
 
 def arguments():
-    """`parts`, `keep_parts`, `samples`, `memory`; None or False if not given, or if there is a window."""
+    """`parts`, `keep_parts`, `samples`, `memory`, `strict_usage`; None or False if not given, or if there is
+    a window."""
     parser = _Parser(prog="blender", add_help=False, allow_abbrev=False)
     add = parser.add_argument
     add("--velour-parts", dest="parts", type=_folder)
     add("--velour-keep-parts", dest="keep_parts", action="store_true")
     add("--velour-samples", dest="samples", type=_samples)
     add("--velour-memory", dest="memory", type=numbers.size_in_bytes)
+    add("--velour-strict-usage", dest="strict_usage", action="store_true")
     behind = sys.argv[sys.argv.index("--") + 1 :] if "--" in sys.argv and bpy.app.background else []
     given, others = parser.parse_known_args(behind)
     unknown = next((each for each in others if each.startswith(_PREFIX)), None)
     if unknown:
-        names = "--velour-parts, --velour-keep-parts, --velour-samples and --velour-memory"
-        raise refuse(f"Wrong arguments after --: unknown option {unknown}; the options are {names}.")
+        raise refuse(f"Wrong arguments after --: unknown option {unknown}; the options are {_NAMES}.")
     if given.samples and not given.parts:
         raise refuse(
             "Wrong arguments after --: --velour-samples needs a folder for the parts; add --velour-parts"

@@ -67,7 +67,14 @@ def render_final(engine, depsgraph):
             note_missing_passes(depsgraph.view_layer_eval, notes)
             note_strokes(scene, depsgraph.view_layer_eval, notes)
             stamps = choose_models(
-                native_scene, materials.reduced, view, camera, depsgraph, notes, check_break
+                native_scene,
+                materials.reduced,
+                view,
+                camera,
+                depsgraph,
+                notes,
+                check_break,
+                given.strict_usage,
             )
             _say(notes)
         options = final_options(depsgraph, view, engine.is_preview)

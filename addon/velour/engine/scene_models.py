@@ -2,20 +2,27 @@
 
 import contextlib
 
+from ..export import ExportError
 from ..export.camera import final_view
 from ..export.scene_models import served
 
 
-def choose_models(native_scene, reduced, view, camera, depsgraph, notes, check_break):
+def choose_models(native_scene, reduced, view, camera, depsgraph, notes, check_break, strict):
     """Gives each material of `reduced` its scene model if the frame allows it. `camera`: that of `view`.
 
-    Notes the share of its usage that the scene model was not fitted for. Returns {material name: stamp text}.
+    Notes the share of its usage that the scene model was not fitted for; `strict`: raises ExportError if that
+    is too much. Returns {material name: stamp text}.
     """
     if not reduced:
         return {}
     stamps = {}
     with _seen_whole(native_scene, view, camera, depsgraph) as whole:
         found = served(native_scene, reduced, whole, depsgraph, check_break)
+    refused = next((each for each in found if not each.is_inside), None) if strict else None
+    if refused:
+        for entry in reduced:
+            entry.model.close()
+        raise ExportError(f"{refused.refusal} Or leave out --velour-strict-usage.")
     for entry, each in zip(reduced, found, strict=True):
         if each.is_inside:
             native_scene.set_model_material(entry.number, entry.model, entry.neighbors)

@@ -39,11 +39,19 @@ class Served(NamedTuple):
 
     @property
     def sentence(self):
-        said = (
+        return f"{self._said}; {self.words}. {self.remedy}".rstrip()
+
+    @property
+    def refusal(self):
+        """The sentence where scene models must cover the frame."""
+        return f"{self._said}. Press Fit for This Scene again, or disable the scene model."
+
+    @property
+    def _said(self):
+        return (
             f"Material '{self.name}', frame {self.frame}: {self.share:.2%} of its scene usage is outside its"
-            f" scene model's range; {self.words}."
+            " scene model's range"
         )
-        return f"{said} {self.remedy}".rstrip()
 
 
 def served(native_scene, reduced, view, depsgraph, check_break=lambda: None):

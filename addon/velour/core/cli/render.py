@@ -132,6 +132,11 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "--full-model", metavar="FULL",
         help="full model, used if --material is a scene model that was not fitted for this image",
     )  # fmt: skip
+    parser.add_argument(
+        "--strict-usage",
+        action="store_true",
+        help="refuse images that --material, a scene model, was not fitted for",
+    )
 
 
 def run(args: argparse.Namespace) -> dict:
@@ -214,6 +219,12 @@ def _choose_model(
             share = model.out_of_domain(frame)
     if domain.inside(share):
         return share
+    if args.strict_usage:
+        raise refuse(
+            f"{percent(share)} of the scene usage of this image is outside the range that the scene model"
+            f" {args.material} was fitted for. Fit another scene model, render with the full model, or leave"
+            " out --strict-usage."
+        )
     instead = (
         "the full model is used"
         if full
