@@ -67,13 +67,13 @@ class Trouble(CheckFolderTest):
 
     def _assert_stopped_by(self, number, status):
         command = [str(part) for part in self.command("--update")]
+        log = self.shots / "velour-check/work/001/inside_render.log"
+        log.unlink(missing_ok=True)  # of the run before
         child = subprocess.Popen(
             command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, preexec_fn=_hear_ctrl_c
         )
         self.addCleanup(child.kill)
-        # Blender 5 prints nothing about the rendering itself when a script starts it.
-        self._wait_for(self.shots / "velour-check/work/001/inside_render.log", "Read blend")
-        time.sleep(2.0)
+        self._wait_for(log, "Rendering ")
         start = time.monotonic()
         child.send_signal(number)
         said, _ = child.communicate(timeout=120)

@@ -52,6 +52,9 @@ def test_times_are_read(tmp_path):
     (case,) = cases.of_report(_report(tmp_path / "one.xml", ("a", "run", "")))
     assert case == Case("a", PASSED, 1.5)
     assert cases.slowest([case, Case("b", PASSED, 2.0)], 1) == [Case("b", PASSED, 2.0)]
+    names = "parity/test_sky.Sky.test_sun", "parity/test_sky.Sky.test_air", "addon.tests.test_btf.test_pairs"
+    found = cases.by_file([Case(name, PASSED, 2.0) for name in (*names, "Lobe.Peaks")], 2)
+    assert found == [("parity/test_sky", 2, 4.0), ("addon.tests.test_btf", 1, 2.0)]
 
 
 def test_a_cut_report_has_no_cases(tmp_path):
@@ -177,12 +180,19 @@ def test_all_runs_every_group_and_resumes(tmp_path, monkeypatch, capsys):
 
 def test_the_table_of_times_has_groups_their_sum_and_the_slowest():
     groups = {
-        "style": {"tests": 5, "seconds": 12.4, "processor": 20.0, "slowest": [("layers", 1.25)]},
+        "style": {
+            "tests": 5,
+            "seconds": 12.4,
+            "processor": 20.0,
+            "slowest": [("layers", 1.25)],
+            "files": [("layers", 1, 1.25)],
+        },
         "native": {
             "tests": 100,
             "seconds": 300.0,
             "processor": 590.0,
             "slowest": [("Lobe.Integrates", 30.0)],
+            "files": [("Lobe", 7, 44.0)],
         },
     }
     conditions = {"date": "d", "commit": "c", "machine": "m", "threads": 2, "seed": 0, "shown": 10}
@@ -192,6 +202,7 @@ def test_the_table_of_times_has_groups_their_sum_and_the_slowest():
         "took\n300 s from nothing",
         "| style | 5 | 12 | 20 |",
         "| all | 105 | 312 | 610 |",
+        "| native | Lobe | 7 | 44 |",
         "| native | Lobe.Integrates | 30.0 |",
     ):
         assert line in text

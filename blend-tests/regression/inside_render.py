@@ -34,6 +34,7 @@ def main(task):
         for seed in task["seeds"]:
             scene.velour.seed = (first + seed) % (1 << 31)
             name = f"{'own' if frame is None else frame}-{seed}.exr"
+            print(f"Rendering {name}", flush=True)
             inside.render(scene, Path(task["folder"]) / name)
             if task["passes"]:
                 _render_sharp(scene, Path(task["folder"]) / f"sharp-{name}")

@@ -60,7 +60,7 @@ class Total:
         told = ", ".join(f"{counts[outcome]} {outcome}" for outcome in (PASSED, FAILED, SKIPPED))
         say(f"{name}: {told}, {seconds:.0f} s, {processor:.0f} s of processor time")
         times = {"tests": len(found), "seconds": seconds, "processor": processor}
-        self._groups[name] = times | {"slowest": slowest}
+        self._groups[name] = times | {"slowest": slowest, "files": cases.by_file(found, SLOWEST)}
         self._file.write_text(json.dumps(self._groups, indent=1))
 
 

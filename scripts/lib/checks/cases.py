@@ -17,6 +17,12 @@ class Case(NamedTuple):
     seconds: float = 0.0
     reason: str = ""  # why it was skipped
 
+    @property
+    def file(self) -> str:
+        """The file of a test of Python or Blender, or the suite of a native one."""
+        parts = self.name.split(".")
+        return ".".join(parts[:3]) if parts[0] == "addon" else parts[0]
+
     @classmethod
     def of(cls, element: ElementTree.Element) -> Case:
         name = ".".join(filter(None, (element.get("classname"), element.get("name"))))
@@ -74,3 +80,12 @@ def reasons(cases: Iterable[Case]) -> list[str]:
 
 def slowest(cases: Iterable[Case], number: int) -> list[Case]:
     return sorted(cases, key=lambda case: case.seconds, reverse=True)[:number]
+
+
+def by_file(cases: Iterable[Case], number: int) -> list[tuple[str, int, float]]:
+    """Files with their numbers of tests and seconds, the slowest first."""
+    seconds, tests = Counter(), Counter()
+    for case in cases:
+        seconds[case.file] += case.seconds
+        tests[case.file] += 1
+    return [(file, tests[file], its) for file, its in seconds.most_common(number)]

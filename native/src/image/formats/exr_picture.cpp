@@ -434,7 +434,7 @@ Layers layers_of(std::span<const std::string> channels) {
   throw Error(Status::unsupported, path + ": " + what);
 }
 
-constexpr const char* kHowToChoose = "choose one by its name (--layer, or Layer and Pass of the Image Texture node).";
+constexpr const char* kHowToChoose = "choose one by its name with --layer; for Blender, save it as a file of its own.";
 
 std::vector<std::string> keys_where(const Layers& layers, const auto& holds) {
   std::vector<std::string> names;

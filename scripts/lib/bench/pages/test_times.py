@@ -11,7 +11,7 @@ from ..page import replaced
 from ..project import RESULTS, ROOT
 from ..run import Run
 
-SETTINGS = {"shown": (1, 1)}  # number of slowest tests shown per group
+SETTINGS = {"shown": (5, 5)}  # numbers of slowest tests and of slowest files shown per group
 PAGES = {"test_times.md": "test_times"}
 _TIMES = ROOT / "build/release/tests/times.json"
 _DEMO = ROOT / "out/demo/seconds.json"
@@ -34,7 +34,13 @@ def values(found: dict) -> dict:
         for group in groups
         for test, seconds in group["slowest"][: found["conditions"]["shown"]]
     ]
-    return {"groups": [*groups, {"name": "all", **sums}], "slowest": slowest, "demo": found["demo"]}
+    files = [
+        {"group": group["name"], "file": file, "tests": tests, "seconds": seconds}
+        for group in groups
+        for file, tests, seconds in group["files"][: found["conditions"]["shown"]]
+    ]
+    groups.append({"name": "all", **sums})
+    return {"groups": groups, "slowest": slowest, "files": files, "demo": found["demo"]}
 
 
 def draw(output: Path, found: dict) -> None:
