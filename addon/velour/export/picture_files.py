@@ -14,6 +14,7 @@ from .color import is_data, is_linear_rec709, is_srgb
 from .files import absolute_path
 
 _FLOATS = (".exr", ".hdr")
+_TIFF = (".tif", ".tiff")
 
 
 def linear_file(image):
@@ -58,12 +59,22 @@ class FilePixels(NamedTuple):
     is_straight: bool  # Cycles multiplies the colors by alpha if the image's settings say so
 
 
+def is_gray(image):
+    """Whether an image's PNG or TIFF file has no colors."""
+    if not has_own_file(image, (".png", *_TIFF)):
+        return False
+    try:
+        return images.picture_size(_own_file(image), as_stored=True)[2] < 3
+    except VelourError:
+        return False
+
+
 def png_or_tiff_pixels(image, notes):
     """FilePixels of a PNG or TIFF file; None: use Blender's pixels.
 
     Blender 3.4 shows TIFF files of 16 bits and of floats wrongly. Cycles never multiplies gray by alpha.
     """
-    is_tiff = has_own_file(image, (".tif", ".tiff"))
+    is_tiff = has_own_file(image, _TIFF)
     if not is_tiff and not has_own_file(image, ".png"):
         return None
     path = _own_file(image)

@@ -6,7 +6,15 @@ import bpy
 import numpy as np
 
 from .color import bytes_to_working, is_data, is_linear_rec709, is_srgb
-from .picture_files import float_pixels, has_own_file, note_header, png_or_tiff_pixels, size_of, with_alpha
+from .picture_files import (
+    float_pixels,
+    has_own_file,
+    is_gray,
+    note_header,
+    png_or_tiff_pixels,
+    size_of,
+    with_alpha,
+)
 
 # Cycles multiplies colors by alpha where the alpha mode says so; before, where the kind of values does.
 _MODE_COUNTS = bpy.app.version >= (5, 2)
@@ -83,8 +91,7 @@ def _stored(image, has_alpha, notes):
     if of_file is not None:
         return _Stored(of_file, 0, is_srgb(space), multiplies_floats(image))
     multiplies_integers = image.alpha_mode == "STRAIGHT" or not _MODE_COUNTS
-    # A depth of 16 without floats: gray and alpha of 8 bits each.
-    needs_file = image.is_float or (has_alpha and (image.alpha_mode == "PREMUL" or image.depth == 16))
+    needs_file = image.is_float or (has_alpha and (image.alpha_mode == "PREMUL" or is_gray(image)))
     knows_space = is_srgb(space) or is_linear_rec709(space) or is_data(space)
     of_file = png_or_tiff_pixels(image, notes) if needs_file and knows_space else None
     if of_file is not None:
