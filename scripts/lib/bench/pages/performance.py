@@ -23,6 +23,7 @@ SETTINGS = {
 }
 PAGES = {"performance.md": "performance"}
 MATERIAL, DEFAULT_LOBES = "blue-metallic-paint", 16
+_BENCHMARKS = ROOT / "build/bench/native/bench"
 # Program, benchmark, and what the parts of a run's name mean after that of the benchmark.
 _KERNELS = (
     ("bench_lobe_mixture", "eval_neighbors", "lobes directions"),
@@ -36,6 +37,11 @@ TARGETS = {"mis": 0.5, "product": 0.35}  # minimum ray_share of a strategy
 
 
 def measure(run: Run) -> dict:
+    for program in {program for program, _, _ in _KERNELS}:
+        if not (_BENCHMARKS / program).is_file():
+            raise FileNotFoundError(
+                f"there is no {_BENCHMARKS / program}; run scripts/performance, which builds it."
+            )
     own, load = run.settings, project.busy_threads()
     measurement = project.merl(run.data, MATERIAL)
     models = {n: run.fit(measurement, tolerance=1e-6, max_lobes=n)[0] for n in own.lobes}
@@ -70,7 +76,7 @@ def _words(scene: Mapping, size: tuple[int, int], spp: int, **options) -> list[s
 def _bench(program: str, task: str, names: str) -> list[dict]:
     """The rows of a benchmark of the build that scripts/performance makes."""
     print(f"running {program}, {task} ...", flush=True)
-    command = [ROOT / "build/bench/native/bench" / program, f"--benchmark_filter={task}"]
+    command = [_BENCHMARKS / program, f"--benchmark_filter={task}"]
     options = ["--benchmark_format=json", "--benchmark_min_time=0.5"]
     report = subprocess.run([*command, *options], check=True, capture_output=True, text=True).stdout
     rows = []
