@@ -32,6 +32,7 @@ _CYCLES = re.compile(r"Total time spent synchronizing data: ([\d.]+)")
 def measure(run: Run) -> dict:
     if not run.settings.last:
         long = os.environ | {"VELOUR_LONG_TESTS": "1"}
+        long.pop("PYTHONSAFEPATH", None)  # set by scripts/bench; the tests import from their own folder
         subprocess.run([ROOT / "blend-tests/run", "parity"], check=True, env=long)
     lines = [line for file in sorted(_ROWS.glob("*/rows.jsonl")) for line in file.open(encoding="utf-8")]
     if not lines:
