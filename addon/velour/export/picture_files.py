@@ -15,6 +15,9 @@ from .files import absolute_path
 
 _FLOATS = (".exr", ".hdr")
 _TIFF = (".tif", ".tiff")
+# Tags of TIFF files, and one value of each.
+_EXTRA_SAMPLES, _UNASSOCIATED_ALPHA = 338, 2
+_SAMPLE_FORMAT, _FLOAT = 339, 3
 
 
 def linear_file(image):
@@ -44,6 +47,7 @@ def float_pixels(image, notes):
 
 
 def _read(image, notes):
+    """The pixels of the image's file as stored; notes values that are not finite, which are replaced."""
     values = images.read_picture(_own_file(image), as_stored=True)
     replaced = [each for each in images.read_warnings() if each["code"] in ("infinite_values", "nan_values")]
     for sentence in sentences(replaced):
@@ -90,12 +94,11 @@ def png_or_tiff_pixels(image, notes):
     return FilePixels(values, is_float, is_straight)
 
 
-_EXTRA_SAMPLES, _UNASSOCIATED_ALPHA = 338, 2
-_SAMPLE_FORMAT, _FLOAT = 339, 3
-
-
 def _tiff_tags(path):
-    """First value of each tag of the first directory that holds 16-bit values."""
+    """{tag: first value} of the tags of the first directory that hold 16-bit values.
+
+    Raises KeyError, OSError or struct.error for a file that is no TIFF or a BigTIFF.
+    """
     with open(path, "rb") as file:
         order = {b"II": "<", b"MM": ">"}[file.read(2)]
         version, offset = struct.unpack(order + "HI", file.read(6))

@@ -37,7 +37,7 @@ TARGETS = {"mis": 0.5, "product": 0.35}  # minimum ray_share of a strategy
 
 
 def measure(run: Run) -> dict:
-    for program in {program for program, _, _ in _KERNELS}:
+    for program, _, _ in _KERNELS:
         if not (_BENCHMARKS / program).is_file():
             raise FileNotFoundError(
                 f"there is no {_BENCHMARKS / program}; run scripts/performance, which builds it."
