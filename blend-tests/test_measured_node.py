@@ -113,7 +113,7 @@ class Inputs(NodeTest):
         material = self._tiles()
         tree, group = material.node_tree, scenes.velour_node(material).group
         noise = tree.nodes.new("ShaderNodeTexNoise")
-        names = ("Exposure", "Rotation", "Vector")
+        names = ("Scale", "Rotation", "Vector")
         for name in names:
             tree.links.new(noise.outputs[0], group.inputs[name])
         notes = self._notes(material)

@@ -7,7 +7,7 @@ import numpy as np
 
 from support import inputs, scenes, viewport, window
 
-SCREEN = "1400x720"
+SCREEN = "1400x420"
 
 
 def start(folder):

@@ -228,14 +228,14 @@ def test_names_that_are_not_utf8_end_in_a_sentence(tmp_path, mesh_file, model_fi
 def test_words_are_no_inputs(tmp_path, monkeypatch, model_file):
     """Results are replaced in folders whose names are a verb, a tile, or the value of an option."""
     monkeypatch.chdir(tmp_path)
-    for name in ("tile", "weave", "gltf"):
+    for name in ("tile", "weave", "gravel", "gltf"):
         (tmp_path / name).mkdir()
-    votf = ["votf", "weave", "--material", model_file, "--texels", 8, "--check-views", 0]
+    votf = ["votf", "gravel", "--material", model_file, "--texels", 8, "--check-views", 0]
     calls = [("tile", "weave", "-o", f"{name}/weave.obj") for name in ("tile", "weave")]
     for call in [
         *calls,
         ("export", model_file, "--to", "gltf", "-o", "gltf/m.gltf"),
-        [*votf, "-o", "weave/s.velour"],
+        [*votf, "-o", "gravel/s.velour"],
     ] * 2:
         status, _, err = velour(*call)
         assert status == 0, err

@@ -10,7 +10,7 @@ from . import process, scenes
 from .blender import BlenderTest
 
 ROOT = Path(__file__).resolve().parents[2]
-SAMPLES = 128
+SAMPLES = 64
 
 
 class CheckFolderTest(BlenderTest):

@@ -18,7 +18,6 @@ from .read_job import ReadJob, check
 
 _MOST_TEXELS = 1024  # along a side; limited because all pictures are held at once
 _SAMPLES = 1  # the suns have no extent: further samples would be the same
-_SAMPLES_ASIDE = 4  # of pictures from the side, whose pixels show several texels
 _RINGS, _AZIMUTHS = (15, 35, 55, 75), 6  # a flat texel keeps all of the third ring, and so stays flat
 _JUDGES, _JUDGE_AZIMUTHS = (30, 60, 75), 3
 _VIEWS = (5, 30, 60, 75, 85)  # degrees from the vertical, of the reported errors
@@ -158,7 +157,7 @@ class TileMapsJob(ReadJob):
             scene.clear_lights()
             scene.add_light("sun", (math.pi,) * 3, _shining_from(light), angle=0.0)
             scene.commit()
-            with tile_job(scene, (width, height), _SAMPLES_ASIDE if view else _SAMPLES) as job:
+            with tile_job(scene, (width, height), _SAMPLES) as job:
                 job.start().wait(lambda _state: check())
                 self._done += 1
                 yield job.read_pass("Combined")

@@ -79,6 +79,28 @@ float least(float PrincipledParameters::*which) {
   return rough ? kMinRoughness : 0;
 }
 
+// What moves at once for a derivative: the base color, the specular tint, or one of kShape.
+constexpr int kColors = 2, kMoves = kColors + static_cast<int>(kShape.size());
+
+/// The unknown that `move` moves in a channel.
+constexpr Eigen::Index unknown_of(int move, int channel) {
+  return move < kColors ? kTint * move + channel : kFirstShape + move - kColors;
+}
+
+/// Normal equations of one channel, by move.
+struct MoveSums {
+  std::array<double, kMoves * kMoves> curvature;
+  std::array<double, kMoves> slope;
+
+  void add(const std::array<double, kMoves>& row, double residual, double weight) {
+    for (size_t j = 0; j < kMoves; ++j) {
+      const double weighted = weight * row[j];
+      slope[j] += weighted * residual;
+      for (size_t k = 0; k < kMoves; ++k) curvature[kMoves * j + k] += weighted * row[k];
+    }
+  }
+};
+
 /// Step of a finite difference at `value` in [0, 1], away from the nearer end and well above the rounding of f.
 float difference_of(float value) { return value > 0.5f ? -3e-4f : 3e-4f; }
 
@@ -141,28 +163,43 @@ PrincipledParameters PrincipledProblem::completed(const PrincipledParameters& st
 }
 
 PrincipledProblem::Normal PrincipledProblem::normal(const PrincipledParameters& p) const {
+  // A channel of f depends on the same channel of a color alone, so each color moves as one.
   const std::vector<Rgb> f_cos = values(p);
-  std::vector<Rgb> slopes(f_cos.size() * kSize, Rgb(0));  // [sample][unknown]
-  for (int k = 0; k < kSize; ++k) {
-    if (is_fixed(k)) continue;
+  std::array<std::vector<Rgb>, kMoves> slopes;
+  for (int move = 0; move < kMoves; ++move) {
+    if (is_fixed(unknown_of(move, 0))) continue;
     PrincipledParameters other = p;
-    float& moved = unknown(other, k);
-    const float difference = difference_of(moved);
-    moved += difference;
-    const std::vector<Rgb> beside = values(other);
-    for (size_t i = 0; i < f_cos.size(); ++i)
-      slopes[kSize * i + static_cast<size_t>(k)] = (beside[i] - f_cos[i]) / difference;
+    Rgb difference;
+    for (int c = 0; c < 3; ++c) {
+      float& moved = unknown(other, unknown_of(move, c));
+      if (c == 0 || move < kColors)
+        moved += difference[c] = difference_of(moved);
+      else
+        difference[c] = difference[0];
+    }
+    std::vector<Rgb>& slope = slopes[static_cast<size_t>(move)] = values(other);
+    for (size_t i = 0; i < f_cos.size(); ++i) slope[i] = (slope[i] - f_cos[i]) / difference;
   }
-  Normal n(kSize);
+  std::array<MoveSums, 3> sums{};
   for (size_t i = 0; i < f_cos.size(); ++i) {
     const PairSample& s = samples_[i];
     for (int c = 0; c < 3; ++c) {
       const float root = std::sqrt(f_cos[i][c] + floor_);
-      const double residual = static_cast<double>(root) - std::sqrt(s.f_cos[c] + floor_);
-      Eigen::Matrix<double, kSize, 1> row;
-      for (int k = 0; k < kSize; ++k) row[k] = 0.5 * slopes[kSize * i + static_cast<size_t>(k)][c] / root;
-      n.curvature.noalias() += s.weight * row * row.transpose();
-      n.slope.noalias() += s.weight * residual * row;
+      const double half = 0.5 / root;
+      std::array<double, kMoves> row{};
+      for (size_t move = 0; move < kMoves; ++move) {
+        if (!slopes[move].empty()) row[move] = half * slopes[move][i][c];
+      }
+      sums[static_cast<size_t>(c)].add(row, static_cast<double>(root) - std::sqrt(s.f_cos[c] + floor_), s.weight);
+    }
+  }
+  Normal n(kSize);
+  for (int c = 0; c < 3; ++c) {
+    const MoveSums& of_channel = sums[static_cast<size_t>(c)];
+    for (int j = 0; j < kMoves; ++j) {
+      n.slope[unknown_of(j, c)] += of_channel.slope[static_cast<size_t>(j)];
+      for (int k = 0; k < kMoves; ++k)
+        n.curvature(unknown_of(j, c), unknown_of(k, c)) += of_channel.curvature[static_cast<size_t>(j * kMoves + k)];
     }
   }
   freeze_at_bounds(p, n);

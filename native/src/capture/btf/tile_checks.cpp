@@ -1,6 +1,10 @@
 #include "capture/btf/tile_checks.h"
 
+#include <tbb/parallel_for.h>
+
 #include <algorithm>
+#include <array>
+#include <atomic>
 #include <cmath>
 #include <vector>
 #include "base/file.h"
@@ -185,19 +189,16 @@ double variance_at(float height, const RepeatedTile& tile, const PairLayout& lay
 float least_variance_height(const RepeatedTile& tile, bool two_sided, Progress& progress) {
   if (tile.thickness() <= 0) return tile.bottom();
   const PairLayout layout = pilot_layout(two_sided);
-  float best = tile.bottom();
-  double least = std::numeric_limits<double>::infinity();
-  for (int i = 0; i < kReferenceHeights; ++i) {
-    const float share = static_cast<float>(i) / (kReferenceHeights - 1);
-    const float height = tile.bottom() + share * tile.thickness();
-    const double variance = variance_at(height, tile, layout, progress);
-    progress.update((i + 1.0) / kReferenceHeights);
-    if (variance < least) {
-      least = variance;
-      best = height;
-    }
-  }
-  return best;
+  const auto height_at = [&tile](size_t i) {
+    return tile.bottom() + static_cast<float>(i) / (kReferenceHeights - 1) * tile.thickness();
+  };
+  std::array<double, kReferenceHeights> variance;
+  std::atomic<int> done{0};
+  tbb::parallel_for(size_t{0}, variance.size(), [&](size_t i) {  // a pilot is too small to occupy all threads
+    variance[i] = variance_at(height_at(i), tile, layout, progress);
+    progress.update(++done / static_cast<double>(kReferenceHeights));
+  });
+  return height_at(static_cast<size_t>(std::ranges::min_element(variance) - variance.begin()));
 }
 
 std::string tile_hash(const RepeatedTile& tile, Progress& progress) {
