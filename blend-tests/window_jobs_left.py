@@ -9,7 +9,7 @@ from unittest import mock
 
 import bpy
 
-from support import inputs, window
+from support import inputs, viewport, window
 from support.reading import MODEL, module
 
 _QUITTING_SECONDS = 20  # what reads has 60, and Blender itself takes one or two
@@ -70,10 +70,7 @@ def pictures_of_another_file(folder):
         with window.override():
             path = str(_models(folder, "pictures", 12))
             assert bpy.ops.velour.make_thumbnails("INVOKE_DEFAULT", directory=path) == {"RUNNING_MODAL"}
-        for _ in range(100):
-            yield 0.1
-            if made:
-                break
+        yield from viewport.until(lambda: made, "no thumbnail is begun")
         window.fresh_file()
         go_on.set()
         yield 2.0
