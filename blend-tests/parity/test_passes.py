@@ -78,7 +78,7 @@ class Passes(ParityTest):
         for transparent in (False, True):
             with self.subTest(transparent=transparent):
                 self.scene.render.film_transparent = transparent
-                theirs, ours = self._rendered("Denoising Albedo", 4)
+                theirs, ours = self._rendered("Denoising Albedo")
                 np.testing.assert_allclose(theirs.max(axis=(0, 1)), (4.3, 2.2, 0.9), rtol=1e-5)
                 np.testing.assert_allclose(theirs[-1, 0], 0 if transparent else 0.3, rtol=1e-5)
                 # Directions below a smooth surface's own faces reflect nothing in Velour.
