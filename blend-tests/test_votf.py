@@ -110,6 +110,17 @@ class Outline(BlenderTest):
         bpy.context.scene.camera.data.ortho_scale = 1
         self.assertAlmostEqual(self._alpha("projected"), self._solid(), delta=0.03)  # one tile, of a metre
 
+    def test_its_placement_cannot_vary(self):
+        self._outlined()
+        tree, group = self.material.node_tree, scenes.velour_node(self.material).group
+        names = ("Rotation", "Scale", "Roughness Offset")
+        varying = tree.nodes.new("ShaderNodeTexNoise")
+        for name in names:
+            tree.links.new(varying.outputs["Fac"], group.inputs[name])
+        notes = " ".join(export_notes())
+        for name in names:
+            self.assertIn(f"the link to '{name}' is not supported for models with a silhouette", notes)
+
     def test_its_height_is_told_in_radii_of_the_surface(self):
         self._outlined()
         bpy.ops.mesh.primitive_cylinder_add(radius=0.5, depth=2, vertices=256, end_fill_type="NOTHING")

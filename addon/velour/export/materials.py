@@ -17,6 +17,7 @@ from .shaders import (
     unlike_reflection,
 )
 from .shaders.layer import COLORS
+from .shaders.measured import roughness_levels, with_effect
 from .shaders.relief import correction
 from .textures import TextureTable
 from .uv_maps import UNUSED, UvMaps, shader_maps
@@ -162,6 +163,7 @@ class MaterialTable:
         return self._add_shader(material, opened)
 
     def _add_shader(self, material, layers):
+        layers = [self._with_effect(layer, material) for layer in layers]
         sources, reliefs, draft = sources_of(layers)
         placed = self._note_mixed(material, layers)
         self._uv_maps[_key(material)] = shader_maps(_owner(material), sources, reliefs, self._notes, placed)
@@ -181,13 +183,31 @@ class MaterialTable:
         with Shader.new() as shader:
             for layer in layers:
                 for part in split(layer):
-                    self._add_layer(shader, part, material)
+                    for level in self._levels(part, material):
+                        self._add_layer(shader, level, material)
             number = self._with_light_sampling(self._scene.add_shader_material(shader), material)
         if any(layer.measured for layer in layers):
             self._scene.hide_backs(number, hidden_backs(material))
         for shell in self._shells(material, layers):
             self._measured.set_shell(number, shell.node.velour)
         return number
+
+    def _with_effect(self, layer, material):
+        """The layer; if it is measured, without the pictures that its model does not support."""
+        if not layer.measured or not layer.pictures:
+            return layer
+        layer, said = with_effect(layer, self._measured.of_layer(material, layer.measured).info)
+        for sentence in said:
+            self._notes.add(f"{_owner(material)}: {sentence}")
+        return layer
+
+    def _levels(self, layer, material):
+        """The layer; layers with constant roughness offsets in place of a measured one with a varying one."""
+        picture = layer.pictures.get("roughness") if layer.measured else None
+        if picture is None or self._slot(picture, False, material) is None:
+            return [layer]
+        info = self._measured.of_layer(material, layer.measured).info
+        return roughness_levels(layer, info["narrowest_roughness"])
 
     def _note_mixed(self, material, layers):
         """Records which coordinates the measured layers of a mixed material need.
@@ -253,6 +273,9 @@ class MaterialTable:
             values["coat_normal_strength"] = layer.coat_relief.strength
             values.setdefault("normal_correction", correction(material))
         if layer.measured:
+            values |= {n: s for n, s in self._slots(layer, material).items() if n in ("rotation", "scale")}
+            tile = self._tiles.get(_key(material))
+            values["aspect"] = tile.aspect if tile else 1.0
             self._measured.of_layer(material, layer.measured).add_layer(shader, **values)
             shader.weigh_layer("tint", layer.measured.look.gain)
         else:

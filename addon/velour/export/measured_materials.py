@@ -39,7 +39,7 @@ class Reflectance(NamedTuple):
         return scene.add_btf_material(self.data)
 
     def add_layer(self, shader, **values):
-        """Adds it as a layer with weight 1. `values`: normal map, as for Shader.add_layer."""
+        """Adds it as a layer with weight 1. `values`: as for Shader.add_measured_layer."""
         given = {self.kind: self.data} | ({"model": self.proposal} if self.proposal else {})
         shader.add_measured_layer(**given, neighbors=self.neighbors, **values)
 

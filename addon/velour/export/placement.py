@@ -59,6 +59,13 @@ class Tile(NamedTuple):
         return settings.mode, settings.keeps_size, *map(tuple, sizes), *placed
 
     @property
+    def aspect(self):
+        """Width divided by height in the unit in which tiles are rotated."""
+        if self.settings.mode == "REAL_SIZE" and self.metres:
+            return self.metres[0] / self.metres[1]
+        return self.settings.repeats[1] / self.settings.repeats[0]
+
+    @property
     def shape(self):
         """Width and height scaled to a product of 1; if the size is unknown, texels are square."""
         width, height = self.metres or self.texels

@@ -83,13 +83,18 @@ class Shader(Handle):
         normal: TextureSlot | None = None,
         normal_strength: float = 1.0,
         normal_correction: str = "turned",
+        rotation: TextureSlot | None = None,
+        scale: TextureSlot | None = None,
+        aspect: float = 1.0,
     ) -> None:
         """Adds a model, a raw measurement (sampled by `model` if given) or a BTF as a layer with weight 1.
 
         uv_map: from the surface's texture coordinates to those of the layer; it also turns an anisotropic
         BRDF. A model with a silhouette (VOTF) must not be moved, and gives it to the material, which can have
         only one. neighbors, most_bytes: as for Scene.add_model_material and Scene.add_btf_material. normal,
-        normal_strength, normal_correction: as for add_layer.
+        normal_strength, normal_correction: as for add_layer. rotation (radians, counterclockwise), scale: move
+        the layer by point, after uv_map and about the origin of its coordinates; aspect: of its tiles, width
+        divided by height.
         """
         desc = structs.MeasuredLayerDesc()
         self._lib.vlr_measured_layer_desc_init(byref(desc))
@@ -99,6 +104,13 @@ class Shader(Handle):
         desc.neighbors, desc.most_bytes = neighbors, most_bytes
         desc.map = small("uv_map", uv_map, 6)
         _set_normal(desc, normal, normal_strength, normal_correction)
+        desc.aspect = aspect
+        for name, slot in (("rotation", rotation), ("scale", scale)):
+            if slot is not None:
+                uv_map = small("uv_map", slot.uv_map, 6)
+                set_fields(
+                    desc, {name: slot.texture.pointer, f"{name}_map": uv_map, f"{name}_set": slot.uv_set}
+                )
         self._lib.vlr_shader_add_measured_layer(self.pointer, byref(desc))
 
     def weigh_layer(
@@ -111,14 +123,17 @@ class Shader(Handle):
     ) -> None:
         """Multiplies the weight of the last layer: by `share` of a mix, its `rest` (1 - share), or a `gain`.
 
-        `tint`: a color [3] in the working space that multiplies the layer's light. A texture of numbers, or
-        of colors for a tint, replaces the value.
+        `tint`: a color [3] in the working space that multiplies the layer's light. `level`: the share of a layer
+        in a sequence for levels of a number; value: the level before, its own and the one after, ascending,
+        equal at the ends. A texture replaces the value; it has colors for a tint, otherwise numbers.
         """
         desc = structs.FactorDesc()
         self._lib.vlr_factor_desc_init(byref(desc))
         desc.kind = choice("kind", kind, table.FACTORS)
         if kind == "tint":
             desc.color = small("value", value if isinstance(value, Sequence) else (value,) * 3, 3)
+        elif kind == "level":
+            desc.level = small("value", value, 3)
         else:
             desc.value = value
         if texture is not None:

@@ -336,6 +336,7 @@ class FactorDesc(Struct):
         ("texture", c_void_p),
         ("map", c_float * 6),
         ("color", c_float * 3),
+        ("level", c_float * 3),
     ]
 
 
@@ -353,6 +354,13 @@ class MeasuredLayerDesc(Struct):
         ("normal_strength", c_float),
         ("normal_set", c_uint32),
         ("normal_correction", c_int32),
+        ("aspect", c_float),
+        ("rotation", c_void_p),
+        ("scale", c_void_p),
+        ("rotation_map", c_float * 6),
+        ("scale_map", c_float * 6),
+        ("rotation_set", c_uint32),
+        ("scale_set", c_uint32),
     ]
 
 

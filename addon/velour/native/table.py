@@ -84,7 +84,7 @@ LAYERS = (
 GLASS_FRESNELS = ("facets", "surface")
 FORMULAS = ("layered", "disney")
 LOBES = ("whole", "single", "separable")
-FACTORS = ("share", "rest", "gain", "tint")
+FACTORS = ("share", "rest", "gain", "tint", "level")
 RELIEF_CORRECTIONS = ("turned", "faded", "shadowed", "as-it-is")
 OPERATIONS = (
     "source",

@@ -113,8 +113,8 @@ VLR_API vlr_status vlr_model_bytes(vlr_model* model, const void** bytes, uint64_
 VLR_API vlr_status vlr_model_roughened(const vlr_model* model, float roughness, vlr_model** out);
 /* JSON: kind "model", model "scattered" (per-view) or "parametric", kernel, isotropic, lobes, bytes, parameter_bytes,
  * relative_l2, by_view_angle, albedo_by_view_angle, albedo_max, reciprocity, measured_reciprocity, tolerance, seed,
- * all_data, warning_codes, order (as of a fit), source {name, format, sha256}. Per-view: also views,
- * max_lobes_per_view. Parametric: also cells, symmetric, view_range [from, to] in degrees, spaces {light, half}, the
+ * all_data, warning_codes, order (as of a fit), source {name, format, sha256}, narrowest_roughness (of a GGX highlight
+ * about as narrow as the narrowest lobe that matters, 0 to 1). Per-view: also views, max_lobes_per_view. Parametric: also cells, symmetric, view_range [from, to] in degrees, spaces {light, half}, the
  * numbers of lobes in each. BTFs (model "factored-btf", "srbf-btf" or "tensor-btf") have instead: method, psnr,
  * psnr_held_out, ser, relative_l2, p99, raw_bytes, seed, warning_codes, tolerance, order, search, shapes (as of a fit),
  * texels, tile_metres, views, lights, companding; components, or coefficients (of the side that has most) and, for
@@ -1013,12 +1013,14 @@ enum {
   VLR_LAYER_TRANSLUCENT = 7 /* base_color: diffuse light from the other side */
 };
 /* The weight of a layer is the product of its factors. For a mix, SHARE is its factor and REST 1 minus that, both
- * within [0, 1]; GAIN is any number, below 0 only for emission. */
+ * within [0, 1]; GAIN is any number, below 0 only for emission; LEVEL is the layer's share in a sequence of layers for
+ * levels of a number. */
 enum {
   VLR_FACTOR_SHARE = 0,
   VLR_FACTOR_REST = 1,
   VLR_FACTOR_GAIN = 2,
-  VLR_FACTOR_TINT = 3 /* a color that multiplies the layer's light; what it absorbs does not pass to other layers */
+  VLR_FACTOR_TINT = 3, /* a color that multiplies the layer's light; what it absorbs does not pass to other layers */
+  VLR_FACTOR_LEVEL = 4
 };
 
 /* Correction of steep mapped normals, which would show impossible reflections. */
@@ -1057,6 +1059,9 @@ typedef struct vlr_factor_desc {
   const vlr_texture* texture; /* instead of value: numbers; instead of color: colors; NULL: none */
   float map[6];               /* as those of vlr_principled_textures */
   float color[3];             /* VLR_FACTOR_TINT: working space; 1, 1, 1 */
+  /* VLR_FACTOR_LEVEL, ascending: the share is 1 where the number is level[1] and falls linearly to 0 at the others,
+   * which are the levels of the neighbors; if one of them equals level[1], the share is 1 on its side */
+  float level[3];
 } vlr_factor_desc;
 VLR_API void vlr_factor_desc_init(vlr_factor_desc* desc);
 /* A layer of measured reflectance: exactly one of a model, a raw measurement and a BTF. Their colors are Rec. 709. */
@@ -1076,6 +1081,16 @@ typedef struct vlr_measured_layer_desc {
   float normal_strength;
   uint32_t normal_set;
   int32_t normal_correction;
+  /* Numbers by point of the surface, as those of vlr_principled_textures, which also move the layer; NULL: none. After
+   * `map`, tiles are rotated counterclockwise about the origin of their coordinates (radians) and enlarged (at least
+   * 0.001 times) */
+  float aspect; /* width of a tile divided by its height; 1 */
+  const vlr_texture* rotation;
+  const vlr_texture* scale;
+  float rotation_map[6];
+  float scale_map[6];
+  uint32_t rotation_set;
+  uint32_t scale_set;
 } vlr_measured_layer_desc;
 VLR_API void vlr_measured_layer_desc_init(vlr_measured_layer_desc* desc);
 

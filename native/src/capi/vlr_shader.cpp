@@ -311,35 +311,47 @@ SurfaceMaterial measured_surface(const vlr_measured_layer_desc& layer) {
   return surface_of(model, layer.neighbors);
 }
 
+Placing placing_of(const vlr_measured_layer_desc& layer) {
+  const Placing placing{
+      map_from(layer.map),
+      number_slot(layer.rotation, layer.rotation_map, layer.rotation_set, "vlr_measured_layer_desc.rotation"),
+      number_slot(layer.scale, layer.scale_map, layer.scale_set, "vlr_measured_layer_desc.scale"), layer.aspect};
+  if (!placing.map.invertible()) {
+    throw Error(Status::invalid_argument,
+                "vlr_measured_layer_desc.map contains a number that is not finite, or scales the texture to zero.");
+  }
+  if (!(placing.aspect > 0.0f) || !std::isfinite(placing.aspect)) {
+    throw Error(Status::invalid_argument, "vlr_measured_layer_desc.aspect must be a positive number.");
+  }
+  return placing;
+}
+
 /// Rays meet a silhouette before they meet any layer, so it belongs to the surface.
-void add_silhouette(vlr_shader& shader, const SurfaceMaterial& measured, const TextureMap& map) {
+void add_silhouette(vlr_shader& shader, const SurfaceMaterial& measured, const Placing& placing) {
   if (shader.shell) {
     throw Error(Status::unsupported,
                 "A material can have only one silhouette (VOTF), but two of the mixed models have one. Remove the VOTF "
                 "of one model.");
   }
-  if (map.map != Mat2(1.0f) || map.shift != Vec2(0.0f)) {
+  if (placing.map.map != Mat2(1.0f) || placing.map.shift != Vec2(0.0f) || placing.varies()) {
     throw Error(Status::unsupported,
-                "vlr_measured_layer_desc.map moves a model with a silhouette (VOTF), which lies on the surface's own "
-                "texture coordinates. Place the instance's texture instead.");
+                "vlr_measured_layer_desc.map, .rotation or .scale moves a model with a silhouette (VOTF), which lies "
+                "on the surface's own texture coordinates. Place the instance's texture instead.");
   }
   shader.shell = measured.shell;
   shader.shell_shaded = measured.shell_shaded;
 }
 
 LayerWeight& add_measured(vlr_shader& shader, const vlr_measured_layer_desc& layer) {
-  const TextureMap map = map_from(layer.map);
-  if (!map.invertible()) {
-    throw Error(Status::invalid_argument,
-                "vlr_measured_layer_desc.map contains a number that is not finite, or scales the texture to zero.");
-  }
+  const Placing placing = placing_of(layer);
   SurfaceMaterial measured = measured_surface(layer);
-  if (measured.shell) add_silhouette(shader, measured, map);
+  if (measured.shell) add_silhouette(shader, measured, placing);
   shader.brushed |= measured.brushed;
   shader.relief |= normal_of(layer).is_map();
+  for (const TextureSlot<float>& slot : {placing.rotation, placing.scale}) shader.sets.add(slot);
   shader.sets.add(normal_of(layer).slot());
   const std::optional<NormalMap> normal = normal_of(layer).converted();
-  auto material = with_normals(make_placed(std::move(measured.material), map), normal, ReliefPart::lobe);
+  auto material = with_normals(make_placed(std::move(measured.material), placing), normal, ReliefPart::lobe);
   shader.turned.push_back(nullptr);
   shader.layers.reflecting.push_back({.material = std::move(material), .rec709_colors = true, .lifts_views = !normal});
   return shader.layers.reflecting.back().weight;
@@ -357,8 +369,8 @@ void vlr_layer_desc_init(vlr_layer_desc* desc) {
 void vlr_measured_layer_desc_init(vlr_measured_layer_desc* desc) {
   *desc = {};
   desc->struct_size = sizeof(vlr_measured_layer_desc);
-  desc->map[0] = desc->map[4] = 1.0f;
-  desc->normal_map[0] = desc->normal_map[4] = desc->normal_strength = 1.0f;
+  for (float* map : {desc->map, desc->normal_map, desc->rotation_map, desc->scale_map}) map[0] = map[4] = 1.0f;
+  desc->normal_strength = desc->aspect = 1.0f;
 }
 
 void vlr_factor_desc_init(vlr_factor_desc* desc) {
@@ -412,7 +424,7 @@ vlr_status vlr_shader_weigh_layer(vlr_shader* shader, const vlr_factor_desc* des
   return guard([&] {
     require(shader, "shader");
     const auto factor = read_options(desc, vlr_factor_desc_init, "vlr_factor_desc");
-    require_choice(factor.kind, VLR_FACTOR_TINT, "vlr_factor_desc.kind");
+    require_choice(factor.kind, VLR_FACTOR_LEVEL, "vlr_factor_desc.kind");
     if (!std::isfinite(factor.value)) throw Error(Status::invalid_argument, "vlr_factor_desc.value is not finite.");
     if (shader->last == nullptr) {
       throw Error(Status::invalid_state,
@@ -426,9 +438,13 @@ vlr_status vlr_shader_weigh_layer(vlr_shader* shader, const vlr_factor_desc* des
       return;
     }
     const auto texture = number_slot(factor.texture, factor.map, factor.set, "vlr_factor_desc.texture");
+    const LayerLevel level{factor.level[0], factor.level[1], factor.level[2]};
+    if (!(level.begin <= level.peak && level.peak <= level.end)) {
+      throw Error(Status::invalid_argument, "vlr_factor_desc.level must be three numbers in ascending order.");
+    }
     shader->sets.add(texture);
     shader->opacity.add(texture);
-    shader->last->factors.push_back({static_cast<LayerFactor::Kind>(factor.kind), factor.value, texture});
+    shader->last->factors.push_back({static_cast<LayerFactor::Kind>(factor.kind), factor.value, texture, level});
   });
 }
 

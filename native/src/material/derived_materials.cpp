@@ -53,23 +53,32 @@ class PreparedPlaced final : public PreparedBrdf {
   Frame frame_;
 };
 
+/// Coordinates and axes of a placed material at a point.
+struct PlacedAxes {
+  TextureMap map;
+  Frame frame;
+  bool is_turned;
+};
+
 class PlacedMaterial final : public Material {
  public:
-  PlacedMaterial(std::shared_ptr<const Material> material, const TextureMap& map)
-      : material_(std::move(material)), map_(map), frame_(frame_of(map.map)) {}
+  PlacedMaterial(std::shared_ptr<const Material> material, const Placing& placing)
+      : material_(std::move(material)), placing_(placing), constant_(place_of(placing.map, placing.map.map)) {}
 
   const PreparedBrdf* prepare(const Vec3& wv, const SurfaceSite& site, const PrepareOptions& options,
                               ScratchArena& arena) const override {
-    const PreparedBrdf* const material = material_->prepare(frame_.to_local(wv), placed(site), options, arena);
-    if (frame_.x.x == 1 && frame_.y.y == 1) return material;
-    return arena.make<PreparedPlaced>(material, frame_);
+    const PlacedAxes axes = place_at(site);
+    const PreparedBrdf* const material =
+        material_->prepare(axes.frame.to_local(wv), placed(site, axes.map), options, arena);
+    return axes.is_turned ? arena.make<PreparedPlaced>(material, axes.frame) : material;
   }
 
-  bool varies() const override { return material_->varies(); }
+  bool varies() const override { return material_->varies() || placing_.varies(); }
   Vec2 texels() const override {
     const Vec2 texels = material_->texels();
     if (!material_->varies()) return texels;
-    return {glm::length(map_.map[0] * texels), glm::length(map_.map[1] * texels)};
+    const Mat2& map = placing_.map.map;
+    return {glm::length(map[0] * texels), glm::length(map[1] * texels)};
   }
   bool opaque() const override { return material_->opaque(); }
   float alpha(const SurfaceSite& site) const override { return material_->alpha(placed(site)); }
@@ -81,25 +90,42 @@ class PlacedMaterial final : public Material {
   bool isotropic() const override { return material_->isotropic(); }
 
  private:
-  SurfaceSite placed(const SurfaceSite& site) const {
-    SurfaceSite own = site;
-    own.uv = map_.point(site.uv);
-    own.footprint = map_.map * site.footprint;
-    own.beyond_outline = map_.map * site.beyond_outline;
-    return own;
+  /// `turning`: the linear part of the map on square tiles.
+  static PlacedAxes place_of(const TextureMap& map, const Mat2& turning) {
+    const Frame frame = frame_of(turning);
+    return {map, frame, !(frame.x.x == 1 && frame.y.y == 1)};
   }
 
+  PlacedAxes place_at(const SurfaceSite& site) const {
+    if (!placing_.varies()) return constant_;
+    const float given = placing_.rotation.at_point(site, 0), angle = std::isfinite(given) ? given : 0.0f;
+    const float scale = std::max(Placing::kMinScale, placing_.scale.at_point(site, 1));  // NaN: the least
+    const float c = std::cos(angle), s = std::sin(angle), a = placing_.aspect;
+    const TextureMap& map = placing_.map;
+    const Mat2 rotation(c, -s, s, c), of_tile = Mat2(c, -a * s, s / a, c) / scale;
+    return place_of({of_tile * map.map, of_tile * map.shift}, rotation * map.map);
+  }
+
+  static SurfaceSite placed(const SurfaceSite& site, const TextureMap& map) {
+    SurfaceSite own = site;
+    own.uv = map.point(site.uv);
+    own.footprint = map.map * site.footprint;
+    own.beyond_outline = map.map * site.beyond_outline;
+    return own;
+  }
+  SurfaceSite placed(const SurfaceSite& site) const { return placed(site, place_at(site).map); }
+
   const std::shared_ptr<const Material> material_;
-  const TextureMap map_;
-  const Frame frame_;
+  const Placing placing_;
+  const PlacedAxes constant_;  // where nothing varies
 };
 
 }  // namespace
 
-std::shared_ptr<const Material> make_placed(std::shared_ptr<const Material> material, const TextureMap& map) {
-  const bool unplaced = map.map == Mat2(1.0f) && map.shift == Vec2(0.0f);
+std::shared_ptr<const Material> make_placed(std::shared_ptr<const Material> material, const Placing& placing) {
+  const bool unplaced = placing.map.map == Mat2(1.0f) && placing.map.shift == Vec2(0.0f) && !placing.varies();
   if (unplaced || (material->isotropic() && !material->varies())) return material;
-  return std::make_shared<PlacedMaterial>(std::move(material), map);
+  return std::make_shared<PlacedMaterial>(std::move(material), placing);
 }
 
 namespace {

@@ -9,11 +9,22 @@ namespace velour {
 
 // Materials with texture coordinates of their own.
 
-/// `material` on the texture coordinates `map` (u, v), to which the surface's are mapped, and turned with them about
-/// the normal: its +x is the direction in which its own u grows. Assumes that the surface's u and v grow at right
-/// angles and equally fast, as in most unwrapped meshes. `map` must be invertible. Returns `material` itself where this
-/// changes nothing.
-std::shared_ptr<const Material> make_placed(std::shared_ptr<const Material> material, const TextureMap& map);
+/// Texture coordinates of a material: `map` (u, v) of the surface's. Tiles are then rotated counterclockwise about the
+/// origin by `rotation` (radians) and enlarged by `scale` (at least kMinScale) where these are given.
+struct Placing {
+  static constexpr float kMinScale = 1e-3f;
+
+  TextureMap map{};
+  TextureSlot<float> rotation{}, scale{};
+  float aspect = 1;  // width of a tile divided by its height, above 0
+
+  bool varies() const { return rotation.given() || scale.given(); }
+};
+
+/// `material` on these texture coordinates, and turned with them about the normal: its +x is the direction in which its
+/// own u grows. Assumes that u and v of `map` grow at right angles, and equally fast except for the aspect, as in most
+/// unwrapped meshes. The map must be invertible. Returns `material` itself where this changes nothing.
+std::shared_ptr<const Material> make_placed(std::shared_ptr<const Material> material, const Placing& placing);
 
 // Material that transmits light in addition to reflecting it.
 

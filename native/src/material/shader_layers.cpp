@@ -299,7 +299,13 @@ Rgb PrincipledTop::through(const Vec3& wv, const SurfaceSite& site, const LobeFi
   return through_top(at, cosine(normal), cosine(coat_normal), filter);
 }
 
+float LayerLevel::share(float at) const {
+  if (at < peak) return begin < peak ? std::max((at - begin) / (peak - begin), 0.0f) : 1.0f;
+  return end > peak ? std::max((end - at) / (end - peak), 0.0f) : 1.0f;
+}
+
 float LayerFactor::at(const SurfaceSite& site) const {
+  if (kind == Kind::level) return level.share(texture.at_point(site, value));
   const float given = texture.at(site, value);
   if (kind == Kind::gain) return given;
   const float share = std::clamp(given, 0.0f, 1.0f);

@@ -12,13 +12,23 @@
 
 namespace velour {
 
+/// Where a layer of a sequence is: its share is 1 at `peak` and falls linearly to 0 at its neighbors' peaks. The first
+/// has begin == peak, the last end == peak; their share is 1 beyond. All shares of a sequence add up to 1.
+struct LayerLevel {
+  float begin = 0, peak = 0, end = 0;
+
+  float share(float at) const;
+};
+
 /// One factor of a layer's weight.
 struct LayerFactor {
-  /// share: factor of a mix, in [0, 1]; rest: 1 minus that; gain: any number, below 0 only for emission.
-  enum class Kind : int { share = 0, rest = 1, gain = 2 };  // values of velour.h
+  /// share: factor of a mix, in [0, 1]; rest: 1 minus that; gain: any number, below 0 only for emission; level: the
+  /// share of `level`.
+  enum class Kind : int { share = 0, rest = 1, gain = 2, level = 4 };  // values of velour.h
   Kind kind = Kind::share;
   float value = 1;
   TextureSlot<float> texture{};  // replaces `value`
+  LayerLevel level{};
 
   float at(const SurfaceSite& site) const;
 };

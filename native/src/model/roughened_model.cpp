@@ -255,4 +255,66 @@ PerViewBrdf roughened(const PerViewBrdf& brdf, double roughness) {
   return rougher;
 }
 
+namespace {
+
+/// Finds the narrowest of the lobes at one view.
+class NarrowestLobe {
+ public:
+  /// `bandwidth`: over half vectors, along the narrowest axis. `light`: what the lobe reflects.
+  void add(double bandwidth, double light) {
+    lobes_.push_back({bandwidth, light});
+    total_ += light;
+  }
+  double roughness() const {
+    constexpr double kNoticeable = 0.01;
+    double most = 0;
+    for (const auto& [bandwidth, light] : lobes_) {
+      if (light >= kNoticeable * total_) most = std::max(most, bandwidth);
+    }
+    return most > 0 ? std::min(std::pow(2 / most, 0.25), 1.0) : 1.0;
+  }
+
+ private:
+  struct Lobe {
+    double bandwidth, light;
+  };
+  std::vector<Lobe> lobes_;
+  double total_ = 0;
+};
+
+}  // namespace
+
+double narrowest_roughness(const ParametricBrdf& brdf) {
+  double narrowest = 1;
+  for (const double theta : {0.1, 0.7, 1.2}) {
+    const Vec3d wv(std::sin(theta), 0, std::cos(theta));
+    NarrowestLobe lobes;
+    for (const WarpedLobe& lobe : lobes_at(brdf, wv)) {
+      const double stretched = lobe.bandwidth * std::exp(2 * glm::length(exponents_of(lobe.stretch)));
+      const double light = (lobe.coefficient.x + lobe.coefficient.y + lobe.coefficient.z) * reflected_light(lobe, wv);
+      lobes.add(lobe.space == LobeSpace::half ? stretched : 4 * wv.z * stretched, light);
+    }
+    narrowest = std::min(narrowest, lobes.roughness());
+  }
+  return narrowest;
+}
+
+double narrowest_roughness(const PerViewBrdf& brdf) {
+  double narrowest = 1;
+  for (size_t view = 0; view < brdf.views.size(); ++view) {
+    NarrowestLobe lobes;
+    for (size_t j = brdf.first_lobe[view]; j < brdf.first_lobe[view + 1]; ++j) {
+      const auto bandwidth = static_cast<double>(brdf.bandwidth[j]);
+      const Rgb c = brdf.coefficient[j];
+      const double light = static_cast<double>(c.r + c.g + c.b) * kernel_integral(brdf.kernel, bandwidth);
+      // The Gaussian kernel of the same mean cosine.
+      const double gaussian =
+          brdf.kernel == Kernel::gaussian ? bandwidth : gaussian_bandwidth_of_mean(1 - bandwidth);
+      lobes.add(4 * static_cast<double>(std::max(brdf.views[view].z, kMinViewCosine)) * gaussian, light);
+    }
+    narrowest = std::min(narrowest, lobes.roughness());
+  }
+  return narrowest;
+}
+
 }  // namespace velour

@@ -12,6 +12,11 @@ namespace velour {
 /// other numbers. Negative ones are refused because a highlight is a sum of lobes, which would come apart if narrowed.
 Model roughened(const Model& model, float roughness);
 
+/// Roughness of a GGX highlight about as narrow as the narrowest lobe that reflects a noticeable share of the light at
+/// some view, in [0, 1]: the inverse of half_bandwidth_of_roughness(). 1 without lobes.
+double narrowest_roughness(const PerViewBrdf& brdf);
+double narrowest_roughness(const ParametricBrdf& brdf);
+
 /// Roughened bodies of models. Requires 0 < roughness <= 1.
 PerViewBrdf roughened(const PerViewBrdf& brdf, double roughness);
 ParametricBrdf roughened(const ParametricBrdf& brdf, double roughness);

@@ -14,7 +14,7 @@ _USUAL = {} if bpy.app.version >= (5, 0) else {**BLACK, "base_color": (0.8, 0.8,
 
 
 class Factor(NamedTuple):
-    kind: str  # "share" of a mix, its "rest", a "gain", or a "tint", whose value is a color
+    kind: str  # "share" of a mix, its "rest", a "gain", a "tint" or a "level", as for Shader.weigh_layer
     value: float | tuple = 1.0
     picture: object = None  # image_nodes.Picture, corner_colors.CornerColors or Computed that replaces it
 
@@ -78,10 +78,10 @@ def as_principled(layers):
 
 
 def as_measured(layers):
-    """The Measured of a material that is one measured model and nothing else; None if it is mixed."""
+    """The Measured of a material that is one measured model with a constant look; None if it is mixed."""
     if len(layers) != 1 or layers[0].factors or layers[0].relief or layers[0].coat_relief:
         return None
-    return layers[0].measured
+    return None if layers[0].pictures else layers[0].measured
 
 
 def shines(layer):

@@ -1,9 +1,11 @@
 """Groups that contain a measured model, as layers."""
 
+import math
 from typing import Any, NamedTuple
 
 import numpy as np
 
+from ...core.model_warnings import roughness_reason
 from ..image_nodes import UnsupportedError, uv_map_of
 from ..measured_look import INPUTS, MeasuredLook, former_look
 from ..nodes import MeasuredNode, model_texture
@@ -12,9 +14,65 @@ from .relief import read_relief
 from .values import is_constant, own_value
 
 
+VARYING = ("roughness", "rotation", "scale")  # fields of MeasuredLook that a layer's pictures may replace
+_STEP = 2.0  # largest ratio of squared GGX alphas of neighboring levels
+_LEAST_ROUGHNESS = 0.08  # of the narrowest highlight that levels resolve
+
+
 class Measured(NamedTuple):
     node: Any  # MeasuredNode
     look: MeasuredLook
+
+    def with_look(self, **values):
+        return self._replace(look=self.look._replace(**values))
+
+
+def with_effect(layer, info):
+    """A measured layer without the pictures that its model does not support, and sentences on these.
+
+    What pictures replace is neutral in the layer's look. `info`: of its model, measurement or BTF.
+    """
+    measured, pictures, said = layer.measured, {}, []
+    reason = roughness_reason(info, measured.node.velour.use_reference)
+    for name, picture in layer.pictures.items():
+        if name == "roughness" and reason:
+            said.append(reason)
+        elif "shell" in info and not measured.node.velour.use_reference:
+            said.append(
+                f"node '{measured.node.group.name}': the link to '{INPUTS[name]}' is not supported for models"
+                " with a silhouette (VOTF); the value of the input is used."
+            )
+        else:
+            pictures[name] = picture
+            measured = measured.with_look(**{name: MeasuredLook._field_defaults[name]})
+    return layer._replace(pictures=pictures, measured=measured), said
+
+
+def levels_of(narrowest):
+    """Roughness offsets from 0 to 1 whose models, mixed with their neighbors, replace those in between.
+
+    Squared alphas add up, so each makes a highlight of roughness `narrowest` wider by the same factor.
+    """
+    own = max(narrowest, _LEAST_ROUGHNESS) ** 4
+    count = max(math.ceil(math.log(1.0 + 1.0 / own, _STEP)), 1)
+    return [min(own * ((1.0 + 1.0 / own) ** (k / count) - 1.0), 1.0) ** 0.25 for k in range(count + 1)]
+
+
+def roughness_levels(layer, narrowest):
+    """Layers with constant roughness offsets whose sum is a measured layer with a varying one."""
+    picture = layer.pictures["roughness"]
+    pictures = {name: each for name, each in layer.pictures.items() if name != "roughness"}
+    levels = levels_of(narrowest)
+    return [
+        layer._replace(
+            pictures=pictures,
+            measured=layer.measured.with_look(roughness=level),
+            factors=(*layer.factors, Factor("level", (before, level, after), picture)),
+        )
+        for before, level, after in zip(
+            [levels[0], *levels[:-1]], levels, [*levels[1:], levels[-1]], strict=True
+        )
+    ]
 
 
 def former_layer(node):
@@ -25,18 +83,18 @@ def former_layer(node):
 def read_measured(plug, reader):
     node = MeasuredNode(model_texture(plug.node.node_tree), plug.node)
     tint, picture = reader.number(plug.input(INPUTS["tint"])) if plug.input("Tint") else ((1.0,) * 3, None)
-    values = {
-        name: reader.value(plug.input(INPUTS[name]))
-        for name in ("roughness", "rotation", "scale")
-        if plug.input(INPUTS[name])
-    }
+    values, pictures = {}, {}
+    for name in VARYING:
+        if socket := plug.input(INPUTS[name]):
+            values[name], found = reader.number(socket)
+            pictures |= {name: found} if found else {}
     values["exposure"], gains = _exposure(plug.input(INPUTS["exposure"]), reader)
     values |= _read_vector(plug.input("Vector"), reader)
     # A picture replaces the color of its factor; the look keeps the rest.
     factors = (*((Factor("tint", tint, picture),) if picture else ()), *gains)
     look = MeasuredLook((1.0,) * 3 if picture else tint, **values)
     relief = read_relief(plug, reader) if plug.input("Normal") else None
-    return [Layer("measured", {}, {}, factors, relief, measured=Measured(node, look))]
+    return [Layer("measured", {}, pictures, factors, relief, measured=Measured(node, look))]
 
 
 def _exposure(plug, reader):

@@ -4,6 +4,7 @@
 #include "btf/model/tensor_btf.h"
 #include "btf/model/tensor_evaluator.h"
 #include "model/file/record_json.h"
+#include "model/roughened_model.h"
 
 namespace velour::capi {
 
@@ -147,6 +148,7 @@ Json own_json(const PerViewBrdf& brdf) {
   return {{"kernel", kernel_name(brdf.kernel)},
           {"isotropic", brdf.isotropic},
           {"views", brdf.views.size()},
+          {"narrowest_roughness", narrowest_roughness(brdf)},
           {"max_lobes_per_view", brdf.max_lobes_per_view()}};
 }
 
@@ -155,6 +157,7 @@ Json own_json(const ParametricBrdf& brdf) {
   return {{"kernel", kernel_name(Kernel::gaussian)},
           {"isotropic", brdf.isotropic},
           {"cells", brdf.cells},
+          {"narrowest_roughness", narrowest_roughness(brdf)},
           {"symmetric", brdf.symmetric},
           {"view_range", views_json(brdf.views)},
           {"spaces", {{"light", brdf.lobe_count() - half}, {"half", half}}}};

@@ -1,6 +1,7 @@
 #include "math/srbf/kernel.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "math/sphere/frame.h"
@@ -167,22 +168,55 @@ double kernel_integral_above(Kernel kernel, double bandwidth, double cosine) {
   return kernel_integral(kernel, bandwidth) * sum / kZeniths;
 }
 
+namespace {
+
+struct LatticePoint {
+  double u, cosine, sine;  // of the azimuth
+  double radius, height;   // of the direction that it samples from the cosine
+};
+
+/// A Fibonacci lattice.
+const std::array<LatticePoint, kDraws>& lattice() {
+  static const auto points = [] {
+    std::array<LatticePoint, kDraws> made;
+    for (int i = 0; i < kDraws; ++i) {
+      const double u = (i + 0.5) / kDraws, phi = 2 * kPiD * std::fmod(i * kGoldenRatio, 1.0);
+      made[static_cast<size_t>(i)] = {u, std::cos(phi), std::sin(phi), std::sqrt(u), std::sqrt(1 - u)};
+    }
+    return made;
+  }();
+  return points;
+}
+
+/// Integrand over the sum of both densities. `jacobian`: warp_jacobian().
+double weighed(double kernel, double cosine, double jacobian, double integral) {
+  return kernel * cosine / (kernel * jacobian / integral + cosine / kPiD);
+}
+
+/// weighed() at the light direction of a unit `psi`, whose kernel is known. With v = S^-1 psi, |S v / |v|| is 1 / |v|.
+double weighed_at(const WarpedLobe& lobe, const Vec3d& psi, double kernel, double integral, const Vec3d& wv) {
+  const Stretch& s = lobe.stretch;
+  const Vec3d v(s.yy * psi.x - s.xy * psi.y, s.xx * psi.y - s.xy * psi.x, psi.z);
+  const double length = glm::length(v), cube = length * length * length;
+  const Vec3d eta = v / length;
+  if (lobe.space == LobeSpace::light) return eta.z > 0 ? weighed(kernel, eta.z, cube, integral) : 0.0;
+  const double cosine = glm::dot(eta, wv), height = 2 * cosine * eta.z - wv.z;
+  return cosine > 0 && height > 0 ? weighed(kernel, height, cube / (4 * cosine), integral) : 0.0;
+}
+
+}  // namespace
+
 double reflected_light(const WarpedLobe& lobe, const Vec3d& wv) {
   const Frame frame = Frame::about(Vec3(lobe.center));
-  const double integral = kernel_integral(Kernel::gaussian, lobe.bandwidth);
+  const Vec3d x(frame.x), y(frame.y);
+  const double integral = kernel_integral(Kernel::gaussian, lobe.bandwidth), least = std::exp(-2 * lobe.bandwidth);
   double sum = 0;
-  const auto add = [&](const Vec3d& wl) {
-    const double kernel = warped_kernel(lobe, wl, wv), cosine = wl.z;
-    sum += kernel * cosine / (kernel * warp_jacobian(lobe, wl, wv) / integral + cosine / kPiD);
-  };
-  for (int i = 0; i < kDraws; ++i) {  // a Fibonacci lattice samples both the lobe and the cosine
-    const double u = (i + 0.5) / kDraws, phi = 2 * kPiD * std::fmod(i * kGoldenRatio, 1.0);
-    const double c = std::cos(phi), s = std::sin(phi);
-    const double d = kernel_sample(Kernel::gaussian, lobe.bandwidth, u), sine = std::sqrt(d * (2 - d));
-    const Vec3d psi = sine * (c * Vec3d(frame.x) + s * Vec3d(frame.y)) + (1 - d) * lobe.center;
-    const auto wl = unwarped(lobe, glm::normalize(psi), wv);
-    if (wl && wl->z > 0) add(*wl);
-    add({std::sqrt(u) * c, std::sqrt(u) * s, std::sqrt(1 - u)});
+  for (const LatticePoint& p : lattice()) {  // samples both the lobe and the cosine
+    const double d = kernel_sample(Kernel::gaussian, lobe.bandwidth, p.u), sine = std::sqrt(d * (2 - d));
+    const Vec3d psi = sine * (p.cosine * x + p.sine * y) + (1 - d) * lobe.center;
+    sum += weighed_at(lobe, psi, p.u + (1 - p.u) * least, integral, wv);
+    const Vec3d wl(p.radius * p.cosine, p.radius * p.sine, p.height);
+    sum += weighed(warped_kernel(lobe, wl, wv), wl.z, warp_jacobian(lobe, wl, wv), integral);
   }
   return sum / kDraws;
 }

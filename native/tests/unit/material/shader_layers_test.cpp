@@ -318,7 +318,7 @@ TEST(PlacedMaterial, MovesAndTurnsTheTexture) {
   const auto btf = cloth();
   const float c = std::cos(0.7f), s = std::sin(0.7f);
   const TextureMap map{Mat2({2 * c, -2 * s}, {2 * s, 2 * c}), {0.1f, 0.2f}};  // the texture turns by 0.7
-  const auto placed = make_placed(btf, map);
+  const auto placed = make_placed(btf, {.map = map});
   const SurfaceSite site{.uv = {0.3f, 0.6f}, .footprint = Mat2(0.05f)};
   const SurfaceSite own{.uv = map.point(site.uv), .footprint = map.map * site.footprint};
   const Mat3 turn({c, s, 0}, {-s, c, 0}, {0, 0, 1});  // from the texture's frame to the surface's
@@ -327,7 +327,7 @@ TEST(PlacedMaterial, MovesAndTurnsTheTexture) {
     expect_near(f_at(*placed, site, turn * wv, turn * wl), f_at(*btf, own, wv, wl));
   }
   const TextureMap mirror{Mat2({-1, 0}, {0, 1}), {0, 0}};
-  const auto mirrored = make_placed(btf, mirror);
+  const auto mirrored = make_placed(btf, {.map = mirror});
   const SurfaceSite across{.uv = mirror.point(site.uv), .footprint = mirror.map * site.footprint};
   for (const Vec3& wl : sphere_fibonacci(20)) {
     const Vec3 flipped(-wl.x, wl.y, wl.z);
@@ -335,7 +335,43 @@ TEST(PlacedMaterial, MovesAndTurnsTheTexture) {
   }
   EXPECT_EQ(make_placed(btf, {}), btf);
   const auto plain = matte(Rgb(1));
-  EXPECT_EQ(make_placed(plain, map), plain);
+  EXPECT_EQ(make_placed(plain, {.map = map}), plain);
+}
+
+TextureSlot<float> numbers(std::vector<float> values) {
+  const auto count = static_cast<int>(values.size());
+  return TextureSlot<float>(std::make_shared<const Texture<float>>(count, 1, std::move(values), TextureOptions{}));
+}
+
+TEST(MeasuredLayer, TexturesRotateAndScaleTiles) {
+  const auto btf = cloth();
+  const TextureMap base{Mat2({3, 0}, {0, 3}), {0.1f, 0.2f}};
+  const float angle = 0.7f, scale = 2, aspect = 1.5f;
+  const auto placed =
+      make_placed(btf, {.map = base, .rotation = numbers({angle}), .scale = numbers({scale}), .aspect = aspect});
+  EXPECT_TRUE(placed->varies());
+  // Tiles of 1.5 x 1 turn as a whole, so their coordinates shear.
+  const Mat2 tile({aspect, 0}, {0, 1}), turn({std::cos(angle), std::sin(angle)}, {-std::sin(angle), std::cos(angle)});
+  const Mat2 moved = glm::inverse(tile) * glm::inverse(turn) * tile / scale;
+  const SurfaceSite site{.uv = {0.3f, 0.6f}, .footprint = Mat2(0.05f)};
+  const SurfaceSite own{.uv = moved * base.point(site.uv), .footprint = moved * base.map * site.footprint};
+  const auto turned = [&](const Vec3& w) { return Vec3(turn * Vec2(w.x, w.y), w.z); };
+  const Vec3 wv = direction(0.5f, 1);
+  for (const Vec3& wl : sphere_fibonacci(20)) {
+    expect_near(f_at(*placed, site, turned(wv), turned(wl)), f_at(*btf, own, wv, wl));
+  }
+}
+
+TEST(MeasuredLayer, SharesOfLevelsAddUpToOne) {
+  const LayerLevel levels[]{{0, 0, 0.1f}, {0, 0.1f, 0.4f}, {0.1f, 0.4f, 1}, {0.4f, 1, 1}};
+  for (const float at : {-1.0f, 0.0f, 0.03f, 0.1f, 0.25f, 0.4f, 0.9f, 1.0f, 2.0f}) {
+    float sum = 0;
+    for (const LayerLevel& level : levels) sum += level.share(at);
+    EXPECT_NEAR(sum, 1, 1e-6f) << at;
+  }
+  const LayerFactor factor{.kind = LayerFactor::Kind::level, .texture = numbers({0.25f}), .level = levels[1]};
+  EXPECT_NEAR(factor.at({}), 0.5f, 1e-6f);
+  EXPECT_EQ(levels[1].share(0.4f), 0);
 }
 
 }  // namespace
