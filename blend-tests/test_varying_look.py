@@ -1,4 +1,4 @@
-"""Inputs of a measured node that vary over the surface: each point looks as with the constant of its value."""
+"""Inputs of a measured node that vary over the surface: a point looks as with the constant of its value."""
 
 import math
 

@@ -92,9 +92,9 @@ class Shader(Handle):
         uv_map: from the surface's texture coordinates to those of the layer; it also turns an anisotropic
         BRDF. A model with a silhouette (VOTF) must not be moved, and gives it to the material, which can have
         only one. neighbors, most_bytes: as for Scene.add_model_material and Scene.add_btf_material. normal,
-        normal_strength, normal_correction: as for add_layer. rotation (radians, counterclockwise), scale: move
-        the layer by point, after uv_map and about the origin of its coordinates; aspect: of its tiles, width
-        divided by height.
+        normal_strength, normal_correction: as for add_layer. rotation (radians, counterclockwise), scale:
+        move the layer by point, after uv_map and about the origin of its coordinates; aspect: of its tiles,
+        width divided by height.
         """
         desc = structs.MeasuredLayerDesc()
         self._lib.vlr_measured_layer_desc_init(byref(desc))
@@ -123,9 +123,10 @@ class Shader(Handle):
     ) -> None:
         """Multiplies the weight of the last layer: by `share` of a mix, its `rest` (1 - share), or a `gain`.
 
-        `tint`: a color [3] in the working space that multiplies the layer's light. `level`: the share of a layer
-        in a sequence for levels of a number; value: the level before, its own and the one after, ascending,
-        equal at the ends. A texture replaces the value; it has colors for a tint, otherwise numbers.
+        `tint`: a color [3] in the working space that multiplies the layer's light. `level`: the share of a
+        layer in a sequence for levels of a number; value: the level before, its own and the one after,
+        ascending, equal at the ends. A texture replaces the value, or the number whose level it is; it has
+        colors for a tint, otherwise numbers.
         """
         desc = structs.FactorDesc()
         self._lib.vlr_factor_desc_init(byref(desc))

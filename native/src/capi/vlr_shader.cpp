@@ -439,8 +439,8 @@ vlr_status vlr_shader_weigh_layer(vlr_shader* shader, const vlr_factor_desc* des
     }
     const auto texture = number_slot(factor.texture, factor.map, factor.set, "vlr_factor_desc.texture");
     const LayerLevel level{factor.level[0], factor.level[1], factor.level[2]};
-    if (!(level.begin <= level.peak && level.peak <= level.end)) {
-      throw Error(Status::invalid_argument, "vlr_factor_desc.level must be three numbers in ascending order.");
+    if (!(level.begin <= level.peak && level.peak <= level.end) || !std::isfinite(level.end - level.begin)) {
+      throw Error(Status::invalid_argument, "vlr_factor_desc.level must be three finite numbers in ascending order.");
     }
     shader->sets.add(texture);
     shader->opacity.add(texture);

@@ -308,8 +308,7 @@ double narrowest_roughness(const PerViewBrdf& brdf) {
       const Rgb c = brdf.coefficient[j];
       const double light = static_cast<double>(c.r + c.g + c.b) * kernel_integral(brdf.kernel, bandwidth);
       // The Gaussian kernel of the same mean cosine.
-      const double gaussian =
-          brdf.kernel == Kernel::gaussian ? bandwidth : gaussian_bandwidth_of_mean(1 - bandwidth);
+      const double gaussian = brdf.kernel == Kernel::gaussian ? bandwidth : gaussian_bandwidth_of_mean(1 - bandwidth);
       lobes.add(4 * static_cast<double>(std::max(brdf.views[view].z, kMinViewCosine)) * gaussian, light);
     }
     narrowest = std::min(narrowest, lobes.roughness());

@@ -85,7 +85,7 @@ TEST(Misuse, ShadersAreChecked) {
   EXPECT_STATUS(VLR_INVALID_ARGUMENT, vlr_shader_add_layer(shader, &layer));
   EXPECT_NE(std::string(vlr_last_error()).find("vlr_layer_desc.kind is 8"), std::string::npos);
   ASSERT_EQ(VLR_OK, vlr_shader_add_layer(shader, nullptr));
-  factor.kind = VLR_FACTOR_TINT + 1;
+  factor.kind = VLR_FACTOR_LEVEL + 1;
   EXPECT_STATUS(VLR_INVALID_ARGUMENT, vlr_shader_weigh_layer(shader, &factor));
   factor.kind = VLR_FACTOR_GAIN;
   factor.value = NAN;
@@ -95,12 +95,22 @@ TEST(Misuse, ShadersAreChecked) {
   factor.kind = VLR_FACTOR_TINT;
   factor.color[1] = NAN;
   EXPECT_STATUS(VLR_INVALID_ARGUMENT, vlr_shader_weigh_layer(shader, &factor));
+  factor.kind = VLR_FACTOR_LEVEL;
+  EXPECT_EQ(VLR_OK, vlr_shader_weigh_layer(shader, &factor));
+  for (const float last : {-1.0f, INFINITY, NAN}) {
+    factor.level[2] = last;
+    EXPECT_STATUS(VLR_INVALID_ARGUMENT, vlr_shader_weigh_layer(shader, &factor));
+  }
   vlr_measured_layer_desc measured;
   vlr_measured_layer_desc_init(&measured);
   EXPECT_STATUS(VLR_INVALID_ARGUMENT, vlr_shader_add_measured_layer(shader, &measured));
   measured.map[0] = measured.map[4] = 0;
   EXPECT_STATUS(VLR_INVALID_ARGUMENT, vlr_shader_add_measured_layer(shader, &measured));
   EXPECT_NE(std::string(vlr_last_error()).find("vlr_measured_layer_desc.map"), std::string::npos);
+  measured.map[0] = measured.map[4] = 1;
+  measured.aspect = 0;
+  EXPECT_STATUS(VLR_INVALID_ARGUMENT, vlr_shader_add_measured_layer(shader, &measured));
+  EXPECT_NE(std::string(vlr_last_error()).find("vlr_measured_layer_desc.aspect"), std::string::npos);
   vlr_scene* scene = nullptr;
   uint32_t material = 7;
   ASSERT_EQ(VLR_OK, vlr_scene_create(&scene));

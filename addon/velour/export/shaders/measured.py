@@ -13,7 +13,6 @@ from .layer import Factor, Layer
 from .relief import read_relief
 from .values import is_constant, own_value
 
-
 VARYING = ("roughness", "rotation", "scale")  # fields of MeasuredLook that a layer's pictures may replace
 _STEP = 2.0  # largest ratio of squared GGX alphas of neighboring levels
 _LEAST_ROUGHNESS = 0.08  # of the narrowest highlight that levels resolve
