@@ -114,15 +114,15 @@ VLR_API vlr_status vlr_model_roughened(const vlr_model* model, float roughness, 
 /* JSON: kind "model", model "scattered" (per-view) or "parametric", kernel, isotropic, lobes, bytes, parameter_bytes,
  * relative_l2, by_view_angle, albedo_by_view_angle, albedo_max, reciprocity, measured_reciprocity, tolerance, seed,
  * all_data, warning_codes, order (as of a fit), source {name, format, sha256}, narrowest_roughness (of a GGX highlight
- * about as narrow as the narrowest lobe that matters, 0 to 1). Per-view: also views, max_lobes_per_view. Parametric: also cells, symmetric, view_range [from, to] in degrees, spaces {light, half}, the
- * numbers of lobes in each. BTFs (model "factored-btf", "srbf-btf" or "tensor-btf") have instead: method, psnr,
- * psnr_held_out, ser, relative_l2, p99, raw_bytes, seed, warning_codes, tolerance, order, search, shapes (as of a fit),
- * texels, tile_metres, views, lights, companding; components, or coefficients (of the side that has most) and, for
- * SRBFs, lobes; and sides: view and light ("above", "below"), parameter_bytes, as (null, or the index of the side that
- * serves this one, whose own fields are null) and lobes {tile, texel}, or clusters, members, ranks {texel, view, light,
- * color}, relief (whether there is one), table_bytes and bytes of each part {coefficients, members, relief, factors,
- * cores, scales}, which add up to parameter_bytes. Also scene (as of a fit) for scene models, and shell for models with
- * a VOTF. */
+ * about as narrow as the narrowest lobe that matters, 0 to 1). Per-view: also views, max_lobes_per_view. Parametric:
+ * also cells, symmetric, view_range [from, to] in degrees, spaces {light, half}, the numbers of lobes in each. BTFs
+ * (model "factored-btf", "srbf-btf" or "tensor-btf") have instead: method, psnr, psnr_held_out, ser, relative_l2, p99,
+ * raw_bytes, seed, warning_codes, tolerance, order, search, shapes (as of a fit), texels, tile_metres, views, lights,
+ * companding; components, or coefficients (of the side that has most) and, for SRBFs, lobes; and sides: view and light
+ * ("above", "below"), parameter_bytes, as (null, or the index of the side that serves this one, whose own fields are
+ * null) and lobes {tile, texel}, or clusters, members, ranks {texel, view, light, color}, relief (whether there is
+ * one), table_bytes and bytes of each part {coefficients, members, relief, factors, cores, scales}, which add up to
+ * parameter_bytes. Also scene (as of a fit) for scene models, and shell for models with a VOTF. */
 VLR_API vlr_status vlr_model_info_json(vlr_model* model, const char** json);
 /* Like vlr_measurement_eval; also returns the density of the model's own sampler if `pdf` [count] is not NULL. */
 VLR_API vlr_status vlr_model_eval(const vlr_model* model, const float* wv, uint64_t count, const float* wl, float* f,
