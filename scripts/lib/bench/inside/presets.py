@@ -26,7 +26,9 @@ def main(task):
 def write(task):
     """`task`: path of the .blend, folder of the presets, ids of the catalogs of materials and of groups by
     name."""
-    for preset in presets.listed(task["folder"]):
+    found = presets.listed(task["folder"])
+    for number, preset in enumerate(found, 1):
+        print(f"[{number}/{len(found)}] {preset.name}", flush=True)  # as scripts/build counts them
         # Assets are not refitted where they are used: they are right in Blender 3.5 and newer.
         with mock.patch.object(approximation_group, "MASKING", "correlated"):
             bpy.ops.velour.add_preset(preset=preset.name, directory=task["folder"], assign=False)
