@@ -103,7 +103,7 @@ class Panels(BlenderTest):
         context, found = self._of_a_material(), set()
         context.object.velour.is_tile = context.collection.velour.is_tile = True
         tabs = {getattr(panel, "bl_context", "") for panel in bpy.types.Panel.__subclasses__()}
-        for info in ({"texels": (8, 8)}, {}):
+        for info in ({"texels": (8, 8), "source": {"name": "", "sha256": ""}}, {}):
             with mock.patch.object(material_panel, "model_summary", lambda _image, info=info: info):
                 self.assertNotIn("velour.cancel_fit", self._offered(VELOUR_MATERIAL_PT_measured, context))
                 context.window_manager.velour.running = True
@@ -124,6 +124,19 @@ class Panels(BlenderTest):
             self.assertEqual("velour.compress_btf" in offered, is_btf, name)
             self.assertEqual("velour.estimate_fit" in offered, is_btf, name)
             self.assertEqual("velour.fit" in offered, not is_btf, name)
+
+    def test_the_verdict_on_a_btf_offers_a_larger_model(self):
+        context = self._of_a_material()
+        node = scenes.velour_node(context.material)
+        node.velour.measurement = measured.file_image(str(self.folder / "cloth.btf"))
+        verdict = {"quality": "fair", "flip_mean": 0.07, "flip_95": 0.2, "reason": "everywhere", "value": 0}
+        info = {"model": "srbf-btf", "texels": (8, 8), "parameter_bytes": 1e5, "raw_bytes": 1e8}
+        info |= {"source": {"name": "cloth", "sha256": ""}, "verdict": verdict, "warning_codes": []}
+        with mock.patch.object(material_panel, "model_summary", return_value=info):
+            offered = self._offered(VELOUR_MATERIAL_PT_measured, context)
+            told = "".join(self._layout(VELOUR_MATERIAL_PT_measured, context).labels)
+        self.assertEqual(offered.count("velour.compress_btf"), 2)
+        self.assertIn("Fair: differs at all views; larger model?", told)
 
     def test_a_model_that_is_missing_is_told_where_the_tab_begins(self):
         context = self._of_a_material()

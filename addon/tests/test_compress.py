@@ -19,7 +19,8 @@ COUNTS = {
 }  # fmt: skip
 COMPRESS_KEYS = [
     "bytes", "parameter_bytes", "ratio", "psnr", "psnr_held_out", "ser", "relative_l2", "p99",
-    "evaluations_per_second", "seconds", "warnings", "warning_codes", "tolerance", "order", "search",
+    "evaluations_per_second", "seconds", "verdict", "warnings", "warning_codes", "tolerance", "order",
+    "search",
 ]  # fmt: skip
 BYTES = {"srbf": 12000, "svd": 60000, "svd-view": 60000, **dict.fromkeys(TENSORS, 20000)}
 

@@ -113,6 +113,14 @@ def test_good_and_noise_have_no_remedy():
         assert line(model).remedy is None
 
 
+def test_a_larger_model_of_a_btf():
+    tile = {"model": "srbf-btf", "texels": [32, 32], "parameter_bytes": 100_000, "raw_bytes": 40_000_000}
+    found = line(info("fair", "everywhere", **tile))
+    assert found.text == "Fair: differs at all views; larger model?"
+    assert found.remedy.settings == {"megabytes": 0.4}
+    assert line(info("fair", "everywhere", **tile | {"raw_bytes": 1_000_000})).remedy is None
+
+
 def test_models_without_a_verdict_have_no_line():
     assert line({"verdict": None, "warning_codes": []}) is None
     assert line({"warning_codes": []}) is None

@@ -9,6 +9,8 @@ from typing import NamedTuple
 
 MAX_LOBES = {"parametric": 32, "scattered": 64}
 _MIN_ERROR = 0.0005  # of the setting Max Error
+_BTF_GROWTH = 4  # factor on the bytes of a BTF's model
+_MOST_OF_BTF = 0.25  # largest share of the BTF's bytes
 
 # What follows "Fair: " and "Poor: ", by reasons that have no words of their own below.
 REASONS = {
@@ -25,7 +27,7 @@ class Remedy(NamedTuple):
     label: str  # of the button that fits again
     question: str
     advice: str
-    settings: dict  # properties of the operator velour.fit
+    settings: dict  # properties of the operator velour.fit, for BTFs of velour.compress_btf
 
 
 class Line(NamedTuple):
@@ -95,6 +97,11 @@ def _reason(verdict: dict) -> str:
 
 def _remedy(info: dict) -> Remedy | None:
     """The next larger model: more lobes if the fit ran out of them, otherwise a smaller error."""
+    if "texels" in info:
+        size = _BTF_GROWTH * info["parameter_bytes"]
+        if size > _MOST_OF_BTF * info["raw_bytes"]:
+            return None
+        return Remedy("Larger Model", "larger model?", "Fit a larger model", {"megabytes": size / 1e6})
     order = info.get("order") or {}
     if "model" not in info or not order.get("lobes"):
         return None

@@ -14,6 +14,7 @@ from ..operators.accept_file import VELOUR_OT_accept_file
 from ..operators.add_material import VELOUR_OT_add_material
 from ..operators.approximation_group import is_editable
 from ..operators.asked_fit import refitted_as
+from ..operators.compress_btf import VELOUR_OT_compress_btf
 from ..operators.convert import VELOUR_OT_convert_materials
 from ..operators.fit import VELOUR_OT_fit
 from ..operators.load_material import VELOUR_OT_load_material
@@ -73,7 +74,7 @@ class VELOUR_MATERIAL_PT_measured(MaterialPanel, bpy.types.Panel):
 
 def _draw_verdict(context, layout, node, info):
     """Draws one line on how the model looks, with a button that does what it advises."""
-    if not info or "texels" in info:
+    if not info:
         return
     measurement = node.velour.measurement
     line = verdict.line_for(info, measurement.velour.sha256 if measurement is not None else None)
@@ -81,8 +82,13 @@ def _draw_verdict(context, layout, node, info):
         return
     draw_sentence(context, layout, line.text, icon="CHECKMARK" if line.is_good else "INFO")
     if line.remedy is not None and measurement is not None:
-        operator = layout.operator(VELOUR_OT_fit.bl_idname, text=line.remedy.label, icon="FILE_REFRESH")
-        for name, value in line.remedy.settings.items():
+        fits, whose = (
+            (VELOUR_OT_compress_btf, {"material": context.material.name})
+            if "texels" in info
+            else (VELOUR_OT_fit, {})
+        )
+        operator = layout.operator(fits.bl_idname, text=line.remedy.label, icon="FILE_REFRESH")
+        for name, value in (line.remedy.settings | whose).items():
             setattr(operator, name, value)
 
 

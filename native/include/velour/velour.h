@@ -117,8 +117,9 @@ VLR_API vlr_status vlr_model_roughened(const vlr_model* model, float roughness, 
  * about as narrow as the narrowest lobe that matters, 0 to 1). Per-view: also views, max_lobes_per_view. Parametric:
  * also cells, symmetric, view_range [from, to] in degrees, spaces {light, half}, the numbers of lobes in each. BTFs
  * (model "factored-btf", "srbf-btf" or "tensor-btf") have instead: method, psnr, psnr_held_out, ser, relative_l2, p99,
- * raw_bytes, seed, warning_codes, tolerance, order, search, shapes (as of a fit), texels, tile_metres, views, lights,
- * companding; components, or coefficients (of the side that has most) and, for SRBFs, lobes; and sides: view and light
+ * raw_bytes, seed, verdict, warning_codes, tolerance, order, search, shapes (as of a fit), texels, tile_metres, views,
+ * lights, companding; components, or coefficients (of the side that has most) and, for SRBFs, lobes; and sides: view
+ * and light
  * ("above", "below"), parameter_bytes, as (null, or the index of the side that serves this one, whose own fields are
  * null) and lobes {tile, texel}, or clusters, members, ranks {texel, view, light, color}, relief (whether there is
  * one), table_bytes and bytes of each part {coefficients, members, relief, factors, cores, scales}, which add up to
@@ -272,7 +273,7 @@ typedef struct vlr_fit_options {
 VLR_API void vlr_fit_options_init(vlr_fit_options* options);
 /* Result: a model. JSON: lobes, bytes, parameter_bytes, seconds, relative_l2, by_view_angle, albedo_max,
  * reciprocity, measured_reciprocity, verdict {quality "good", "fair" or "poor", flip_mean, flip_95, reason, value}:
- * whether pictures of the model look like pictures of the measurement (brdf/verdict/verdict.h), or null,
+ * whether pictures of the model look like pictures of the measurement (verdict/verdict.h), or null,
  * warning_codes, order {lobes [], parameter_bytes [], worst [], relative_l2 [], chosen}: how the error falls as the
  * model grows. `worst` is the largest relative L2 over tolerance of any fitted view, `chosen` the index of the
  * model's own point, or null. Parametric: also view_range [from, to], the view angles in degrees that the model
@@ -360,14 +361,14 @@ typedef struct vlr_compress_options {
 } vlr_compress_options;
 VLR_API void vlr_compress_options_init(vlr_compress_options* options);
 /* Fits a model to a BTF; vlr_job_result_model returns it. JSON: bytes, parameter_bytes, ratio (raw half floats /
- * bytes), psnr, psnr_held_out (null without held_out), ser, relative_l2, p99, evaluations_per_second, seconds,
- * warning_codes, tolerance, order as of vlr_fit_create_job (lobes: coefficients of a texel, or components; worst:
- * relative_l2 over the tolerance, or relative_l2 without one), search [{coefficients, parameter_bytes, expected,
- * relative_l2}], the fits in their order; for clustered tensors shapes [{clusters, members, texel_rank, view_rank,
- * light_rank, color_rank, parameter_bytes, expected}], those tried before the fit; components of SVDs; lobes and
- * coefficients of SRBFs. With for_scene also texels [x, y], the finest that remain, and scene, as of
- * vlr_fit_create_job, but with full_texels [x, y] and surface (vlr_observation_info_json) instead of errors; psnr, ser
- * and speed are then those of the full model. */
+ * bytes), psnr, psnr_held_out (null without held_out), ser, relative_l2, p99, evaluations_per_second, seconds, verdict
+ * (of images of the tile, null for scene models), warning_codes, tolerance, order as of vlr_fit_create_job (lobes:
+ * coefficients of a texel, or components; worst: relative_l2 over the tolerance, or relative_l2 without one), search
+ * [{coefficients, parameter_bytes, expected, relative_l2}], the fits in their order; for clustered tensors shapes
+ * [{clusters, members, texel_rank, view_rank, light_rank, color_rank, parameter_bytes, expected}], those tried before
+ * the fit; components of SVDs; lobes and coefficients of SRBFs. With for_scene also texels [x, y], the finest that
+ * remain, and scene, as of vlr_fit_create_job, but with full_texels [x, y] and surface (vlr_observation_info_json)
+ * instead of errors; psnr, ser and speed are then those of the full model. */
 VLR_API vlr_status vlr_compress_create_job(const vlr_btf* btf, const vlr_compress_options* options, vlr_job** out);
 /* Estimates such a fit from the BTF's sizes alone, counting all sides: dark or equal ones are only found by reading
  * them. memory: bytes that it holds at once without a limit, beyond those of the process before; least_memory: the

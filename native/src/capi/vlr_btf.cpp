@@ -8,6 +8,7 @@
 #include "capi/reports/reports.h"
 #include "model/file/model_file.h"
 #include "usage/btf/scene_reduction.h"
+#include "verdict/btf_verdict.h"
 
 using namespace velour;
 using namespace velour::capi;
@@ -151,6 +152,22 @@ CompressOptions converted(const vlr_compress_options& given) {
 
 }  // namespace
 
+namespace {
+
+Model compress_and_judge(const BtfMeasurement& measurement, const CompressOptions& options, Progress& progress) {
+  constexpr double kFitShare = 0.98;  // of the time
+  Model model = [&] {
+    const Progress::Span fitting(progress, 0, kFitShare);
+    return compress_btf(measurement, options, progress);
+  }();
+  progress.stage("comparing pictures", kFitShare, 1);
+  model.btf.value().verdict = judge_btf(measurement, images_of(model.body), progress);
+  progress.update(1);
+  return model;
+}
+
+}  // namespace
+
 vlr_status vlr_compress_create_job(const vlr_btf* btf, const vlr_compress_options* options, vlr_job** out) {
   return guard([&] {
     require(btf, "btf");
@@ -158,8 +175,8 @@ vlr_status vlr_compress_create_job(const vlr_btf* btf, const vlr_compress_option
     const CompressOptions given = converted(read_options(options, vlr_compress_options_init, "vlr_compress_options"));
     auto output = std::make_shared<JobOutput>();
     *out = new vlr_job(output, [output, given, source = btf->btf](Progress& progress) {
-      const auto compress = given.for_scene ? compress_for_scene : compress_btf;
-      auto model = std::make_shared<const Model>(compress(*source, given, progress));
+      auto model = std::make_shared<const Model>(given.for_scene ? compress_for_scene(*source, given, progress)
+                                                                 : compress_and_judge(*source, given, progress));
       output->set(compression_json(*model, encode_model(*model).size()), model);
     });
   });

@@ -3,13 +3,13 @@
 #include "brdf/fit/error/evaluate.h"
 #include "brdf/fit/fit_model.h"
 #include "brdf/fit/peer.h"
-#include "brdf/verdict/verdict.h"
 #include "capi/guard.h"
 #include "capi/handles.h"
 #include "capi/reports/reports.h"
 #include "capture/goniometer/microsurface.h"
 #include "model/file/model_file.h"
 #include "model/model.h"
+#include "verdict/verdict.h"
 
 using namespace velour;
 using namespace velour::capi;

@@ -37,7 +37,7 @@ struct FitRecord {
   bool all_data = false;  // fitted without held-out data
   OrderCurve order;
   std::vector<Warning> warnings;
-  std::optional<Verdict> verdict = std::nullopt;  // none: not judged (brdf/verdict/verdict.h)
+  std::optional<Verdict> verdict = std::nullopt;  // none: not judged (verdict/verdict.h)
 };
 
 /// The data that the model was fitted to.

@@ -126,6 +126,7 @@ std::string btf_record_json(const BtfRecord& record) {
   if (!record.order.points.empty()) json["order"] = order_json(record.order);
   if (!record.search.empty()) json["search"] = trials_json(record.search);
   if (!record.shapes.empty()) json["shapes"] = shapes_json(record.shapes);
+  if (record.verdict) json["verdict"] = verdict_json(*record.verdict);
   return json.dump(-1, ' ', false, Json::error_handler_t::replace);  // paths may not be UTF-8
 }
 
@@ -147,6 +148,7 @@ BtfRecord parse_btf_record(const std::string& text, const std::string& where) {
   if (fields.has("order")) record.order = parse_order(fields.at("order"), where + ": 'order'");
   if (fields.has("search")) record.search = parse_trials(fields.at("search"), fields, source);
   if (fields.has("shapes")) record.shapes = parse_shapes(fields.at("shapes"), fields, source);
+  if (fields.has("verdict")) record.verdict = parse_verdict(fields.at("verdict"), where + ": 'verdict'");
   record.warnings = parse_warnings(json, where);
   return record;
 }

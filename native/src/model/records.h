@@ -116,11 +116,12 @@ struct BtfRecord {
   double evaluations_per_second = 0;  // per CPU second of one thread, at random places and directions; 0: not measured
   uint64_t seed = 0;
   std::vector<Warning> warnings;
-  double relative_l2 = 0;          // of companded values over all fitted pairs; 0: not measured
-  double tolerance = 0;            // requested maximum of relative_l2; 0: none
-  OrderCurve order;                // error over size; `lobes` are coefficients per texel, or components
-  std::vector<SizeTrial> search;   // in the order of the fits
-  std::vector<ShapeTrial> shapes;  // of clustered tensors, in the order of the trials
+  double relative_l2 = 0;                         // of companded values over all fitted pairs; 0: not measured
+  double tolerance = 0;                           // requested maximum of relative_l2; 0: none
+  OrderCurve order;                               // error over size; `lobes` are coefficients per texel, or components
+  std::vector<SizeTrial> search;                  // in the order of the fits
+  std::vector<ShapeTrial> shapes;                 // of clustered tensors, in the order of the trials
+  std::optional<Verdict> verdict = std::nullopt;  // none: not judged (verdict/btf_verdict.h)
 };
 
 /// [{"coefficients", "parameter_bytes", "expected", "relative_l2"}, ...], errors with four digits.

@@ -31,7 +31,7 @@ struct FitOptions {
   /// Bytes that max_bytes bounds, such as the size of the model's file, which the fit does not know. Empty:
   /// parameter_bytes.
   std::function<uint64_t(const Model&)> size_of;
-  /// The verdict on a model (brdf/verdict/verdict.h), which decides between kinds; its reason is not needed. Empty:
+  /// The verdict on a model (verdict/verdict.h), which decides between kinds; its reason is not needed. Empty:
   /// their errors alone do.
   std::function<std::optional<Verdict>(const Model&, Progress&)> verdict_on;
 };

@@ -65,6 +65,7 @@ std::string compression_json(const Model& model, uint64_t file_bytes) {
                    {"p99", record.p99},
                    {"evaluations_per_second", record.evaluations_per_second},
                    {"seconds", record.seconds},
+                   {"verdict", record.verdict ? verdict_json(*record.verdict) : Json()},
                    {"warning_codes", warnings_json(record.warnings)},
                    {"tolerance", record.tolerance},
                    {"order", order_json(record.order)},

@@ -248,6 +248,7 @@ Json record_json(const BtfRecord& btf) {
           {"p99", btf.p99},
           {"raw_bytes", btf.raw_bytes},
           {"seed", btf.seed},
+          {"verdict", verdict_or_null(btf.verdict)},
           {"warning_codes", warnings_json(btf.warnings)},
           {"relative_l2", measured ? Json(btf.relative_l2) : Json()},
           {"tolerance", btf.tolerance},

@@ -74,8 +74,11 @@ TEST(FactoredModel, OfViewsRefusesADamagedFileByItsField) {
 }
 
 TEST(FactoredModel, KeepsItsRecord) {
-  const BtfRecord written = *test::example_btf_model().btf;
-  const BtfRecord record = *after_a_round_trip(test::example_btf_model()).btf;
+  Model model = test::example_btf_model();
+  model.btf->verdict = Verdict{LookQuality::fair, 0.0625, 0.25, LookReason::grazing_views, 60};
+  const BtfRecord written = *model.btf;
+  const BtfRecord record = *after_a_round_trip(model).btf;
+  EXPECT_EQ(record.verdict, written.verdict);
   EXPECT_EQ(record.relative_l2, written.relative_l2);
   EXPECT_EQ(record.tolerance, written.tolerance);
   EXPECT_EQ(record.order, written.order);

@@ -21,7 +21,7 @@ PAGES = {"test_shares.md": "test_shares"}
 
 # Layers of the library by what they are for; those of mathematics serve both.
 _RENDERING = {"render", "scene", "light", "material", "brdf_eval", "btf_eval", "votf_eval", "realtime"}
-_FITTING = ("brdf_fit", "brdf_verdict", "btf_fit", "capture", "votf_capture", "math_optimize", "math_tensor")
+_FITTING = ("brdf_fit", "verdict", "btf_fit", "capture", "votf_capture", "math_optimize", "math_tensor")
 # Parts of the names of programs and of files of code.
 _PROGRAMS = {"idle": ("swapper",), "drawing": ("llvmpipe", "Xvfb")}
 _FILES = {

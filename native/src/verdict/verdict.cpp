@@ -1,4 +1,4 @@
-#include "brdf/verdict/verdict.h"
+#include "verdict/verdict.h"
 
 #include <algorithm>
 #include <cmath>
@@ -10,8 +10,8 @@
 #include "brdf/fit/direction_tree.h"
 #include "brdf/fit/error/evaluate.h"
 #include "brdf/measure/irregular_samples.h"
-#include "brdf/verdict/surroundings.h"
 #include "math/sphere/frame.h"
+#include "verdict/surroundings.h"
 
 namespace velour {
 
@@ -92,8 +92,8 @@ Shape ball_shape(int side) { return drawn(side, ball_frame); }
 Shape ring_shape(int side) { return drawn(side, ring_frame); }
 
 constexpr int kPictureSide = 80;
-constexpr int kParts = 256, kOwnLights = 256;     // of the tree of light directions; of the material's own sampler
-constexpr float kGray = 0.18f, kBackdrop = 0.1f;  // of exposed pictures
+constexpr int kParts = 256, kOwnLights = 256;  // of the tree of light directions; of the material's own sampler
+constexpr float kBackdrop = 0.1f;              // of exposed pictures
 
 /// Views that stand for all: polar angles in equal steps, and azimuths unless all materials are isotropic.
 class ViewBins {
@@ -215,7 +215,7 @@ PicturePair exposed(const LitShape& lit_shape, size_t environment) {
                                std::vector<Rgb>(static_cast<size_t>(kPictureSide * kPictureSide), Rgb(kBackdrop))};
   PicturePair out{backdrop, backdrop, 1, lit_shape.object, lit_shape.view_angle, 1};
   if (measured > 0) {
-    out.exposure = kGray * static_cast<double>(lit_shape.object.size()) / measured;
+    out.exposure = kPhotographicGray * static_cast<double>(lit_shape.object.size()) / measured;
     out.luminance_ratio = shown / measured;
   }
   const auto scale = static_cast<float>(out.exposure);
@@ -270,103 +270,18 @@ std::vector<PicturePair> picture_pairs(const Measurement& measurement, const Mat
 
 namespace {
 
-constexpr double kGrazing = 60;     // degrees
-constexpr float kBright = 0.5f;     // exposed luminance of highlights
-constexpr double kTwice = 2;        // FLIP of a part of the pixels that stands out, relative to the others
-constexpr double kLeast = 1e-9;     // FLIP of pixels that do not differ
-constexpr double kMissed = 1.0;     // relative L2 error of held-out samples: no better than black
-constexpr double kExplained = 0.5;  // of FLIP remains, at most, if its reason is taken away
+constexpr double kMissed = 1.0;  // relative L2 error of held-out samples: no better than black
 
-/// A mean over some of the pixels.
-class Mean {
- public:
-  void add(double value) { sum_ += value, ++count_; }
-  double value() const { return count_ > 0 ? sum_ / count_ : 0; }
-
- private:
-  double sum_ = 0, count_ = 0;
-};
-
-/// FLIP of all pixels of the pictures, and its means over parts of them.
-struct Differences {
-  std::vector<float> flip;
-  Mean all, grazing, facing, bright, dim;
-  Mean log_luminance;  // of the ratio of the pictures' means
-
-  double percentile_95() {
-    const auto at = flip.begin() + static_cast<std::ptrdiff_t>(0.95 * static_cast<double>(flip.size() - 1));
-    std::nth_element(flip.begin(), at, flip.end());
-    return *at;
-  }
-};
-
-LinearPicture displayed(LinearPicture picture) {
-  for (Rgb& c : picture.pixels) c = glm::min(c, 1.0f);
-  return picture;
-}
-
-void add_pair(const PicturePair& pair, Differences& out) {
-  const LinearPicture measured = displayed(pair.measured), shown = displayed(pair.shown);
-  const std::vector<float> flip = flip_map(measured, shown);
-  for (size_t i = 0; i < pair.object.size(); ++i) {
-    const float value = flip[pair.object[i]];
-    out.flip.push_back(value);
-    out.all.add(value);
-    (pair.view_angle[i] > static_cast<float>(radians_from(kGrazing)) ? out.grazing : out.facing).add(value);
-    const float brighter =
-        std::max(luminance(measured.pixels[pair.object[i]]), luminance(shown.pixels[pair.object[i]]));
-    (brighter > kBright ? out.bright : out.dim).add(value);
-  }
-  out.log_luminance.add(std::log(std::clamp(pair.luminance_ratio, 1e-6, 1e6)));
-}
-
-Differences differences_of(const std::vector<PicturePair>& pairs, const Progress& progress) {
-  Differences out;
-  for (const PicturePair& pair : pairs) {
-    progress.check();
-    add_pair(pair, out);
-  }
-  return out;
-}
-
-/// Mean FLIP after a change of every pair.
-template <class Change>
-double flip_after(std::vector<PicturePair> pairs, const Progress& progress, const Change& change) {
-  for (PicturePair& pair : pairs) change(pair);
-  return differences_of(pairs, progress).all.value();
-}
-
-void equal_brightness(PicturePair& pair) {
-  const auto scale = static_cast<float>(1 / std::clamp(pair.luminance_ratio, 1e-6, 1e6));
-  for (const uint32_t i : pair.object) pair.shown.pixels[i] *= scale;
-}
-
-void without_color(PicturePair& pair) {
-  for (LinearPicture* picture : {&pair.measured, &pair.shown}) {
-    for (Rgb& c : picture->pixels) c = Rgb(luminance(glm::min(c, 1.0f)));
-  }
-}
-
-/// What stands out: first what the measurement itself is to blame for, then what is wrong everywhere, then parts.
+/// What the measurement itself is to blame for, before what stands out in the pictures.
 void explain(const Measurement& measurement, const Material& material, const std::vector<PicturePair>& pairs,
-             const Differences& found, int threads, Progress& progress, Verdict& verdict) {
-  const double enough = kExplained * verdict.flip_mean;
-  const auto because = [&](LookReason reason, double value = 0) { verdict.reason = reason, verdict.value = value; };
+             int threads, Progress& progress, Verdict& verdict) {
+  const auto because = [&](LookReason reason, double value) { verdict.reason = reason, verdict.value = value; };
   const auto smooth = picture_pairs(measurement, material, Against::reciprocal_mean, threads, progress);
-  const double against_smooth = differences_of(smooth, progress).all.value();
-  if (against_smooth < enough) return because(LookReason::measurement_noise, against_smooth);
+  const double against_smooth = verdict_of(smooth, progress).value().flip_mean;
+  if (explains(against_smooth, verdict)) return because(LookReason::measurement_noise, against_smooth);
   const double gap = gap_of_unresolved_highlights(measurement.samples());
   if (gap > 0) return because(LookReason::unresolved_highlights, gap * 180 / kPiD);
-  if (flip_after(pairs, progress, equal_brightness) < enough) {
-    return because(LookReason::brightness, std::exp(found.log_luminance.value()));
-  }
-  if (flip_after(pairs, progress, without_color) < enough) return because(LookReason::color);
-  // A part that differs may also be the brighter one: the reason is what stands out most.
-  const double bright = found.bright.value() / std::max(found.dim.value(), kLeast);
-  const double grazing = found.grazing.value() / std::max(found.facing.value(), kLeast);
-  if (std::max(bright, grazing) <= kTwice) return because(LookReason::everywhere);
-  if (bright > grazing) return because(LookReason::highlights);
-  because(LookReason::grazing_views, kGrazing);
+  explain_look(pairs, progress, verdict);
 }
 
 }  // namespace
@@ -374,14 +289,10 @@ void explain(const Measurement& measurement, const Material& material, const std
 std::optional<Verdict> judge_look(const Measurement& measurement, const Material& material, bool explained, int threads,
                                   Progress& progress) {
   const auto pairs = picture_pairs(measurement, material, Against::measurement, threads, progress);
-  Differences found = differences_of(pairs, progress);
-  if (found.flip.empty()) return std::nullopt;
-  Verdict verdict;
-  verdict.flip_mean = found.all.value();
-  verdict.flip_95 = found.percentile_95();
-  const bool good = verdict.flip_mean <= kGoodMean && verdict.flip_95 <= kGoodPercentile;
-  verdict.quality = good ? LookQuality::good : verdict.flip_mean <= kFairMean ? LookQuality::fair : LookQuality::poor;
-  if (!good && explained) explain(measurement, material, pairs, found, threads, progress, verdict);
+  std::optional<Verdict> verdict = verdict_of(pairs, progress);
+  if (verdict && verdict->quality != LookQuality::good && explained) {
+    explain(measurement, material, pairs, threads, progress, *verdict);
+  }
   return verdict;
 }
 

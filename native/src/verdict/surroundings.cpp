@@ -1,10 +1,10 @@
-#include "brdf/verdict/surroundings.h"
+#include "verdict/surroundings.h"
 
 #include <algorithm>
 #include <cmath>
 
 #undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "brdf/verdict/surroundings.cpp"
+#define HWY_TARGET_INCLUDE "verdict/surroundings.cpp"
 #include "hwy/foreach_target.h"
 #include "hwy/highway.h"
 // Requires Highway's namespace of the target.

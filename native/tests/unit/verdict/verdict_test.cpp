@@ -1,4 +1,4 @@
-#include "brdf/verdict/verdict.h"
+#include "verdict/verdict.h"
 
 #include <gtest/gtest.h>
 
@@ -8,12 +8,12 @@
 #include "brdf/eval/parametric_material.h"
 #include "brdf/fit/error/evaluate.h"
 #include "brdf/fit/fit_model.h"
-#include "brdf/verdict/surroundings.h"
 #include "model/model.h"
 #include "support/analytic_measurement.h"
 #include "support/level.h"
 #include "support/parametric_models.h"
 #include "support/test_data.h"
+#include "verdict/surroundings.h"
 
 namespace velour::verdict_test {
 namespace {
