@@ -37,14 +37,11 @@ TEST(FitModel, TheAutomaticChoiceIsParametricAsLongAsItIsGoodEnough) {
 }
 
 TEST(FitModel, TheAutomaticChoiceIsLargerWhereParametricFails) {
-  // A highlight that swings to and fro every ten degrees of the view, faster than splines of ten cells.
+  // A highlight that brightens and dims every ten degrees of the view, faster than splines of ten cells.
   const AnalyticMeasurement swinging([](const DirectionPair& p) {
     const float theta = std::acos(std::min(p.wv.z, 1.0f)) * 180 / kPi;
-    const float tilt = 0.2f * std::sin(2 * kPi * theta / 10);
     const Vec3 h = glm::normalize(p.wl + p.wv);
-    const Vec3 along = p.wv.z < 1 ? glm::normalize(Vec3(p.wv.x, p.wv.y, 0)) : Vec3(1, 0, 0);
-    const Vec3 center = std::cos(tilt) * Vec3(0, 0, 1) + std::sin(tilt) * along;
-    return Rgb(0.1f / kPi + std::exp(80 * (glm::dot(h, center) - 1)));
+    return Rgb(0.1f / kPi + (1 + 0.9f * std::sin(2 * kPi * theta / 10)) * std::exp(80 * (h.z - 1)));
   });
   const FitOptions options;
   Progress progress;
