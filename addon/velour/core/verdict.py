@@ -97,13 +97,15 @@ def _reason(verdict: dict) -> str:
 
 def _remedy(info: dict) -> Remedy | None:
     """The next larger model: more lobes if the fit ran out of them, otherwise a smaller error."""
+    if "model" not in info:  # a report
+        return None
     if "texels" in info:
         size = _BTF_GROWTH * info["parameter_bytes"]
         if size > _MOST_OF_BTF * info["raw_bytes"]:
             return None
         return Remedy("Larger Model", "larger model?", "Fit a larger model", {"megabytes": size / 1e6})
     order = info.get("order") or {}
-    if "model" not in info or not order.get("lobes"):
+    if not order.get("lobes"):
         return None
     lobes, kind = max(order["lobes"]), info["model"]
     at = order["chosen"] if order["chosen"] is not None else -1

@@ -307,6 +307,7 @@ void reduce(const BtfMeasurement& measurement, size_t count, const CompressOptio
 Model compress_for_scene(const BtfMeasurement& measurement, const CompressOptions& options, Progress& progress) {
   const SceneObservation& observation = checked(options);
   Model model = full_model(measurement, options, progress);
+  model.btf.value().verdict = std::nullopt;  // on the full model
   const Progress::Span reducing(progress, options.full_model ? 0 : kFullFit, 1.0);
   progress.stage("reducing to the scene", 0, 1);
   SceneRecord record;
