@@ -79,9 +79,9 @@ class VaryingLook(BlenderTest):
         self._is_as_constant(1e-4, rotation=(math.pi / 2, self._computed))
 
     def test_roughness(self):
-        """Between two levels, where the sum of both differs most."""
+        """Between two levels, where their sum differs most."""
         self._stage(inputs.model_bytes(inputs.plastic_measurement()), sun=(0.05, 0.02, 1.0))
-        for value in (0.35, 0.5, 0.7):
+        for value in (0.27, 0.35, 0.5, 0.7):
             with self.subTest(value):
                 self._is_as_constant(0.06, roughness=(value, self._computed))
                 scenes.set_look(self.material, roughness=0.0)

@@ -15,6 +15,7 @@ from .values import is_constant, own_value
 
 VARYING = ("roughness", "rotation", "scale")  # fields of MeasuredLook that a layer's pictures may replace
 _STEP = 2.0  # largest ratio of squared GGX alphas of neighboring levels
+_FIRST_STEP = 1.2  # shares are linear in the offset, whose first half hardly widens a highlight
 _LEAST_ROUGHNESS = 0.08  # of the narrowest highlight that levels resolve
 
 
@@ -50,11 +51,13 @@ def with_effect(layer, info):
 def levels_of(narrowest):
     """Roughness offsets from 0 to 1 whose models, mixed with their neighbors, replace those in between.
 
-    Squared alphas add up, so each makes a highlight of roughness `narrowest` wider by the same factor.
+    Squared alphas add up, so each but the first two makes a highlight of roughness `narrowest` wider by the
+    same factor.
     """
     own = max(narrowest, _LEAST_ROUGHNESS) ** 4
     count = max(math.ceil(math.log(1.0 + 1.0 / own, _STEP)), 1)
-    return [min(own * ((1.0 + 1.0 / own) ** (k / count) - 1.0), 1.0) ** 0.25 for k in range(count + 1)]
+    factors = [1.0, _FIRST_STEP, *((1.0 + 1.0 / own) ** (k / count) for k in range(1, count + 1))]
+    return [min(own * (factor - 1.0), 1.0) ** 0.25 for factor in sorted(factors)]
 
 
 def roughness_levels(layer, narrowest):
